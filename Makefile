@@ -1,0 +1,102 @@
+# Set-up, demo and checks on the ROS 2 wheels; docs/setup.md also has the way with apt's ROS 2.
+SHELL := /bin/bash
+.SHELLFLAGS := -e -o pipefail -c
+.DELETE_ON_ERROR:
+.PHONY: help setup demo test lint bench lock clean
+
+ifneq ($(words $(CURDIR)),1)
+$(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
+endif
+
+# An inherited ROS or Python environment would mix its libraries with those of the wheels, and
+# without bytecode files every node of every run would compile its imports again.
+unexport $(filter AMENT_% COLCON_% RMW_% ROS_% _ROS_% CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
+    PYTHONDONTWRITEBYTECODE PYTHONHOME PYTHONPATH VIRTUAL_ENV,$(.VARIABLES))
+
+BIN := .venv/bin
+SOURCED := . install/setup.bash;
+VENV_MADE := .venv/.made
+WORKSPACE_BUILT := install/.built
+BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/config ddct_*/foxglove)
+
+PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
+SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))
+NEEDED_AT_RUN := control, osqp, scipy.signal, yaml, rich, mcap_ros2.decoder, rclpy, \
+    diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
+
+help:
+	@echo 'make setup | demo | test | lint | bench | clean   (see docs/setup.md)'
+
+setup: $(WORKSPACE_BUILT)
+
+# Always a new environment: each ROS wheel holds a second package record (rclpy in ros-rclpy), and
+# a second sync would take those for strangers and remove their modules.
+# colcon's install/setup.* chain to local_setup.*, so that the ament index has the message packages.
+$(VENV_MADE): requirements.txt requirements-uv.txt
+	@if [ "$$(uname -sm)" != 'Linux x86_64' ]; then \
+	    echo "make: the ROS 2 wheels are for x86-64 Linux, this is $$(uname -sm)" >&2; exit 1; fi; \
+	for python in $(PYTHONS); do \
+	    "$$python" -c '$(SUITABLE)' 2>/dev/null && break; python=; \
+	done; \
+	if [ -z "$$python" ]; then \
+	    echo 'make: no Python 3.11, 3.12 or 3.13 with venv (Debian, Ubuntu: python3-venv)' \
+	        'among: $(PYTHONS). Name one: make PYTHON=/path/to/python3.12' >&2; exit 1; fi; \
+	echo "Making .venv with $$("$$python" --version) ($$python)"; \
+	"$$python" -m venv --clear .venv
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --require-hashes \
+	    --only-binary :all: -r requirements-uv.txt
+	@echo 'Installing requirements.txt'
+	@$(BIN)/uv pip sync --quiet --python $(BIN)/python --require-hashes \
+	    --build-constraints requirements.txt requirements.txt requirements-uv.txt
+	@$(BIN)/python -c 'import $(NEEDED_AT_RUN)'
+	@for shell in sh bash zsh; do \
+	    echo 'export AMENT_PREFIX_PATH="$(CURDIR)/.venv$${AMENT_PREFIX_PATH:+:$$AMENT_PREFIX_PATH}"' \
+	        > .venv/local_setup.$$shell; \
+	done
+	@touch $@
+
+# From nothing, as it takes seconds: colcon leaves behind what is gone from the sources.
+$(WORKSPACE_BUILT): $(VENV_MADE) $(BUILD_INPUTS)
+	@rm -rf build install log
+	@AMENT_PREFIX_PATH="$(CURDIR)/.venv" $(BIN)/colcon build --symlink-install
+	@touch $@
+
+demo: setup
+	@$(SOURCED) install/ddct_bringup/lib/ddct_bringup/compare \
+	    --controllers pi,ls8,hinf1 --out runs/demo --overwrite
+
+# Both runs always take place. A package whose tests colcon did not find counts as a failure.
+TEST_FOLDERS := $(wildcard ddct_*/test tests)
+TOTAL := /pytest.xml: [1-9]/ { ran++ } \
+    /^Summary:/ { failed = $$4 + $$6; printf "Total: %d passed, %d failed, %d skipped\n", \
+        $$2 - failed - $$8, failed, $$8 } \
+    END { if (ran < folders) print "make: tests ran in " ran + 0 " of the folders: $(TEST_FOLDERS)"; \
+        exit failed || ran < folders }
+test: setup
+	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
+	$(BIN)/colcon test --event-handlers console_cohesion+ --return-code-on-test-failure \
+	    || status=1; \
+	$(BIN)/python -m pytest tests --junit-xml=build/tests/pytest.xml || status=1; \
+	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
+	    || status=1; \
+	exit $$status
+
+lint: $(VENV_MADE)
+	@status=0; \
+	$(BIN)/ruff check || status=1; \
+	$(BIN)/ruff format --check || status=1; \
+	$(BIN)/mypy || status=1; \
+	exit $$status
+
+bench: setup
+	@$(SOURCED) $(BIN)/python tests/bench/run.py
+
+# One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
+COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+    --no-header --fork-strategy fewest
+lock: $(VENV_MADE)
+	@$(COMPILE) requirements.in -o requirements.txt
+	@echo uv | $(COMPILE) - -o requirements-uv.txt
+
+clean:
+	rm -rf .venv build install log .mypy_cache .pytest_cache .ruff_cache

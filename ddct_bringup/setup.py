@@ -1,0 +1,35 @@
+"""Install the programs that run, record, score and compare engagements."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'ddct_bringup'
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml']),
+        (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
+        (f'share/{PACKAGE}/foxglove', sorted(glob('foxglove/*.json'))),
+    ],
+    install_requires=['setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='DDCT team',
+    maintainer_email='maintainers@ddct.invalid',
+    description='The programs that run, record, score and compare engagements.',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'bringup = ddct_bringup.bringup:main',
+            'calibrate = ddct_bringup.calibrate:main',
+            'compare = ddct_bringup.compare:main',
+            'recorder = ddct_bringup.recorder_node:main',
+            'score = ddct_bringup.score:main',
+        ],
+    },
+)

@@ -1,0 +1,30 @@
+"""Install the controllers and their node."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'ddct_controllers'
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml']),
+        (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
+    ],
+    install_requires=['setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='DDCT team',
+    maintainer_email='maintainers@ddct.invalid',
+    description='The controllers and their node.',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'controller = ddct_controllers.controller_node:main',
+        ],
+    },
+)

@@ -1,0 +1,36 @@
+"""Install the plant: its nodes, the identification and the scenarios."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'ddct_plant'
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    package_data={PACKAGE: ['scenarios/*.yaml']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml']),
+        (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
+    ],
+    install_requires=['setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='DDCT team',
+    maintainer_email='maintainers@ddct.invalid',
+    description='The plant: its nodes, the identification and the scenarios.',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'actuator = ddct_plant.actuator_node:main',
+            'clutch = ddct_plant.clutch_node:main',
+            'driveline = ddct_plant.driveline_node:main',
+            'engine = ddct_plant.engine_node:main',
+            'identify = ddct_plant.identify:main',
+            'load = ddct_plant.load_node:main',
+        ],
+    },
+)
