@@ -1,0 +1,1 @@
+"""Plant of the dual dry clutch transmission: engine, load, clutch, driveline, actuator."""

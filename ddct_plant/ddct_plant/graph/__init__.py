@@ -1,0 +1,1 @@
+"""ROS 2 plumbing that every node of the project shares."""

@@ -1,0 +1,57 @@
+"""Base of every node: settings, run information, and a way to end with a reason."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.node import Node
+from rclpy.task import Future
+
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.messages import status_message
+from ddct_plant.graph.qos import LATCHED_QOS
+from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
+from ddct_plant.graph.settings import declare_settings
+from ddct_plant.timebase import stamp_of_step
+
+
+class GraphNode(Node):
+    """
+    A plain node that shares the run's settings and says so on `run_info`.
+
+    Not a lifecycle node: nothing in this project would drive the transitions.
+    """
+
+    def __init__(self, name: str, **kwargs: Any) -> None:
+        """Declare the shared parameters; raise ParameterError when one cannot be used."""
+        super().__init__(name, **kwargs)
+        self.settings = declare_settings(self)
+        self.done = Future()
+        """Set when the node has nothing more to do, with the DdctError that ended it, or None."""
+
+    def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
+        """Latch this node's settings, stamped t_0."""
+        publisher = self.create_publisher(DiagnosticArray, RUN_INFO_TOPIC, LATCHED_QOS)
+        pairs = run_info_pairs(self.settings, extra)
+        publisher.publish(status_message(stamp_of_step(0), self.get_name(), pairs))
+
+    def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
+        """Wrap a callback so that a DdctError ends the node with its one-line reason."""
+
+        def call(*arguments: Any) -> None:
+            if self.done.done():
+                return
+            try:
+                callback(*arguments)
+            except DdctError as error:
+                self.finish(error)
+
+        return call
+
+    def finish(self, error: DdctError | None = None) -> None:
+        """End the node, with the error that made it end or None when its work is done."""
+        if not self.done.done():
+            self.done.set_result(error)
+
+    def close(self) -> None:
+        """Flush what the node still holds; called once, before it is destroyed."""

@@ -1,0 +1,86 @@
+"""A scenario: everything about a run that is not the controller or the way it is started."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ddct_plant.checks import require_number
+from ddct_plant.engine import TorqueProfile
+from ddct_plant.errors import ParameterError
+from ddct_plant.load import LoadParameters
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.timebase import steps_in
+from ddct_plant.vehicle import VehicleParameters
+
+
+@dataclass(frozen=True)
+class InitialSpeeds:
+    """Speeds of the two clutch plates at t = 0; the wheel turns with the primary shaft."""
+
+    engine_speed_rad_s: float = 160.0
+    """w_m(0)."""
+    shaft_speed_rad_s: float = 160.0
+    """w_p(0); 160 rad/s is about 20 km/h in second gear."""
+
+    def __post_init__(self) -> None:
+        """Check both speeds; raise ParameterError that names a bad one."""
+        for name in ('engine_speed_rad_s', 'shaft_speed_rad_s'):
+            require_number(f'initial.{name}', getattr(self, name), at_least=0.0, at_most=1000.0)
+
+
+@dataclass(frozen=True)
+class ReferenceParameters:
+    """Shape of the slip-speed reference once control starts (Section 1.4.1)."""
+
+    slope_rad_s2: float = 90.0
+    """Rate at which the CRF ramp runs to zero."""
+
+    def __post_init__(self) -> None:
+        """Check the slope; raise ParameterError when it is bad."""
+        require_number('reference.slope_rad_s2', self.slope_rad_s2, above=0.0, at_most=1e4)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One driving situation and how it is scored; see docs/scenario.md for every key."""
+
+    name: str
+    description: str
+    duration_s: float
+    """Length of the run, a multiple of 10 ms."""
+    control_start_s: float
+    """When feedback and reference start (0.6 s in the thesis), a multiple of 10 ms."""
+    score_window_s: tuple[float, float]
+    """First and last time of the samples that standard deviations are taken over."""
+    engine: TorqueProfile
+    initial: InitialSpeeds = InitialSpeeds()
+    reference: ReferenceParameters = ReferenceParameters()
+    load: LoadParameters = LoadParameters()
+    vehicle: VehicleParameters = VehicleParameters()
+    driveline: DrivelineParameters = DrivelineParameters()
+    controllers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Gains by controller name, checked by the controller that takes them."""
+
+    def __post_init__(self) -> None:
+        """Check the times; raise ParameterError that names a bad one."""
+        require_number('duration_s', self.duration_s, above=0.0, at_most=3600.0)
+        require_number('control_start_s', self.control_start_s, at_least=0.0, at_most=3600.0)
+        steps_in('duration_s', self.duration_s)
+        steps_in('control_start_s', self.control_start_s)
+        if len(self.score_window_s) != 2:
+            raise ParameterError('score_window_s: give two times, [first, last]')
+        first, last = self.score_window_s
+        for index, time in enumerate(self.score_window_s):
+            require_number(f'score_window_s[{index}]', time, at_least=0.0, at_most=3600.0)
+            steps_in(f'score_window_s[{index}]', time)
+        if last <= first:
+            raise ParameterError(f'score_window_s ends at {last:g} s, before {first:g} s')
+
+    @property
+    def steps(self) -> int:
+        """N, the number of 10 ms periods of the run."""
+        return steps_in('duration_s', self.duration_s)
+
+    @property
+    def control_start_step(self) -> int:
+        """First step at which feedback and reference are on."""
+        return steps_in('control_start_s', self.control_start_s)

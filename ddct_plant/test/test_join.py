@@ -1,0 +1,71 @@
+"""Inputs are joined on their stamp and answered once."""
+
+import pytest
+
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.join import StampJoin, Verdict
+from ddct_plant.timebase import stamp_of_step
+
+
+def offer(join: StampJoin, topic: str, step: int) -> Verdict:
+    return join.offer(topic, stamp_of_step(step), f'{topic}{step}')
+
+
+def test_a_stamp_is_complete_when_every_input_has_it():
+    join = StampJoin(['a', 'b'])
+    assert offer(join, 'b', 0) is Verdict.WAIT
+    assert offer(join, 'a', 0) is Verdict.COMPLETE
+    assert join.take() == (0, {'a': 'a0', 'b': 'b0'})
+
+
+def test_only_the_trigger_asks_for_the_reply_again():
+    join = StampJoin(['a', 'b'])
+    offer(join, 'a', 0)
+    offer(join, 'b', 0)
+    join.take()
+    assert offer(join, 'a', 0) is Verdict.REPEAT
+    assert offer(join, 'b', 0) is Verdict.IGNORE
+
+
+def test_an_older_stamp_is_dropped_and_counted():
+    join = StampJoin(['a'])
+    for step in (0, 1):
+        offer(join, 'a', step)
+        join.take()
+    assert offer(join, 'a', 0) is Verdict.IGNORE
+    assert join.ignored == 1
+
+
+def test_a_repeated_input_of_an_open_stamp_does_not_complete_it():
+    join = StampJoin(['a', 'b'])
+    assert offer(join, 'a', 0) is Verdict.WAIT
+    assert offer(join, 'a', 0) is Verdict.WAIT
+
+
+@pytest.mark.parametrize('first', [1, 5])
+def test_a_node_that_joins_mid_run_says_so(first):
+    with pytest.raises(DdctError, match=f'step {first} came where step 0 was due'):
+        offer(StampJoin(['a']), 'a', first)
+
+
+def test_a_gap_is_counted_where_gaps_are_allowed():
+    join = StampJoin(['a'], allow_gaps=True)
+    offer(join, 'a', 0)
+    join.take()
+    offer(join, 'a', 3)
+    assert join.skipped == 2
+
+
+def test_inputs_that_were_passed_over_are_forgotten():
+    join = StampJoin(['a', 'b'], allow_gaps=True)
+    offer(join, 'a', 0)
+    offer(join, 'a', 1)
+    offer(join, 'b', 1)
+    assert join.take() == (1, {'a': 'a1', 'b': 'b1'})
+    assert offer(join, 'b', 0) is Verdict.IGNORE
+    assert join.ignored == 2
+
+
+def test_a_stamp_off_the_grid_is_an_error():
+    with pytest.raises(DdctError, match='not on the grid'):
+        StampJoin(['a']).offer('a', stamp_of_step(0) + 1, None)

@@ -1,0 +1,54 @@
+"""Tables on standard output and JSON files, shared by the programs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ddct_plant.errors import DdctError
+from ddct_plant.output_file import write_json
+from ddct_plant.table import print_table
+
+
+def test_columns_of_a_plain_table_line_up(capsys):
+    print_table('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == 'Title'
+    starts = [line.index(cell) for line, cell in zip(lines[1:4], ('long', '1', '22'), strict=True)]
+    assert starts == [13, 13, 13]
+
+
+def test_table_on_a_terminal_shows_every_cell_with_its_brackets(capsys, monkeypatch):
+    monkeypatch.setattr('sys.stdout.isatty', lambda: True)
+    print_table('Title', ('unit [1]',), [('[bold]',)])
+    output = capsys.readouterr().out
+    assert 'unit [1]' in output and '[bold]' in output
+
+
+def test_failed_write_leaves_the_old_file_alone(tmp_path, monkeypatch):
+    target = tmp_path / 'scores.json'
+    write_json(str(target), {'a': 1})
+
+    def full_disk(*_):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(Path, 'replace', full_disk)
+    with pytest.raises(DdctError, match='No space left on device'):
+        write_json(str(target), {'a': 2})
+    assert json.loads(target.read_text()) == {'a': 1}
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_json_refuses_what_it_cannot_express(tmp_path):
+    with pytest.raises(ValueError, match='JSON'):
+        write_json(str(tmp_path / 'x.json'), {'a': float('nan')})
+
+
+def test_full_device_is_an_error_in_one_line():
+    with pytest.raises(DdctError, match='/dev/full: cannot be written .No space left'):
+        write_json('/dev/full', {'a': 1})
+
+
+def test_device_is_written_to_and_not_replaced():
+    write_json('/dev/null', {'a': 1})
+    assert not Path('/dev/null').is_file()

@@ -1,0 +1,109 @@
+"""Scenarios are read whole or refused with the key that is wrong."""
+
+import pytest
+
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import (
+    load_scenario,
+    scenario_digest,
+    scenario_names,
+    scenario_to_yaml,
+)
+
+MINIMAL = """\
+duration_s: 1.0
+control_start_s: 0.6
+score_window_s: [0.6, 1.0]
+engine: {time_s: [0.0], torque_n_m: [100.0]}
+"""
+
+
+@pytest.fixture
+def scenario_file(tmp_path):
+    def write(text):
+        path = tmp_path / 'mine.yaml'
+        path.write_text(text)
+        return str(path)
+
+    return write
+
+
+def test_every_packaged_scenario_loads():
+    assert 'thesis' in scenario_names()
+    for name in scenario_names():
+        assert load_scenario(name).name == name
+
+
+def test_a_scenario_survives_its_yaml_to_the_last_bit(scenario_file):
+    scenario = load_scenario('thesis', ['load.slope_rad=0.1'])
+    again = load_scenario(scenario_file(scenario_to_yaml(scenario)))
+    assert again == scenario
+    assert scenario_digest(again) == scenario_digest(scenario)
+
+
+def test_a_file_without_a_name_is_named_after_itself(scenario_file):
+    assert load_scenario(scenario_file(MINIMAL)).name == 'mine'
+
+
+def test_an_override_changes_one_key_and_the_digest(scenario_file):
+    path = scenario_file(MINIMAL)
+    changed = load_scenario(path, ['load.slope_rad=0.05'])
+    assert changed.load.slope_rad == 0.05
+    assert scenario_digest(changed) != scenario_digest(load_scenario(path))
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        (MINIMAL + 'lod: {}', 'unknown key lod: did you mean load?'),
+        (MINIMAL + 'load: {slope_deg: 1.0}', 'did you mean load.slope_rad'),
+        (MINIMAL + 'load: {slope_rad: .nan}', 'load.slope_rad is nan'),
+        (MINIMAL + 'load: {slope_rad: steep}', "load.slope_rad is 'steep'"),
+        (MINIMAL + 'load: 3', 'load: give keys and values'),
+        (MINIMAL + 'reference: {slope_rad_s2: -1.0}', 'reference.slope_rad_s2 is -1'),
+        (MINIMAL + 'driveline: {vehicle_inertia: 0.0}', 'driveline.vehicle_inertia is 0'),
+        (MINIMAL + 'controllers: [pi]', 'controllers: give gains by controller name'),
+        (MINIMAL.replace('1.0\ncontrol', '0.005\ncontrol'), 'duration_s is 0.005'),
+        (MINIMAL.replace('[0.6, 1.0]', '[1.0, 0.6]'), 'score_window_s ends at 0.6'),
+        (MINIMAL.replace('[0.6, 1.0]', '0.6'), 'score_window_s'),
+        (MINIMAL.replace('[0.0]', '0.0'), 'engine.time_s'),
+        (MINIMAL.replace('duration_s: 1.0\n', ''), 'key duration_s is missing'),
+        ('- 1', 'must be a mapping'),
+        ('a: [', 'not valid YAML'),
+    ],
+)
+def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, complaint):
+    path = scenario_file(text)
+    with pytest.raises(DdctError) as caught:
+        load_scenario(path)
+    assert complaint in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize('override', ['slope', '=1', 'duration_s.x=1', 'load.slope_rad=[', 'a=1'])
+def test_a_bad_override_is_refused(override):
+    with pytest.raises(ParameterError):
+        load_scenario('thesis', [override])
+
+
+@pytest.mark.parametrize('name', ['nope', '', '/nowhere/mine.yaml'])
+def test_an_unknown_scenario_is_refused(name):
+    with pytest.raises(DdctError, match='scenario'):
+        load_scenario(name)
+
+
+@pytest.mark.parametrize(
+    ('setting', 'value'),
+    [
+        ('architecture', 'none'),
+        ('clutch', 'sticky'),
+        ('mode', 'fast'),
+        ('wear_gain', 0.0),
+        ('wear_gain', float('nan')),
+        ('seed', -1),
+    ],
+)
+def test_a_bad_run_setting_is_named(setting, value):
+    with pytest.raises(ParameterError, match=setting):
+        RunSettings(load_scenario('thesis'), **{setting: value})

@@ -1,0 +1,128 @@
+"""Engine, load, clutch and actuator do what Section 1.4 of the thesis says."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ddct_plant.actuator import Actuator
+from ddct_plant.clutch import LinearClutch
+from ddct_plant.engine import Engine, TorqueProfile
+from ddct_plant.errors import ParameterError
+from ddct_plant.fail_safe import FailSafe, FailSafeSettings
+from ddct_plant.load import LoadParameters, RoadLoad
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.vehicle import VehicleParameters
+
+VEHICLE = VehicleParameters()
+
+
+def test_engine_follows_its_profile_and_holds_its_ends():
+    engine = Engine(TorqueProfile((0.1, 0.2, 0.4), (10.0, 30.0, 20.0)))
+    torques = [engine.torque(step) for step in (0, 10, 15, 20, 30, 40, 90)]
+    assert torques == pytest.approx([10.0, 10.0, 20.0, 30.0, 25.0, 20.0, 20.0])
+
+
+@pytest.mark.parametrize(
+    ('times', 'torques', 'named'),
+    [
+        ((0.0, 0.0), (1.0, 2.0), 'engine.time_s'),
+        ((0.0, 1.0), (1.0,), '2 times and 1 torques'),
+        ((0.0,), (float('nan'),), r'engine.torque_n_m\[0\] is nan'),
+        ((0.0,), (-1.0,), r'engine.torque_n_m\[0\]'),
+        ((), (), 'engine.time_s is empty'),
+    ],
+)
+def test_a_bad_torque_profile_is_named(times, torques, named):
+    with pytest.raises(ParameterError, match=named):
+        TorqueProfile(times, torques)
+
+
+def test_load_is_the_sum_of_air_rolling_and_slope():
+    parameters = LoadParameters(wind_speed_m_s=2.0, slope_rad=0.1)
+    speed, p = 8.0, parameters
+    air = 0.5 * p.air_density_kg_m3 * p.frontal_area_m2 * p.drag_coefficient * (speed + 2.0) ** 2
+    weight = VEHICLE.mass_kg * VEHICLE.gravity_m_s2
+    rolling, slope = weight * p.rolling_coefficient * np.cos(0.1), weight * np.sin(0.1)
+    expected = (air + rolling + slope) * VEHICLE.wheel_radius_m
+    assert RoadLoad(parameters, VEHICLE).torque(speed) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_tail_wind_faster_than_the_vehicle_pushes():
+    calm = RoadLoad(LoadParameters(), VEHICLE).torque(0.0)
+    assert RoadLoad(LoadParameters(wind_speed_m_s=-20.0), VEHICLE).torque(5.0) < calm
+
+
+def test_the_linear_clutch_transmits_the_torque_times_the_wear_gain():
+    assert LinearClutch(0.7).transmit([0.0, 10.0]) == [0.0, 7.0]
+
+
+@pytest.mark.parametrize('wear_gain', [0.0, -1.0, 4.0, float('nan')])
+def test_a_wear_gain_out_of_range_is_named(wear_gain):
+    with pytest.raises(ParameterError, match='wear_gain'):
+        LinearClutch(wear_gain)
+
+
+def test_actuator_at_rest_stays_at_rest():
+    at_rest = 100.0 * ACTUATOR.frequency_response(np.array([0.0]))[0].real
+    assert at_rest == pytest.approx(100.0, rel=2e-5), 'the printed gain at rest is one'
+    actuator = Actuator(100.0)
+    for _ in range(20):
+        assert actuator.update(100.0) == pytest.approx([at_rest] * 11, rel=1e-12)
+
+
+def test_actuator_cuts_negative_requests_off():
+    actuator = Actuator(0.0)
+    for _ in range(50):
+        nodes = actuator.update(-300.0)
+    assert nodes == [0.0] * 11
+
+
+def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_function():
+    """Within 1e-8 of a tight-tolerance integration of G_a, at every 1 ms node."""
+    requests = [120.0, 40.0, 0.0, 300.0, 310.0, 90.0]
+    actuator = Actuator(0.0)
+    nodes = np.array([actuator.update(request) for request in requests])
+    model = ACTUATOR.to_state_space()
+    state, expected = np.zeros(len(model.a)), []
+    for held in [0.0, *requests[:-1]]:
+        solution = solve_ivp(
+            lambda _, x, held=held: model.a @ x + model.b[:, 0] * held,
+            (0.0, 0.01),
+            state,
+            method='DOP853',
+            t_eval=np.linspace(0.0, 0.01, 11),
+            rtol=1e-12,
+            atol=1e-9,
+            max_step=2e-4,
+        )
+        expected.append(model.c[0] @ solution.y)
+        state = solution.y[:, -1]
+    assert np.abs(nodes - expected).max() < 1e-8 * max(requests)
+
+
+def test_actuator_torque_is_continuous_from_period_to_period():
+    actuator = Actuator(10.0)
+    nodes = [actuator.update(request) for request in (200.0, 0.0, 150.0, 80.0)]
+    for earlier, later in zip(nodes, nodes[1:], strict=False):
+        assert later[0] == pytest.approx(earlier[-1], abs=1e-9)
+
+
+def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():
+    fail_safe = FailSafe(FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0))
+    fail_safe.request(10, 25.0)
+    assert not any(fail_safe.tick(step) for step in range(11, 16))
+    assert fail_safe.tick(16)
+    assert [fail_safe.next_torque() for _ in range(4)] == [15.0, 5.0, 0.0, 0.0]
+
+
+def test_fail_safe_stays_engaged_when_requests_come_back():
+    fail_safe = FailSafe(FailSafeSettings())
+    fail_safe.request(0, 25.0)
+    assert fail_safe.tick(20)
+    fail_safe.request(21, 300.0)
+    assert fail_safe.tick(21)
+
+
+def test_fail_safe_does_not_engage_before_the_first_request():
+    fail_safe = FailSafe(FailSafeSettings())
+    assert not fail_safe.tick(1000)

@@ -1,0 +1,125 @@
+"""The simplified plants against the detailed one over a slip phase (Figure 1.23)."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ddct_plant.block_diagram import BlockDiagram, Gain, Integrator, Sum
+from ddct_plant.driveline import Driveline
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.elementary import ElementaryBlockPlant
+from ddct_plant.errors import ParameterError
+from ddct_plant.initial import InitialState
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.simplified import StateSpacePlant, lti_plant, printed_lti_plant
+from ddct_plant.vehicle import VehicleParameters
+
+PARAMETERS = DrivelineParameters()
+PERIODS = 110
+LOAD_N_M = 60.0
+LAG_S = 0.04
+CLUTCH_SHARE = 0.877
+
+
+def engine_ramp(time: np.ndarray) -> np.ndarray:
+    """Return C_m: 10 N m rising to 270 N m in 0.52 s."""
+    return np.interp(time, (0.0, 0.52), (10.0, 270.0))
+
+
+STARTS = np.arange(PERIODS) * 0.01
+ENGINE = engine_ramp(STARTS)
+CLUTCH = CLUTCH_SHARE * engine_ramp(STARTS[:, None] + np.arange(11) * 0.001 - LAG_S)
+LOAD = np.full(PERIODS, LOAD_N_M)
+START = np.array(
+    [160.0, 160.0, 160.0 / PARAMETERS.total_ratio, LOAD_N_M / PARAMETERS.halfshaft_stiffness]
+)
+
+
+@pytest.fixture(scope='module')
+def detailed() -> np.ndarray:
+    """Return w_d of the detailed plant over the slip phase, (111,)."""
+    torques = ENGINE[0], LOAD_N_M, CLUTCH[0, 0], CLUTCH[0, 0]
+    driveline = Driveline(PARAMETERS, VehicleParameters(), InitialState(*START, *torques))
+    slip_speed = [driveline.outputs().slip_speed]
+    for engine, points, load in zip(ENGINE, CLUTCH, LOAD, strict=True):
+        driveline.step(engine, load, points.tolist())
+        slip_speed.append(driveline.outputs().slip_speed)
+    return np.array(slip_speed)
+
+
+def deviation(plant, detailed: np.ndarray) -> float:
+    """Return the largest difference in w_d as a fraction of the slip peak."""
+    slip_speed = plant.simulate(ENGINE, CLUTCH, LOAD, START)
+    assert slip_speed.shape == (PERIODS + 1,)
+    return float(np.abs(slip_speed - detailed).max() / np.abs(detailed).max())
+
+
+def test_slip_phase_is_the_one_of_the_figure(detailed):
+    assert 30.0 < detailed.max() < 60.0
+    assert detailed[-1] > 0.0
+
+
+def test_elementary_blocks_agree_to_1e_10_of_the_slip_peak(detailed):
+    assert deviation(ElementaryBlockPlant(PARAMETERS), detailed) < 1e-10
+
+
+def test_state_space_blocks_agree_to_1e_12_of_the_slip_peak(detailed):
+    assert deviation(StateSpacePlant(PARAMETERS), detailed) < 1e-12
+
+
+def test_lti_blocks_with_the_free_response_agree_to_1e_11_of_the_slip_peak(detailed):
+    assert deviation(lti_plant(PARAMETERS), detailed) < 1e-11
+
+
+def test_rounding_of_the_printed_coefficients_costs_a_quarter_percent_of_the_peak(detailed):
+    assert deviation(printed_lti_plant(PARAMETERS), detailed) == pytest.approx(0.0024, abs=0.0003)
+
+
+def test_lti_blocks_without_the_free_response_miss_the_slip_phase(detailed):
+    forced = lti_plant(PARAMETERS).simulate(ENGINE, CLUTCH, LOAD, np.zeros(4))
+    assert np.abs(forced - detailed).max() > 0.05 * np.abs(detailed).max()
+
+
+def test_initial_condition_counts_once_in_the_state_space_blocks():
+    model = driveline_matrices(PARAMETERS)
+    start = np.array([200.0, 150.0, 16.0, 0.02])
+    free = solve_ivp(
+        lambda t, x: model.a @ x,
+        (0.0, 0.3),
+        start,
+        method='DOP853',
+        t_eval=np.arange(31) * 0.01,
+        rtol=1e-12,
+        atol=1e-12,
+    ).y
+    silent = np.zeros(30), np.zeros((30, 11)), np.zeros(30), start
+    for plant in (StateSpacePlant(PARAMETERS), lti_plant(PARAMETERS)):
+        np.testing.assert_allclose(plant.simulate(*silent), free[0] - free[1], atol=1e-8)
+
+
+def test_torques_of_different_lengths_are_refused():
+    with pytest.raises(ParameterError, match=r'clutch_points has shape \(110, 10\)'):
+        StateSpacePlant(PARAMETERS).simulate(ENGINE, CLUTCH[:, :10], LOAD, START)
+    with pytest.raises(ParameterError, match='load_torque'):
+        ElementaryBlockPlant(PARAMETERS).simulate(ENGINE, CLUTCH, LOAD[:5], START)
+
+
+def test_block_diagram_evaluates_blocks_in_any_order():
+    diagram = BlockDiagram(
+        {
+            'force': Sum(('push',), ('drag',)),
+            'drag': Gain(0.5, 'speed'),
+            'speed': Integrator('force'),
+        },
+        ('push',),
+    )
+    assert diagram.states == ('speed',)
+    assert diagram.derivative([4.0], [3.0]) == [1.0]
+    assert diagram.signals([4.0], [3.0])['drag'] == 2.0
+
+
+def test_block_diagram_refuses_loops_and_unknown_signals():
+    with pytest.raises(ParameterError, match='algebraic loop'):
+        BlockDiagram({'a': Gain(1.0, 'b'), 'b': Gain(1.0, 'a')}, ())
+    with pytest.raises(ParameterError, match="block a: there is no signal 'c'"):
+        BlockDiagram({'a': Gain(1.0, 'c')}, ())
