@@ -1,0 +1,1 @@
+"""Slip-speed references for the clutch."""
