@@ -1,0 +1,1 @@
+"""Clutch controllers, their interface and their registry."""

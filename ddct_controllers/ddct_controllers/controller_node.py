@@ -1,0 +1,137 @@
+"""Node `controller`: runs the controller that its `controller` parameter names, every tick."""
+
+import time
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TwistStamped, WrenchStamped
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.controller_info import controller_info
+from ddct_controllers.interface import Measurement
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_plant.errors import ParameterError
+from ddct_plant.graph.arrivals import (
+    read_joint_speeds,
+    read_slip_reference,
+    read_torque,
+    read_vehicle_speed,
+)
+from ddct_plant.graph.follower import FollowerNode, Reply
+from ddct_plant.graph.messages import status_message, torque_message
+from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.settings import declare
+from ddct_plant.graph.spin import run_node
+from ddct_plant.timebase import stamp_of_step
+
+TIMING_BATCH = 20
+"""Update times are published in batches of this many steps."""
+
+
+class ControllerNode(FollowerNode):
+    """
+    Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
+
+    A controller's gains are parameters `gains.<name>`, which may be changed while it runs.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Build the controller that the `controller` parameter names."""
+        super().__init__('controller', **kwargs)
+        name = declare(self, 'controller', 'pi', f'One of: {", ".join(controller_names())}')
+        self._controller = make_controller(name, self.settings)
+        self._architecture = DetailedArchitecture(self.settings, self._controller)
+        self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
+        self._status = self.create_publisher(DiagnosticArray, 'controller/status', LOOP_QOS)
+        self._timing = self.create_publisher(DiagnosticArray, 'controller/timing', LOOP_QOS)
+        self._request_message = WrenchStamped()
+        self._update_times_us: list[float] = []
+        self._declare_gains()
+        self.publish_run_info(controller_info(name, self._controller))
+        self.follow(
+            [
+                (JointState, 'driveline/joint_states'),
+                (TwistStamped, 'vehicle/twist'),
+                (WrenchStamped, 'engine/torque'),
+                (JointTrajectory, 'clutch/slip_reference'),
+            ]
+        )
+
+    def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
+        """Return the request for the period of step k and what it is made of."""
+        measurement = self._measure(step, inputs)
+        started = time.perf_counter()
+        request = self._architecture.update(measurement)
+        self._note_update_time(step, 1e6 * (time.perf_counter() - started))
+        return (
+            (
+                self._request,
+                torque_message(stamp_ns, request.torque, reuse=self._request_message),
+            ),
+            (self._status, status_message(stamp_ns, self.get_name(), request.status)),
+        )
+
+    def close(self) -> None:
+        """Publish the update times that no batch has carried yet."""
+        if self._update_times_us and self.join.last_step is not None:
+            self._publish_timing(self.join.last_step)
+
+    def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
+        joints, twist = 'driveline/joint_states', 'vehicle/twist'
+        torque, reference = 'engine/torque', 'clutch/slip_reference'
+        engine, shaft, wheel = read_joint_speeds(joints, inputs[joints])
+        speeds, rates = read_slip_reference(
+            reference, inputs[reference], self._controller.preview_steps
+        )
+        return Measurement(
+            step=step,
+            engine_speed=engine,
+            shaft_speed=shaft,
+            wheel_speed=wheel,
+            vehicle_speed=read_vehicle_speed(twist, inputs[twist]),
+            engine_torque=read_torque(torque, inputs[torque]),
+            slip_reference=speeds,
+            slip_reference_rate=rates,
+        )
+
+    def _note_update_time(self, step: int, update_time_us: float) -> None:
+        self._update_times_us.append(update_time_us)
+        if len(self._update_times_us) == TIMING_BATCH:
+            self._publish_timing(step)
+
+    def _publish_timing(self, step: int) -> None:
+        pairs = [('update_time_us', f'{value:.3f}') for value in self._update_times_us]
+        self._update_times_us = []
+        self._timing.publish(status_message(stamp_of_step(step), self.get_name(), pairs))
+
+    def _declare_gains(self) -> None:
+        for name, value in self._controller.gains().items():
+            declare(self, f'gains.{name}', value, f'Gain {name}', read_only=False)
+            self._controller.set_gain(name, self.get_parameter(f'gains.{name}').value)
+        self.add_on_set_parameters_callback(self._set_gains)
+
+    def _set_gains(self, parameters: list[Parameter]) -> SetParametersResult:
+        before = self._controller.gains()
+        try:
+            for parameter in parameters:
+                if parameter.name.startswith('gains.'):
+                    name = parameter.name.removeprefix('gains.')
+                    self._controller.set_gain(name, parameter.value)
+        except ParameterError as error:
+            for name, value in before.items():
+                self._controller.set_gain(name, value)
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+
+def main() -> int:
+    """Run the node until it is stopped."""
+    return run_node('controller', ControllerNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

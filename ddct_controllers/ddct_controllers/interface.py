@@ -1,0 +1,95 @@
+"""What a controller is: one small class that never reads a clock and knows nothing of ROS."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ddct_plant.errors import ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.units import rpm_from_rad_s
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """
+    Everything a controller may know at step k, all SI.
+
+    The transmitted torque C_f, the load C_load and the driveshaft twist are not measured in a car
+    and are not here.
+    """
+
+    step: int
+    """k; scenario time is k x 10 ms."""
+    engine_speed: float
+    """w_m in rad/s."""
+    shaft_speed: float
+    """w_p in rad/s."""
+    wheel_speed: float
+    """w_r in rad/s."""
+    vehicle_speed: float
+    """V_x in m/s."""
+    engine_torque: float
+    """C_m in N m, known for the coming period."""
+    slip_reference: Sequence[float]
+    """(P + 1,) rad/s; entry i is i x 10 ms ahead, P the controller's `preview_steps`."""
+    slip_reference_rate: Sequence[float]
+    """(P + 1,) rad/s^2."""
+
+    @property
+    def slip_speed(self) -> float:
+        """w_d = w_m - w_p in rad/s."""
+        return self.engine_speed - self.shaft_speed
+
+    @property
+    def slip_error_rpm(self) -> float:
+        """Reference less slip speed, in the rpm that the thesis's controllers act on."""
+        return rpm_from_rad_s(self.slip_reference[0] - self.slip_speed)
+
+
+Status = tuple[tuple[str, str], ...]
+"""(key, value) pairs for `controller/status`; deterministic, so no wall time in them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A controller's answer to one measurement."""
+
+    clutch_torque: float
+    """Closed-loop part of the clutch torque request in N m."""
+    status: Status = ()
+
+
+class Controller(ABC):
+    """
+    A swappable closed-loop controller, called once every 10 ms.
+
+    While its architecture holds feedback off, `reset` is called in place of `update`.
+    """
+
+    preview_steps: int = 0
+    """How many steps beyond the present one the controller wants the reference for."""
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Return to the state before the first update."""
+
+    @abstractmethod
+    def update(self, measurement: Measurement) -> Command:
+        """Advance by one period and return the command that holds over it."""
+
+    def gains(self) -> Mapping[str, float]:
+        """Return the gains that may be changed between two updates, by name."""
+        return {}
+
+    def set_gain(self, name: str, value: float) -> None:
+        """Change one gain; raise ParameterError for a name or value that it does not take."""
+        raise ParameterError(f'this controller has no gain {name!r} (value {value!r})')
+
+
+@dataclass(frozen=True)
+class ControllerContext:
+    """What a controller's factory is built from."""
+
+    settings: RunSettings
+    gains: Mapping[str, float]
+    """The scenario's `controllers.<name>` section; the factory checks its keys."""

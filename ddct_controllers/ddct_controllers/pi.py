@@ -1,0 +1,71 @@
+"""The preliminary PI controller that the thesis compares against (Section 1.4.5.1)."""
+
+from collections.abc import Mapping
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_plant.checks import require_number
+from ddct_plant.errors import ParameterError
+from ddct_plant.timebase import PERIOD_S
+
+_GAINS = ('proportional_gain', 'integral_gain')
+
+
+class PiController(Controller):
+    """
+    u = -(K_p e + K_i integral of e) with e in rpm and u in N m.
+
+    G_c(s) = -(K_p + K_i/s) by zero-order hold. The thesis prints no gains: those of its scenario
+    are calibrated.
+    """
+
+    def __init__(self, proportional_gain: float, integral_gain: float) -> None:
+        """Take K_p in N m/rpm and K_i in N m/(rpm s), neither negative."""
+        self._gains = {
+            'proportional_gain': _gain('proportional_gain', proportional_gain),
+            'integral_gain': _gain('integral_gain', integral_gain),
+        }
+        self._integral_rpm_s = 0.0
+
+    def reset(self) -> None:
+        """Empty the integral."""
+        self._integral_rpm_s = 0.0
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return the torque of this period; the integral takes the error in afterwards."""
+        error_rpm = measurement.slip_error_rpm
+        torque = -(
+            self._gains['proportional_gain'] * error_rpm
+            + self._gains['integral_gain'] * self._integral_rpm_s
+        )
+        self._integral_rpm_s += PERIOD_S * error_rpm
+        return Command(torque)
+
+    def gains(self) -> Mapping[str, float]:
+        """Return K_p and K_i."""
+        return dict(self._gains)
+
+    def set_gain(self, name: str, value: float) -> None:
+        """Change K_p or K_i from the next update on; the integral of the error is kept."""
+        if name not in self._gains:
+            raise ParameterError(f'pi has no gain {name!r}: it has {", ".join(_GAINS)}')
+        self._gains[name] = _gain(name, value)
+
+
+def make_pi(context: ControllerContext) -> PiController:
+    """Build the PI with the scenario's gains; raise ParameterError when one is missing."""
+    unknown = set(context.gains) - set(_GAINS)
+    if unknown:
+        raise ParameterError(
+            f'controllers.pi.{min(unknown)} is not a gain of pi: it has {", ".join(_GAINS)}'
+        )
+    for name in _GAINS:
+        if name not in context.gains:
+            raise ParameterError(
+                f'controllers.pi.{name} is missing from the scenario: give both gains, '
+                'in N m/rpm and N m/(rpm s)'
+            )
+    return PiController(**context.gains)
+
+
+def _gain(name: str, value: float) -> float:
+    return require_number(f'controllers.pi.{name}', value, at_least=0.0, at_most=1e3)

@@ -1,0 +1,65 @@
+"""The PI acts on rpm, with the thesis's sign, and takes only gains it has."""
+
+import pytest
+
+from ddct_controllers.interface import Measurement
+from ddct_controllers.pi import PiController
+from ddct_controllers.registry import make_controller
+from ddct_plant.errors import ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.units import rad_s_from_rpm
+
+
+def measurement(error_rpm: float) -> Measurement:
+    return Measurement(
+        step=60,
+        engine_speed=200.0,
+        shaft_speed=200.0,
+        wheel_speed=20.0,
+        vehicle_speed=6.0,
+        engine_torque=100.0,
+        slip_reference=[rad_s_from_rpm(error_rpm)],
+        slip_reference_rate=[0.0],
+    )
+
+
+def test_it_is_minus_the_gains_on_the_error_and_its_integral_in_rpm():
+    pi = PiController(0.5, 2.0)
+    torques = [pi.update(measurement(error)).clutch_torque for error in (10.0, 20.0, 0.0)]
+    assert torques == pytest.approx([-5.0, -(10.0 + 2.0 * 0.1), -2.0 * 0.3])
+
+
+def test_reset_empties_the_integral():
+    pi = PiController(0.5, 2.0)
+    pi.update(measurement(10.0))
+    pi.reset()
+    assert pi.update(measurement(10.0)).clutch_torque == pytest.approx(-5.0)
+
+
+def test_a_gain_changes_between_updates_without_losing_the_integral():
+    pi = PiController(0.5, 2.0)
+    pi.update(measurement(10.0))
+    pi.set_gain('integral_gain', 4.0)
+    assert pi.gains() == {'proportional_gain': 0.5, 'integral_gain': 4.0}
+    assert pi.update(measurement(0.0)).clutch_torque == pytest.approx(-0.4)
+
+
+@pytest.mark.parametrize(('name', 'value'), [('ki', 1.0), ('integral_gain', float('nan'))])
+def test_a_bad_gain_is_refused(name, value):
+    with pytest.raises(ParameterError, match=name):
+        PiController(0.5, 2.0).set_gain(name, value)
+
+
+@pytest.mark.parametrize(
+    ('gains', 'complaint'),
+    [
+        ('{proportional_gain: 0.1}', 'controllers.pi.integral_gain is missing'),
+        ('{proportional_gain: 0.1, integral_gain: -1.0}', 'integral_gain is -1'),
+        ('{proportional_gain: 0.1, integral_gain: 0.1, d: 1.0}', 'controllers.pi.d is not a gain'),
+    ],
+)
+def test_a_scenario_with_bad_gains_is_refused(gains, complaint):
+    settings = RunSettings(load_scenario('thesis', [f'controllers.pi={gains}']))
+    with pytest.raises(ParameterError, match=complaint):
+        make_controller('pi', settings)

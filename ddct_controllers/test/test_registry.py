@@ -1,0 +1,83 @@
+"""Controllers are found by name; what cannot be built says why."""
+
+import importlib.metadata
+
+import pytest
+
+from ddct_controllers import registry
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_names, make_controller
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+
+
+class Third(Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return Command(1.0)
+
+
+def make_third(context):
+    return Third()
+
+
+def make_nothing(context):
+    return None
+
+
+@pytest.fixture
+def add_entry_point(monkeypatch):
+    def add(name, value):
+        point = importlib.metadata.EntryPoint(name, value, ENTRY_POINT_GROUP)
+        monkeypatch.setattr(
+            registry, '_entry_points', lambda: importlib.metadata.EntryPoints([point])
+        )
+
+    return add
+
+
+def test_every_name_builds_a_controller():
+    for name in controller_names():
+        assert isinstance(make_controller(name, SETTINGS), Controller)
+
+
+def test_an_unknown_name_lists_the_known_ones():
+    with pytest.raises(ParameterError, match="unknown controller 'ls99': choose from pi, "):
+        make_controller('ls99', SETTINGS)
+
+
+def test_a_printed_controller_takes_no_gains():
+    settings = RunSettings(load_scenario('thesis', ['controllers.ls8={gain: 2.0}']))
+    with pytest.raises(ParameterError, match='controllers.ls8: gain given'):
+        make_controller('ls8', settings)
+
+
+def test_a_third_partys_controller_is_listed_and_built(add_entry_point):
+    add_entry_point('third', f'{__name__}:make_third')
+    assert controller_names()[-1] == 'third'
+    assert type(make_controller('third', SETTINGS)).__name__ == 'Third'
+
+
+def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
+    add_entry_point('pi', f'{__name__}:make_third')
+    assert controller_names().count('pi') == 1
+    assert type(make_controller('pi', SETTINGS)).__name__ == 'PiController'
+
+
+@pytest.mark.parametrize(
+    ('value', 'complaint'),
+    [
+        ('no_such_module:make', 'cannot be loaded'),
+        (f'{__name__}:no_such_function', 'cannot be loaded'),
+        (f'{__name__}:make_nothing', 'returned NoneType, not a'),
+    ],
+)
+def test_a_broken_entry_point_is_named(add_entry_point, value, complaint):
+    add_entry_point('third', value)
+    with pytest.raises(DdctError, match=complaint):
+        make_controller('third', SETTINGS)
