@@ -1,0 +1,67 @@
+"""Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
+
+import argparse
+from pathlib import Path
+
+from ddct_bringup.output_folder import StagedFolder, mark_folder
+from ddct_bringup.progress import run_with_progress
+from ddct_bringup.run_options import add_run_options, print_choices, settings_of
+from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.scoring import score_bag
+from ddct_plant.cli import run_program
+from ddct_plant.errors import DdctError, ParameterError
+
+PROGRAM = 'bringup'
+
+_EPILOG = """\
+examples:
+  bringup --out runs/first                          the PI of the thesis
+  bringup --controller ls8 --out runs/first         another one into the same folder
+  bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
+  bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
+  bringup --headless --out runs/quick               the same numbers without a graph
+
+The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
+in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _bringup, argv)
+
+
+def _bringup(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.list:
+        print_choices()
+        return 0
+    if options.out is None:
+        raise ParameterError('--out is missing: name the folder for the bag')
+    plan = RunPlan(settings_of(options), options.controller, options.layout)
+    mark_folder(options.out)
+    folder = StagedFolder(options.out / plan.controller, overwrite=options.overwrite)
+    run_with_progress(plan, folder.path)
+    entry = score_bag(folder.path)
+    if not entry['valid']:
+        raise DdctError(f'{folder.path}: {entry["reason"]}')
+    folder.commit()
+    print(folder.final)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description='Run one controller in the closed loop and record it as a bag.',
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--controller', default='pi', metavar='NAME')
+    parser.add_argument('--out', type=Path, metavar='DIR')
+    add_run_options(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,86 @@
+"""The closed loop without ROS: one step at a time, the same classes as the nodes."""
+
+import time
+from typing import Any
+
+from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.interface import Controller, Measurement
+from ddct_plant.actuator import Actuator
+from ddct_plant.clutch import LinearClutch
+from ddct_plant.driveline import Driveline, DrivelineOutputs
+from ddct_plant.engine import Engine
+from ddct_plant.initial import initial_state
+from ddct_plant.load import RoadLoad
+from ddct_plant.run_settings import RunSettings
+from ddct_reference.crf_ramp import CrfRamp
+
+
+class ClosedLoop:
+    """Engine, load, driveline, reference, controller, actuator and clutch, wired as the graph."""
+
+    def __init__(self, settings: RunSettings, controller: Controller) -> None:
+        """Start in the run's initial state."""
+        scenario = settings.scenario
+        initial = initial_state(settings)
+        self._driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
+        self._engine = Engine(scenario.engine)
+        self._load = RoadLoad(scenario.load, scenario.vehicle)
+        self._reference = CrfRamp(
+            scenario.reference.slope_rad_s2, scenario.control_start_step, controller.preview_steps
+        )
+        self._architecture = DetailedArchitecture(settings, controller)
+        self._actuator = Actuator(initial.torque_request)
+        self._clutch = LinearClutch(settings.wear_gain)
+        self.update_time_us = 0.0
+        """Wall time that the controller took for the last reply."""
+
+    def reply(self, step: int) -> dict[str, Any]:
+        """Return every signal of step k by its name in `Trajectory`; advances all but time."""
+        now = self._driveline.outputs()
+        engine_torque = self._engine.torque(step)
+        speeds, rates = self._reference.update(step, now.slip_speed)
+        measurement = _measurement(step, now, engine_torque, speeds, rates)
+        started = time.perf_counter()
+        request = self._architecture.update(measurement)
+        self.update_time_us = 1e6 * (time.perf_counter() - started)
+        actuator_torque = self._actuator.update(request.torque)
+        return {
+            'joint_position': now.positions,
+            'joint_speed': now.speeds,
+            'joint_effort': now.efforts,
+            'slip_speed': now.slip_speed,
+            'vehicle_speed': now.vehicle_speed,
+            'vehicle_accel': now.vehicle_accel,
+            'torque_demand': self._engine.demand(step),
+            'engine_torque': engine_torque,
+            'load_torque': self._load.torque(now.vehicle_speed),
+            'slip_reference': speeds,
+            'slip_reference_rate': rates,
+            'torque_request': request.torque,
+            'actuator_torque': actuator_torque,
+            'clutch_torque': self._clutch.transmit(actuator_torque),
+            'status': request.status,
+        }
+
+    def advance(self, reply: dict[str, Any]) -> None:
+        """Integrate the driveline over the period that `reply` answered."""
+        self._driveline.step(reply['engine_torque'], reply['load_torque'], reply['clutch_torque'])
+
+
+def _measurement(
+    step: int,
+    now: DrivelineOutputs,
+    engine_torque: float,
+    speeds: list[float],
+    rates: list[float],
+) -> Measurement:
+    return Measurement(
+        step=step,
+        engine_speed=now.speeds[0],
+        shaft_speed=now.speeds[1],
+        wheel_speed=now.speeds[2],
+        vehicle_speed=now.vehicle_speed,
+        engine_torque=engine_torque,
+        slip_reference=speeds,
+        slip_reference_rate=rates,
+    )

@@ -1,0 +1,57 @@
+"""What a passenger feels of a longitudinal acceleration: jerk and vibration dose."""
+
+import numpy as np
+from scipy import signal
+from scipy.integrate import trapezoid
+
+from ddct_plant.timebase import PERIOD_S
+
+JERK_CUTOFF_HZ = 20.0
+_JERK_FILTER_ORDER = 2
+"""Order of the Butterworth filter, which runs once forward and once backward."""
+
+VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
+"""The limit lies above the 50 Hz that a 100 Hz recording holds."""
+
+
+def jerk(acceleration: np.ndarray) -> np.ndarray:
+    """
+    Return the (n-1,) jerk in m/s^3 midway between the (n,) samples in m/s^2.
+
+    The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
+    that it is not delayed, and is differenced. Shorter than 10 samples gives an empty array.
+    """
+    filter_ = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
+    padding = 3 * (_JERK_FILTER_ORDER + 1)
+    if len(acceleration) <= padding:
+        return np.empty(0)
+    return np.diff(signal.filtfilt(*filter_, acceleration, padlen=padding)) / PERIOD_S
+
+
+def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
+    """
+    Return the (n,) acceleration in m/s^2 weighted by W_d, started in equilibrium.
+
+    ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and
+    (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
+    """
+    high_pass = 2.0 * np.pi * 0.4
+    corner, quality = 2.0 * np.pi * 2.0, 0.63
+    sections = [
+        ([1.0, 0.0, 0.0], [1.0, np.sqrt(2.0) * high_pass, high_pass**2]),
+        ([1.0 / corner, 1.0], [1.0 / corner**2, 1.0 / (quality * corner), 1.0]),
+    ]
+    sos = np.vstack([np.hstack(_digital(*section)) for section in sections])
+    start = signal.sosfilt_zi(sos) * acceleration[0]
+    return signal.sosfilt(sos, acceleration, zi=start)[0]
+
+
+def vibration_dose(weighted: np.ndarray) -> float:
+    """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
+    return float(trapezoid(weighted**4, dx=PERIOD_S) ** 0.25)
+
+
+def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the digital section of an analogue one, each polynomial with three coefficients."""
+    b, a = signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
+    return np.pad(b, (0, 3 - len(b))), np.pad(a, (0, 3 - len(a)))

@@ -1,0 +1,109 @@
+"""Program `compare`: run several controllers, score them, and set them beside the thesis."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from ddct_bringup.comparison_table import print_comparison
+from ddct_bringup.output_folder import StagedFolder, mark_folder
+from ddct_bringup.progress import run_with_progress
+from ddct_bringup.run_options import add_run_options, print_choices, settings_of
+from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.scoring import Entry, score_bag, scores_document, unreadable_entry
+from ddct_controllers.registry import controller_names
+from ddct_plant.cli import run_program
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.output_file import STDOUT, write_json
+from ddct_plant.run_settings import RunSettings
+
+PROGRAM = 'compare'
+SCORES_FILE = 'scores.json'
+
+_EPILOG = """\
+examples:
+  compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
+  compare --controllers all --wear-gain 0.7 --out runs/worn
+  compare --controllers pi,mine --headless --json - --out runs/mine
+
+Writes one bag per controller and DIR/scores.json. Either every run is valid, or DIR is not
+touched, what was recorded stays in DIR.partial, and the exit code is 1.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _compare, argv)
+
+
+def _compare(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.list:
+        print_choices()
+        return 0
+    if options.out is None:
+        raise ParameterError('--out is missing: name the folder for the bags')
+    settings = settings_of(options)
+    plans = [RunPlan(settings, name, options.layout) for name in _controllers(options.controllers)]
+    folder = StagedFolder(options.out, overwrite=options.overwrite)
+    entries = [
+        _run(plan, folder.path, f'{index} of {len(plans)}, ')
+        for index, plan in enumerate(plans, start=1)
+    ]
+    write_json(str(folder.path / SCORES_FILE), scores_document(entries))
+    _report(entries, settings, options)
+    failed = [entry['controller'] for entry in entries if not entry['valid']]
+    if failed:
+        raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
+    folder.commit()
+    print(f'{PROGRAM}: bags and {SCORES_FILE} are in {folder.final}', file=sys.stderr)
+    return 0
+
+
+def _run(plan: RunPlan, out: Path, label: str) -> Entry:
+    """Return the scores of one run, or the invalid entry that says why there are none."""
+    bag = out / plan.controller
+    try:
+        mark_folder(bag)
+        run_with_progress(plan, bag, label)
+        return score_bag(bag, relative_to=out)
+    except DdctError as error:
+        print(f'{PROGRAM}: {plan.controller}: {error}', file=sys.stderr)
+        entry = unreadable_entry(bag, error, relative_to=out)
+        return {**entry, 'controller': plan.controller}
+
+
+def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:
+    if options.json:
+        write_json(options.json, scores_document(entries))
+    stream = sys.stderr if options.json == STDOUT else sys.stdout
+    print_comparison(entries, settings, options.overrides, stream)
+
+
+def _controllers(text: str) -> list[str]:
+    if text == 'all':
+        return controller_names()
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    if not names:
+        raise ParameterError('--controllers is empty: name at least one, or all')
+    for name in names:
+        if names.count(name) > 1:
+            raise ParameterError(f'--controllers names {name} twice: name each once')
+    return names
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description='Run controllers in the same closed loop and compare their scores.',
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--controllers', default='all', metavar='A,B,...|all')
+    parser.add_argument('--out', type=Path, metavar='DIR')
+    parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
+    add_run_options(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

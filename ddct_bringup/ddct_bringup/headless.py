@@ -1,0 +1,45 @@
+"""
+Run the closed loop without ROS.
+
+    from ddct_bringup.headless import run_headless
+    trajectory = run_headless(RunSettings(load_scenario('thesis')), 'pi')
+
+The result equals that of the graph, in any process layout, to the last bit.
+"""
+
+import time
+
+import numpy as np
+
+from ddct_bringup.closed_loop import ClosedLoop
+from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.trajectory import Trajectory
+from ddct_controllers.interface import Controller
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import RunSettings
+
+
+def run_headless(
+    settings: RunSettings, controller: str | Controller, timing: RunTiming | None = None
+) -> Trajectory:
+    """
+    Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
+
+    `controller` is a registry name or an object. Raise ParameterError for what cannot be built,
+    DdctError when a controller commands a value that is not finite.
+    """
+    if isinstance(controller, str):
+        controller = make_controller(controller, settings)
+    timing = RunTiming() if timing is None else timing
+    started = time.perf_counter()
+    loop = ClosedLoop(settings, controller)
+    rows = [loop.reply(0)]
+    timing.update_times_us.append(loop.update_time_us)
+    for step in range(1, settings.scenario.steps + 1):
+        loop.advance(rows[-1])
+        rows.append(loop.reply(step))
+        timing.update_times_us.append(loop.update_time_us)
+    timing.steps = settings.scenario.steps
+    timing.wall_time_s = time.perf_counter() - started
+    columns = {name: np.array([row[name] for row in rows]) for name in rows[0] if name != 'status'}
+    return Trajectory(**columns, status=tuple(row['status'] for row in rows))

@@ -1,0 +1,213 @@
+"""Node `recorder`: writes every tick off the wire into a bag and acknowledges it."""
+
+import importlib
+import struct
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.serialization import deserialize_message, serialize_message
+from std_msgs.msg import Header
+
+from ddct_bringup.bag_writer import BagWriter
+from ddct_bringup.cdr import CdrNormaliser
+from ddct_bringup.graph_nodes import NODE_NAMES
+from ddct_bringup.message_definitions import load_definition
+from ddct_bringup.run_record import custom_data
+from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.tick_buffer import Tick, TickBuffer
+from ddct_bringup.topics import TOPICS, TopicSpec, recorded_topics
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.message_values import status_name_of, status_pairs_of
+from ddct_plant.graph.messages import ack_message
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
+from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
+from ddct_plant.graph.settings import declare
+from ddct_plant.graph.spin import run_node
+from ddct_plant.timebase import START_NS, stamp_of_step
+
+ACK = 'recorder/ack'
+TIMING = 'controller/timing'
+DIAGNOSTICS = '/diagnostics'
+DIAGNOSTICS_SOURCE = 'driveline: ticks'
+_STAMP = struct.Struct('<iI')
+_STAMP_AT = 4
+"""Every recorded type begins with its stamp, right behind the four bytes of the encapsulation."""
+
+
+class RecorderNode(GraphNode):
+    """
+    Write a rosbag2 bag and answer each whole tick with `recorder/ack`.
+
+    The bag is opened once every node has said its settings on `run_info` and t_0 is whole. In
+    lock-step it holds only what is deterministic; wall-clock figures go to `timing.json`.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Subscribe to everything that is recorded."""
+        super().__init__('recorder', **kwargs)
+        self._folder = Path(
+            declare(self, 'out', 'recording', 'Folder of the bag, created if absent')
+        )
+        self._bag_name = (
+            declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
+            or self._folder.name
+        )
+        self._expected_nodes = set(
+            declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
+        )
+        topics = recorded_topics(lockstep=self.settings.lockstep)
+        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
+        self._topics = topics
+        self._buffer = TickBuffer(
+            [name for name in self._tick_topics if name != ACK],
+            self._same_message,
+            wait_for_all=self.settings.lockstep,
+        )
+        self._run_info: dict[str, tuple[bytes, dict[str, str]]] = {}
+        self._held: list[tuple[int, Tick]] = []
+        self._unordered: list[tuple[str, int, bytes]] = []
+        self._bag: BagWriter | None = None
+        self._timing = RunTiming()
+        self._first_tick_at = 0.0
+        self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
+        self._subscribe_all()
+        self.publish_run_info()
+
+    def close(self) -> None:
+        """Finish the bag and write `timing.json`; raise DdctError when nothing was recorded."""
+        try:
+            self._write_ticks(self._buffer.drain())
+            if self._bag is None:
+                raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
+            self._bag.close()
+            self._timing.late_messages += self._buffer.dropped
+            self._timing.write(self._folder)
+        except DdctError as error:
+            self.finish(error)
+
+    def _subscribe_all(self) -> None:
+        for topic in TOPICS:
+            if topic.name == ACK or topic.two_input_only:
+                continue
+            qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
+            self.create_subscription(
+                _message_type(topic), topic.name, self._receiver(topic), qos, raw=True
+            )
+
+    def _receiver(self, topic: TopicSpec) -> Callable[[bytes], None]:
+        if topic.every_tick:
+            return self.guarded(lambda cdr: self._on_tick_message(topic.name, cdr))
+        receive = {
+            RUN_INFO_TOPIC: self._on_run_info,
+            TIMING: self._on_timing,
+            DIAGNOSTICS: self._on_diagnostics,
+        }[topic.name]
+        return self.guarded(receive)
+
+    def _on_tick_message(self, topic: str, cdr: bytes) -> None:
+        ready = self._buffer.offer(topic, _stamp_ns(cdr), cdr)
+        if ready:
+            self._write_ticks(ready)
+
+    def _on_run_info(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        node, pairs = status_name_of(message), dict(status_pairs_of(message))
+        for key, ours in run_info_pairs(self.settings):
+            if pairs.get(key, ours) != ours:
+                raise DdctError(
+                    f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
+                    'start every node with the same settings'
+                )
+        self._run_info[node] = (cdr, pairs)
+        self._write_ticks([])
+
+    def _on_timing(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        self._timing.update_times_us += [float(value) for _, value in status_pairs_of(message)]
+        self._record_unordered(TIMING, cdr)
+
+    def _on_diagnostics(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        if not message.status or status_name_of(message) != DIAGNOSTICS_SOURCE:
+            return
+        counts = dict(status_pairs_of(message))
+        self._timing.resends = int(counts['resends'])
+        self._timing.missed_steps = int(counts['missed_steps'])
+        self._timing.late_messages = int(counts['late_messages'])
+        self._record_unordered(DIAGNOSTICS, cdr)
+
+    def _record_unordered(self, topic: str, cdr: bytes) -> None:
+        if self.settings.lockstep:
+            return
+        if self._bag is None:
+            self._unordered.append((topic, _stamp_ns(cdr), cdr))
+        else:
+            self._bag.write(topic, _stamp_ns(cdr), cdr)
+
+    def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
+        self._held += ticks
+        if not self._held or (self._bag is None and not self._open_bag()):
+            return
+        for step, tick in self._held:
+            self._write_tick(stamp_of_step(step), tick)
+            self._timing.steps = step
+        self._timing.wall_time_s = time.monotonic() - self._first_tick_at
+        self._held = []
+
+    def _write_tick(self, stamp: int, tick: Tick) -> None:
+        assert self._bag is not None
+        ack = serialize_message(ack_message(stamp))
+        for topic in self._tick_topics:
+            cdr = ack if topic == ACK else tick.get(topic)
+            if cdr is not None:
+                self._bag.write(topic, stamp, cdr)
+        self._ack.publish(ack)
+
+    def _open_bag(self) -> bool:
+        if self._expected_nodes - set(self._run_info):
+            return False
+        self._first_tick_at = time.monotonic()
+        name = self._run_info['controller'][1]['controller']
+        steps = int(self._run_info['driveline'][1]['steps'])
+        self._bag = BagWriter(
+            self._folder, self._bag_name, self._topics, custom_data(self.settings, name, steps)
+        )
+        for node in sorted(self._run_info):
+            self._bag.write(RUN_INFO_TOPIC, START_NS, self._run_info[node][0])
+        for topic, stamp, cdr in self._unordered:
+            self._bag.write(topic, stamp, cdr)
+        return True
+
+    def _same_message(self, topic: str, first: bytes, second: bytes) -> bool:
+        type_name = next(spec.type for spec in self._topics if spec.name == topic)
+        normaliser = CdrNormaliser(load_definition(type_name))
+        return normaliser.normalise(first) == normaliser.normalise(second)
+
+    def _waiting_for(self) -> str:
+        silent = sorted(self._expected_nodes - set(self._run_info))
+        if silent:
+            return f'no run_info came from {", ".join(silent)}: start them, or set `nodes`'
+        return 'no whole tick came: check that the driveline is running'
+
+
+def _stamp_ns(cdr: bytes) -> int:
+    seconds, nanoseconds = _STAMP.unpack_from(cdr, _STAMP_AT)
+    return seconds * 1_000_000_000 + nanoseconds
+
+
+def _message_type(topic: TopicSpec) -> type:
+    package, kind, name = topic.type.split('/')
+    return getattr(importlib.import_module(f'{package}.{kind}'), name)
+
+
+def main() -> int:
+    """Record until stopped."""
+    return run_node('recorder', RecorderNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

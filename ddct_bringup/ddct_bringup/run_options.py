@@ -1,0 +1,74 @@
+"""Command-line options that `bringup` and `compare` share."""
+
+import argparse
+from collections.abc import Sequence
+
+from ddct_controllers.registry import controller_names
+from ddct_plant.clutch import CLUTCHES
+from ddct_plant.graph.run_info import package_version
+from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
+from ddct_plant.scenario_file import load_scenario, scenario_names
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """Add what describes a run, and how it is carried out, to a program's options."""
+    parser.add_argument('--architecture', default='detailed', metavar='NAME')
+    parser.add_argument('--scenario', default='thesis', metavar='NAME|FILE')
+    parser.add_argument('--clutch', default='linear', metavar='NAME')
+    parser.add_argument('--wear-gain', type=float, default=1.0, metavar='X', help='K_usura')
+    parser.add_argument('--mode', default='lockstep', metavar='lockstep|realtime')
+    parser.add_argument(
+        '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
+    )
+    parser.add_argument('--seed', type=int, default=0, metavar='N')
+    parser.add_argument(
+        '--set',
+        action='append',
+        default=[],
+        metavar='KEY=VALUE',
+        dest='overrides',
+        help='change a scenario key, such as load.slope_rad=0.05; may be repeated',
+    )
+    layout = parser.add_mutually_exclusive_group()
+    layout.add_argument(
+        '--single-process',
+        action='store_const',
+        const='single-process',
+        default='processes',
+        dest='layout',
+        help='all nodes in one process',
+    )
+    layout.add_argument(
+        '--headless', action='store_const', const='headless', dest='layout', help='no ROS graph'
+    )
+    parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
+    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
+    parser.add_argument('--version', action='version', version=package_version())
+
+
+def settings_of(options: argparse.Namespace) -> RunSettings:
+    """Return the validated settings; raise ParameterError that names what cannot be used."""
+    overrides = list(options.overrides)
+    if options.duration is not None:
+        overrides.append(f'duration_s={options.duration!r}')
+    return RunSettings(
+        scenario=load_scenario(options.scenario, overrides),
+        architecture=options.architecture,
+        clutch=options.clutch,
+        wear_gain=options.wear_gain,
+        mode=options.mode,
+        seed=options.seed,
+    )
+
+
+def print_choices() -> None:
+    """Print the controllers, architectures, scenarios and other choices."""
+    rows: Sequence[tuple[str, Sequence[str]]] = (
+        ('controllers', controller_names()),
+        ('architectures', ARCHITECTURES),
+        ('scenarios', scenario_names()),
+        ('clutches', CLUTCHES),
+        ('modes', MODES),
+    )
+    for title, names in rows:
+        print(f'{title + ":":15}{", ".join(names)}')

@@ -1,0 +1,68 @@
+"""One run as a program is asked for it: what, how and where."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import scenario_to_yaml
+
+LAYOUTS = ('processes', 'single-process', 'headless')
+"""One process per node, all nodes in one process, or no ROS graph at all."""
+ANSWER_TIMEOUT_S = 20.0
+"""Wall time that a node of a supervised graph may take to answer."""
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """A run that is known to be buildable."""
+
+    settings: RunSettings
+    controller: str
+    layout: str = 'processes'
+
+    def __post_init__(self) -> None:
+        """Build the controller once; raise DdctError now rather than in the graph."""
+        make_controller(self.controller, self.settings)
+
+    @property
+    def steps(self) -> int:
+        """N, the number of periods."""
+        return self.settings.scenario.steps
+
+    def node_parameters(self, folder: Path, work: Path) -> dict[str, dict[str, Any]]:
+        """
+        Return the ROS parameters by node for a bag in `folder`; those of '*' are for every node.
+
+        The scenario, changes included, is written into the folder `work` for the nodes to read.
+        """
+        scenario_file = work / f'{self.settings.scenario.name}.yaml'
+        scenario_file.write_text(scenario_to_yaml(self.settings.scenario), encoding='utf-8')
+        controller = make_controller(self.controller, self.settings)
+        return {
+            '*': {
+                'scenario': str(scenario_file),
+                'architecture': self.settings.architecture,
+                'clutch': self.settings.clutch,
+                'wear_gain': float(self.settings.wear_gain),
+                'mode': self.settings.mode,
+                'seed': self.settings.seed,
+            },
+            'recorder': {'out': str(folder), 'name': self.controller},
+            'reference': {'preview_steps': controller.preview_steps},
+            'controller': {'controller': self.controller},
+            'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
+        }
+
+    def write_parameter_file(self, folder: Path, work: Path) -> Path:
+        """Write `node_parameters` as a ROS 2 parameter file into `work` and return its path."""
+        path = work / 'parameters.yaml'
+        content = {
+            '/**' if node == '*' else f'/**/{node}': {'ros__parameters': parameters}
+            for node, parameters in self.node_parameters(folder, work).items()
+        }
+        path.write_text(yaml.safe_dump(content, sort_keys=False), encoding='utf-8')
+        return path

@@ -1,0 +1,46 @@
+"""Table 5.1 of the thesis as printed, and which of its rows the scenario was fitted to."""
+
+from dataclasses import dataclass
+
+CALIBRATED = 'calibrated'
+PREDICTED = 'predicted'
+
+
+@dataclass(frozen=True)
+class ThesisRow:
+    """One printed row; the figures have the names that `metrics.Metrics` gives ours."""
+
+    label: str
+    """Name in the thesis."""
+    controller: str
+    """Name in the controller registry."""
+    engagement_time_s: float
+    """t_a, from control start to w_d = 0."""
+    torsion_speed_std_rpm: float
+    """Standard deviation of w_sr; the thesis prints no unit, rpm is the one that fits."""
+    acceleration_std_m_s2: float
+    """Standard deviation of A_x."""
+    use: str
+    """CALIBRATED: the scenario was fitted to it. PREDICTED: it took no part in the fit."""
+
+    def figures(self) -> dict[str, float]:
+        """Return the three printed figures by metric name."""
+        return {name: getattr(self, name) for name in FIGURES}
+
+
+FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
+"""Metrics that the table has, in its order."""
+
+THESIS_TABLE = (
+    ThesisRow('LS8', 'ls8', 0.71, 1.15, 0.20, CALIBRATED),
+    ThesisRow('Hinf1', 'hinf1', 0.79, 0.87, 0.17, CALIBRATED),
+    ThesisRow('MPC3', 'mpc3', 0.63, 0.90, 0.19, PREDICTED),
+    ThesisRow('MPC4', 'mpc4', 0.52, 0.20, 0.06, PREDICTED),
+    ThesisRow('PI', 'pi', 0.88, 0.70, 0.18, CALIBRATED),
+)
+"""Table 5.1 (Chapter 5), in its order."""
+
+
+def thesis_row(controller: str) -> ThesisRow | None:
+    """Return the row of a registry name, None for a controller that the table does not have."""
+    return next((row for row in THESIS_TABLE if row.controller == controller), None)

@@ -1,0 +1,81 @@
+"""Hold the messages of each tick until the tick is whole; knows nothing of ROS."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import step_of_stamp
+
+GIVE_UP_AFTER_STEPS = 10
+"""In real time a tick is written with what it has once one this much later has begun."""
+
+Tick = dict[str, bytes]
+"""Serialised messages of one stamp by topic."""
+
+
+@dataclass
+class TickBuffer:
+    """
+    Gather serialised messages by stamp and give whole ticks back in order.
+
+    Repeated messages are dropped; two different ones for one topic and stamp mean that two nodes
+    publish it, which is an error.
+    """
+
+    topics: Sequence[str]
+    """What a whole tick has."""
+    same: Callable[[str, bytes, bytes], bool]
+    """Whether two serialised messages of a topic are equal."""
+    wait_for_all: bool = True
+    """Lock-step: never give a tick back that is not whole."""
+    dropped: int = 0
+    """Messages that came too late, real time only."""
+    _next_step: int = 0
+    _pending: dict[int, Tick] = field(default_factory=dict)
+    _last: Tick = field(default_factory=dict)
+
+    def offer(self, topic: str, stamp_ns: int, cdr: bytes) -> list[tuple[int, Tick]]:
+        """Take one message and return the (step, tick) pairs that can now be written, in order."""
+        step = step_of_stamp(stamp_ns)
+        if step < self._next_step:
+            self._check_repeat(step, topic, cdr)
+            return []
+        tick = self._pending.setdefault(step, {})
+        if topic in tick:
+            self._require_same(topic, tick[topic], cdr, stamp_ns)
+            return []
+        tick[topic] = cdr
+        return self._ready(step - GIVE_UP_AFTER_STEPS)
+
+    def drain(self) -> list[tuple[int, Tick]]:
+        """Return what is left when recording ends; only real time keeps ticks with holes."""
+        if self.wait_for_all or not self._pending:
+            return []
+        return self._ready(max(self._pending))
+
+    def _ready(self, give_up_step: int) -> list[tuple[int, Tick]]:
+        ready = []
+        while self._pending:
+            tick = self._pending.get(self._next_step, {})
+            whole = len(tick) == len(self.topics)
+            if not whole and (self.wait_for_all or self._next_step > give_up_step):
+                break
+            self._pending.pop(self._next_step, None)
+            if tick:
+                ready.append((self._next_step, tick))
+                self._last = tick
+            self._next_step += 1
+        return ready
+
+    def _check_repeat(self, step: int, topic: str, cdr: bytes) -> None:
+        if topic not in self._last or step < self._next_step - 1:
+            self.dropped += not self.wait_for_all
+            return
+        self._require_same(topic, self._last[topic], cdr, step)
+
+    def _require_same(self, topic: str, first: bytes, second: bytes, when: int) -> None:
+        if first != second and not self.same(topic, first, second):
+            raise DdctError(
+                f'{topic} carries two different messages for one stamp ({when}): stop the second '
+                'node that publishes it, or use another ROS_DOMAIN_ID'
+            )

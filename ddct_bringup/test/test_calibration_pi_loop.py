@@ -1,0 +1,51 @@
+"""The growth rate that decides between the two kinds of PI is that of the simulated loop."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.pi_loop import pi_growth_rate
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario import Scenario
+from ddct_plant.scenario_file import load_scenario
+
+DURATION_S = 20.0
+
+
+def long_run(proportional_gain: float, integral_gain: float) -> Scenario:
+    gains = {'proportional_gain': proportional_gain, 'integral_gain': integral_gain}
+    scenario = load_scenario('thesis')
+    return dataclasses.replace(scenario, duration_s=DURATION_S, controllers={'pi': gains})
+
+
+def peak_slip(slip: np.ndarray, first_s: float, last_s: float) -> float:
+    return float(np.max(np.abs(slip[round(100 * first_s) : round(100 * last_s)])))
+
+
+def test_integral_alone_grows_as_fast_as_the_linear_loop_says():
+    scenario = long_run(0.0, 0.14)
+    rate = pi_growth_rate(scenario.driveline, 0.0, 0.14)
+    slip = run_headless(RunSettings(scenario), 'pi').slip_speed
+    change = np.diff(slip)
+    turns = np.flatnonzero(change[1:] * change[:-1] < 0.0) + 1
+    turns = turns[turns > 150][:8]  # after the engagement, before saturation
+    swings = np.abs(np.diff(slip[turns]))
+    growth = np.log(swings[-1] / swings[0]) / ((turns[-1] - turns[1]) / 100)
+    assert rate > 0.1
+    # A turn is known to 10 ms of the about 8 s between the first and the last.
+    assert growth == pytest.approx(rate, rel=0.005)
+
+
+def test_frozen_pi_is_stable_and_its_slip_dies_out():
+    scenario = load_scenario('thesis')
+    gains = scenario.controllers['pi']
+    assert pi_growth_rate(scenario.driveline, **gains) < 0.0
+    slip = run_headless(RunSettings(long_run(**gains)), 'pi').slip_speed
+    assert peak_slip(slip, 15.0, 20.0) < 0.02 * peak_slip(slip, 0.6, 2.0)
+
+
+def test_too_much_proportional_gain_is_unstable_too():
+    driveline = load_scenario('thesis').driveline
+    assert pi_growth_rate(driveline, 0.1, 0.02) < 0.0 < pi_growth_rate(driveline, 3.0, 0.02)

@@ -1,0 +1,127 @@
+"""Normalising serialised messages changes exactly the bytes that carry no value."""
+
+import pytest
+from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
+
+from ddct_bringup.cdr import CdrNormaliser
+from ddct_bringup.message_definitions import load_definition
+from ddct_plant.errors import DdctError
+
+STAMP = {'sec': 3, 'nanosec': 70_000_000}
+HEADER = {'stamp': STAMP, 'frame_id': ''}
+MESSAGES = {
+    'rosgraph_msgs/msg/Clock': {'clock': STAMP},
+    'std_msgs/msg/Header': HEADER,
+    'geometry_msgs/msg/WrenchStamped': {'header': HEADER, 'wrench': {'torque': {'x': 1.5}}},
+    'sensor_msgs/msg/JointState': {
+        'header': {'stamp': STAMP, 'frame_id': 'a'},
+        'name': ['engine', 'wheel'],
+        'position': [1.0, 2.0],
+        'velocity': [3.0],
+        'effort': [],
+    },
+    'trajectory_msgs/msg/JointTrajectory': {
+        'header': HEADER,
+        'joint_names': ['clutch'],
+        'points': [
+            {'effort': [float(i)], 'time_from_start': {'sec': 0, 'nanosec': i * 1_000_000}}
+            for i in range(11)
+        ],
+    },
+    'diagnostic_msgs/msg/DiagnosticArray': {
+        'header': HEADER,
+        'status': [
+            {
+                'level': 1,
+                'name': 'controller',
+                'message': 'x',
+                'values': [{'key': 'a', 'value': '1.25'}, {'key': 'bcd', 'value': ''}],
+            }
+        ],
+    },
+    # Fixed arrays, single bytes and eight-byte fields behind them.
+    'sensor_msgs/msg/NavSatFix': {
+        'header': HEADER,
+        'status': {'status': 1, 'service': 2},
+        'position_covariance': [float(i) for i in range(9)],
+        'position_covariance_type': 1,
+    },
+}
+
+
+@pytest.fixture(params=MESSAGES)
+def case(request):
+    """Return the type name, a serialiser's bytes and a decoder."""
+    definition = load_definition(request.param)
+    serialise = serialize_dynamic(request.param, definition.schema_text)[request.param]
+    decode = generate_dynamic(request.param, definition.schema_text)[request.param]
+    return definition, serialise(MESSAGES[request.param]), decode
+
+
+def decodes_to(decode, data, message):
+    try:
+        return decode(data) == message
+    except Exception:
+        return False
+
+
+def test_a_clean_message_stays_as_it_is(case):
+    definition, clean, _ = case
+    assert CdrNormaliser(definition).normalise(clean) == clean
+
+
+def test_exactly_the_bytes_without_a_value_are_ignored(case):
+    definition, clean, decode = case
+    message = decode(clean)
+    for place in range(4, len(clean)):
+        spoiled = bytearray(clean)
+        spoiled[place] ^= 0x55
+        try:
+            ignored = CdrNormaliser(definition).normalise(bytes(spoiled)) == clean
+        except DdctError:
+            ignored = False
+        assert ignored == decodes_to(decode, bytes(spoiled), message), place
+
+
+def test_the_remembered_layout_gives_the_same_as_a_fresh_one(case):
+    definition, clean, decode = case
+    used = CdrNormaliser(definition)
+    used.normalise(clean)
+    message = decode(clean)
+    for place in range(4, len(clean)):
+        spoiled = bytearray(clean)
+        spoiled[place] ^= 0x55
+        if decodes_to(decode, bytes(spoiled), message):
+            assert used.normalise(bytes(spoiled)) == clean
+
+
+def test_what_follows_the_message_is_cut(case):
+    definition, clean, _ = case
+    assert CdrNormaliser(definition).normalise(clean + b'\xaa' * 8) == clean
+
+
+def test_option_bytes_of_the_header_are_cleared(case):
+    definition, clean, _ = case
+    assert CdrNormaliser(definition).normalise(clean[:2] + b'\x00\x03' + clean[4:]) == clean
+
+
+def test_a_message_that_is_cut_short_is_an_error(case):
+    definition, clean, _ = case
+    for length in range(len(clean)):
+        with pytest.raises(DdctError, match=f'a message is no {definition.type_name}: '):
+            CdrNormaliser(definition).normalise(clean[:length])
+
+
+def test_two_layouts_of_the_same_length_are_told_apart():
+    definition = load_definition('diagnostic_msgs/msg/DiagnosticArray')
+    serialise = serialize_dynamic(definition.type_name, definition.schema_text)
+    normaliser = CdrNormaliser(definition)
+
+    def message(key, value):
+        status = {'name': 'n', 'values': [{'key': key, 'value': value}]}
+        return serialise[definition.type_name]({'header': HEADER, 'status': [status]})
+
+    first, second = message('ab', 'abcdefg'), message('abcdef', 'abc')
+    assert len(first) == len(second)
+    for data in (first, second, first):
+        assert normaliser.normalise(data) == data

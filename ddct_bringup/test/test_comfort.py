@@ -1,0 +1,54 @@
+"""Jerk and vibration dose against signals whose answer is known."""
+
+import numpy as np
+import pytest
+
+from ddct_bringup.comfort import jerk, vibration_dose, weighted_acceleration
+
+TIME = np.arange(4001) / 100.0
+
+
+def sine(frequency_hz):
+    return np.sin(2.0 * np.pi * frequency_hz * TIME)
+
+
+def test_jerk_of_a_ramp_is_its_slope():
+    inside = slice(100, -100)
+    assert jerk(3.0 * TIME)[inside] == pytest.approx(np.full(3800, 3.0), abs=1e-9)
+
+
+def test_jerk_of_a_slow_sine_is_its_derivative_without_delay():
+    middle = (TIME[:-1] + TIME[1:]) / 2.0
+    expected = 2.0 * np.pi * np.cos(2.0 * np.pi * middle)
+    inside = slice(100, -100)
+    assert jerk(sine(1.0))[inside] == pytest.approx(expected[inside], abs=2.0 * np.pi * 1e-3)
+
+
+def test_jerk_filter_halves_20_hz():
+    amplitude = np.max(np.abs(jerk(sine(20.0))[1000:3000]))
+    difference_of_samples = 2.0 * np.sin(np.pi * 20.0 * 0.01) / 0.01
+    assert amplitude == pytest.approx(0.5 * difference_of_samples, rel=2e-3)
+
+
+def test_jerk_of_nine_samples_is_undefined():
+    assert jerk(np.arange(9.0)).size == 0
+
+
+# One-third octave factors of W_d as ISO 2631-1 tabulates them, up to where sampling at 100 Hz
+# still shows the analogue filter.
+@pytest.mark.parametrize(
+    ('frequency_hz', 'factor'),
+    [(0.5, 0.853), (1.0, 1.011), (2.0, 0.890), (4.0, 0.512), (8.0, 0.253)],
+)
+def test_weighting_has_the_factors_of_the_standard(frequency_hz, factor):
+    settled = weighted_acceleration(sine(frequency_hz))[2000:]
+    assert np.max(np.abs(settled)) == pytest.approx(factor, rel=0.03)
+
+
+def test_weighting_starts_in_equilibrium():
+    assert weighted_acceleration(np.full(100, 5.0)) == pytest.approx(np.zeros(100), abs=1e-9)
+
+
+def test_vibration_dose_of_a_sine():
+    # The mean of sin^4 is 3/8.
+    assert vibration_dose(2.0 * sine(1.0)) == pytest.approx(2.0 * (40.0 * 3 / 8) ** 0.25, rel=1e-6)

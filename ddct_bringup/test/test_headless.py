@@ -1,0 +1,123 @@
+"""The headless loop is accurate, repeatable, and honest about what it cannot run."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.run_timing import RunTiming
+from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.engine import Engine
+from ddct_plant.errors import DdctError
+from ddct_plant.initial import initial_state
+from ddct_plant.load import RoadLoad
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_reference.crf_ramp import CrfRamp
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+
+
+def tight_tolerance_slip(settings: RunSettings, name: str) -> np.ndarray:
+    """
+    Return w_d (N+1,) in rad/s of the same sampled-data loop, its plant integrated to 1e-10.
+
+    Actuator and driveline are one continuous system here, so the clutch torque bends nowhere
+    within a period; saturation acts on the held request, as in the actuator.
+    """
+    scenario = settings.scenario
+    plant, filter_ = driveline_matrices(scenario.driveline), ACTUATOR.to_state_space()
+    initial = initial_state(settings)
+    engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
+    ramp = CrfRamp(scenario.reference.slope_rad_s2, scenario.control_start_step)
+    architecture = DetailedArchitecture(settings, make_controller(name, settings))
+    delayed = initial.torque_request
+    state = np.concatenate(
+        [
+            [initial.engine_speed, initial.shaft_speed, initial.wheel_speed, initial.twist],
+            np.linalg.solve(filter_.a, -filter_.b[:, 0] * delayed),
+        ]
+    )
+    slips = []
+    for step in range(scenario.steps + 1):
+        w_m, w_p, w_r, _ = state[:4]
+        slips.append(w_m - w_p)
+        speed = scenario.vehicle.wheel_radius_m * w_r
+        c_m, c_load = engine.torque(step), load.torque(speed)
+        references, rates = ramp.update(step, w_m - w_p)
+        request = architecture.update(
+            Measurement(step, w_m, w_p, w_r, speed, c_m, references, rates)
+        ).torque
+
+        def derivative(_, x, held=delayed, c_m=c_m, c_load=c_load):
+            c_f = settings.wear_gain * (filter_.c @ x[4:])[0]
+            driveline = plant.a @ x[:4] + plant.b @ [c_m, c_f, c_load]
+            return np.concatenate([driveline, filter_.a @ x[4:] + filter_.b[:, 0] * held])
+
+        solution = solve_ivp(
+            derivative, (0.0, 0.01), state, method='DOP853', rtol=1e-10, atol=1e-10
+        )
+        state, delayed = solution.y[:, -1], max(request, 0.0)
+    return np.array(slips)
+
+
+@pytest.mark.parametrize('name', ['pi', 'ls8', 'hinf1'])
+def test_slip_is_within_1e_4_of_its_peak_of_a_tight_tolerance_integration(name):
+    slip = run_headless(SETTINGS, name).slip_speed
+    error = np.abs(slip - tight_tolerance_slip(SETTINGS, name)).max()
+    assert error < 1e-4 * np.abs(slip).max()
+
+
+@pytest.mark.parametrize('name', controller_names())
+def test_a_run_repeats_to_the_last_bit(name):
+    assert run_headless(SETTINGS, name).sha256() == run_headless(SETTINGS, name).sha256()
+
+
+def test_wear_changes_the_trajectory():
+    worn = RunSettings(SETTINGS.scenario, wear_gain=0.7)
+    assert run_headless(worn, 'ls8').sha256() != run_headless(SETTINGS, 'ls8').sha256()
+
+
+def test_it_has_every_tick_and_times_every_update():
+    timing = RunTiming()
+    trajectory = run_headless(SETTINGS, 'pi', timing)
+    assert trajectory.steps == SETTINGS.scenario.steps
+    assert len(timing.update_times_us) == trajectory.steps + 1
+    assert all(time_us > 0.0 for time_us in timing.update_times_us)
+
+
+def test_feedback_starts_when_the_scenario_says():
+    trajectory = run_headless(SETTINGS, 'ls8')
+    start = SETTINGS.scenario.control_start_step
+    closed_loop = [float(dict(pairs)['closed_loop_torque_n_m']) for pairs in trajectory.status]
+    assert not any(closed_loop[:start])
+    assert any(closed_loop[start : start + 3])
+    np.testing.assert_array_equal(
+        trajectory.slip_reference[: start + 1, 0], trajectory.slip_speed[: start + 1]
+    )
+
+
+def test_the_replies_that_were_applied_are_the_efforts_of_the_next_tick():
+    trajectory = run_headless(SETTINGS, 'ls8')
+    engine, clutch, load, _ = trajectory.joint_effort[1:].T
+    np.testing.assert_array_equal(engine, trajectory.engine_torque[:-1])
+    np.testing.assert_array_equal(clutch, trajectory.clutch_torque[:-1, -1])
+    np.testing.assert_array_equal(load, trajectory.load_torque[:-1])
+
+
+def test_a_controller_that_commands_nan_ends_the_run():
+    class Broken(Controller):
+        def reset(self):
+            pass
+
+        def update(self, measurement):
+            return Command(math.nan)
+
+    with pytest.raises(DdctError, match='torque at step 60 is nan'):
+        run_headless(SETTINGS, Broken())

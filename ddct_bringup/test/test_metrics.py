@@ -1,0 +1,202 @@
+"""Every metric against a trajectory whose answer is known."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from ddct_bringup.metrics import Metrics, compute_metrics
+from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.trajectory import Trajectory
+
+STEPS = 300
+TIME = np.arange(STEPS + 1) / 100.0
+RPM = 30.0 / math.pi
+WINDOW = (0.6, 2.0)
+IN_WINDOW = slice(60, 201)
+
+
+def trajectory(steps=STEPS, **signals):
+    """Return a run of zeros with the given signals, cut to `steps`."""
+    shapes = {
+        'joint_position': (4,),
+        'joint_speed': (4,),
+        'joint_effort': (4,),
+        'slip_reference': (1,),
+        'slip_reference_rate': (1,),
+        'actuator_torque': (11,),
+        'clutch_torque': (11,),
+    }
+    arrays = {
+        field.name: signals.get(field.name, np.zeros((STEPS + 1, *shapes.get(field.name, ()))))
+        for field in dataclasses.fields(Trajectory)
+        if field.name != 'status'
+    }
+    rows = {name: np.asarray(value, float)[: steps + 1] for name, value in arrays.items()}
+    return Trajectory(status=((),) * (steps + 1), **rows)
+
+
+def columns(index, values, width=4):
+    result = np.zeros((len(values), width))
+    result[:, index] = values
+    return result
+
+
+def score(run, timing=None, control_start_s=0.6):
+    return compute_metrics(
+        run, control_start_s=control_start_s, score_window_s=WINDOW, timing=timing
+    )
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_engagement_time_is_interpolated_from_control_start(sign):
+    metrics = score(trajectory(slip_speed=sign * (20.0 - 16.0 * TIME)))
+    assert metrics.engagement_time_s == pytest.approx(20.0 / 16.0 - 0.6, abs=1e-12)
+    assert metrics.lockup_slip_acceleration_rad_s2 == pytest.approx(-16.0 * sign, rel=1e-9)
+
+
+def test_sign_changes_before_control_start_do_not_count():
+    slip = np.where(TIME < 0.3, -1.0, 1.0) * 5.0
+    assert score(trajectory(slip_speed=slip)).engagement_time_s is None
+
+
+def test_engagement_time_is_undefined_without_a_sign_change():
+    metrics = score(trajectory(slip_speed=np.full(STEPS + 1, 3.0)))
+    assert metrics.engagement_time_s is None
+    assert metrics.lockup_slip_acceleration_rad_s2 is None
+
+
+def test_engagement_time_is_undefined_when_slip_is_zero_at_control_start():
+    assert score(trajectory(slip_speed=np.maximum(TIME - 0.6, 0.0))).engagement_time_s is None
+
+
+def test_engagement_time_is_undefined_when_the_run_ends_before_control_starts():
+    assert score(trajectory(steps=50)).engagement_time_s is None
+
+
+def test_a_clutch_that_sticks_is_engaged_at_the_first_zero_sample():
+    slip = np.maximum(20.005 - 16.0 * TIME, 0.0)
+    slip[TIME > 1.244] = 0.0
+    metrics = score(trajectory(slip_speed=slip))
+    assert metrics.engagement_time_s == pytest.approx(1.25 - 0.6, abs=1e-12)
+    assert metrics.lockup_slip_acceleration_rad_s2 == pytest.approx(-16.0, rel=1e-9)
+
+
+def test_standard_deviations_are_over_the_window_with_both_ends_and_ddof_0():
+    values = np.random.default_rng(1).standard_normal(STEPS + 1)
+    metrics = score(trajectory(joint_speed=columns(3, values), vehicle_accel=2.0 * values))
+    inside = values[IN_WINDOW]
+    expected = math.sqrt(float(np.mean((inside - inside.mean()) ** 2)))
+    assert metrics.torsion_speed_std_rpm == pytest.approx(expected * RPM, rel=1e-12)
+    assert metrics.acceleration_std_m_s2 == pytest.approx(2.0 * expected, rel=1e-12)
+
+
+def test_slip_rmse_is_of_the_present_reference():
+    reference = np.stack([np.full(STEPS + 1, 5.0), np.full(STEPS + 1, 99.0)], axis=1)
+    metrics = score(trajectory(slip_reference=reference, slip_speed=np.full(STEPS + 1, 2.0)))
+    assert metrics.slip_rmse_rpm == pytest.approx(3.0 * RPM, rel=1e-12)
+
+
+def test_final_slip_keeps_its_sign():
+    assert score(trajectory(slip_speed=-TIME)).slip_final_rpm == pytest.approx(-3.0 * RPM)
+
+
+def test_window_metrics_do_not_depend_on_what_comes_after_the_window():
+    values = np.random.default_rng(2).standard_normal(STEPS + 1)
+    signals = {'vehicle_accel': values, 'joint_speed': columns(3, values)}
+    whole, cut = (score(trajectory(steps, **signals)).as_dict() for steps in (300, 200))
+    for name in ('torsion_speed_std_rpm', 'acceleration_std_m_s2', 'slip_rmse_rpm'):
+        assert whole[name] == cut[name]
+    assert whole['peak_jerk_m_s3'] == cut['peak_jerk_m_s3'] > 0.0
+    assert whole['vdv_m_s1_75'] == cut['vdv_m_s1_75'] > 0.0
+
+
+def test_window_metrics_are_undefined_when_the_run_is_one_step_too_short():
+    metrics = score(trajectory(steps=199))
+    assert metrics.torsion_speed_std_rpm is None
+    assert metrics.acceleration_std_m_s2 is None
+    assert metrics.slip_rmse_rpm is None
+    assert metrics.peak_jerk_m_s3 is None
+    assert metrics.vdv_m_s1_75 is None
+    assert metrics.slip_final_rpm == 0.0
+    assert metrics.steps == 199
+
+
+def test_peak_jerk_is_the_largest_in_the_window_only():
+    before = np.where(TIME < 0.3, 100.0, 0.0)
+    metrics = score(trajectory(vehicle_accel=before + np.sin(2.0 * np.pi * TIME)))
+    assert metrics.peak_jerk_m_s3 == pytest.approx(2.0 * np.pi, rel=0.01)
+
+
+def test_friction_energy_is_the_integral_of_the_magnitude_of_power():
+    slip = 1.5 - TIME
+    metrics = score(trajectory(slip_speed=slip, joint_effort=columns(1, np.full(301, -100.0))))
+    assert metrics.friction_energy_j == pytest.approx(100.0 * 1.5**2, rel=1e-9)
+
+
+def test_total_variation_adds_ups_and_downs():
+    request = np.concatenate([np.linspace(0.0, 50.0, 151), np.linspace(50.0, 20.0, 150)])
+    metrics = score(trajectory(torque_request=request))
+    assert metrics.torque_total_variation_n_m == pytest.approx(80.0, rel=1e-12)
+
+
+def test_wall_clock_metrics_come_from_timing():
+    timing = RunTiming([float(i) for i in range(1, 102)], missed_steps=3, resends=4)
+    metrics = score(trajectory(), timing)
+    assert metrics.update_time_median_us == 51.0
+    assert metrics.update_time_p99_us == pytest.approx(100.0)
+    assert (metrics.missed_steps, metrics.resends) == (3, 4)
+
+
+def test_wall_clock_metrics_are_undefined_without_timing():
+    metrics = score(trajectory())
+    assert metrics.update_time_median_us is None
+    assert metrics.update_time_p99_us is None
+    assert metrics.missed_steps is None
+    assert metrics.resends is None
+
+
+def test_update_times_are_undefined_when_none_was_taken():
+    metrics = score(trajectory(), RunTiming())
+    assert metrics.update_time_median_us is None
+    assert metrics.missed_steps == 0
+
+
+@pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf])
+def test_non_finite_signals_give_no_non_finite_metric(value):
+    spoiled = np.sin(TIME)
+    spoiled[100] = value
+    metrics = score(
+        trajectory(
+            slip_speed=spoiled,
+            vehicle_accel=spoiled,
+            torque_request=spoiled,
+            joint_speed=columns(3, spoiled),
+            joint_effort=columns(1, spoiled),
+        )
+    )
+    json.dumps(metrics.as_dict(), allow_nan=False)
+    assert metrics.torsion_speed_std_rpm is None
+    assert metrics.friction_energy_j is None
+
+
+def test_metrics_have_the_names_that_other_scripts_rely_on():
+    assert [field.name for field in dataclasses.fields(Metrics)] == [
+        'engagement_time_s',
+        'torsion_speed_std_rpm',
+        'acceleration_std_m_s2',
+        'slip_rmse_rpm',
+        'slip_final_rpm',
+        'peak_jerk_m_s3',
+        'vdv_m_s1_75',
+        'friction_energy_j',
+        'lockup_slip_acceleration_rad_s2',
+        'torque_total_variation_n_m',
+        'steps',
+        'update_time_median_us',
+        'update_time_p99_us',
+        'missed_steps',
+        'resends',
+    ]

@@ -1,0 +1,51 @@
+"""The facts of a run survive the way through a bag's custom data."""
+
+import math
+
+import pytest
+
+from ddct_bringup.run_facts import RunFacts
+from ddct_plant.errors import DdctError
+
+FACTS = RunFacts(
+    controller='pi',
+    architecture='detailed',
+    scenario='thesis',
+    clutch='linear',
+    wear_gain=math.nextafter(0.7, 1.0),
+    mode='lockstep',
+    seed=7,
+    control_start_s=0.6,
+    score_window_s=(0.6, 2.5),
+    duration_s=3.0,
+)
+
+
+def test_facts_come_back_to_the_last_bit():
+    custom_data = FACTS.to_custom_data()
+    assert all(isinstance(value, str) for value in custom_data.values())
+    assert RunFacts.from_custom_data({**custom_data, 'commit': 'abc'}) == FACTS
+
+
+@pytest.mark.parametrize('name', ['controller', 'seed', 'score_window_s'])
+def test_a_missing_fact_is_named(name):
+    custom_data = FACTS.to_custom_data()
+    del custom_data[name]
+    with pytest.raises(DdctError, match=f'no {name} '):
+        RunFacts.from_custom_data(custom_data)
+
+
+@pytest.mark.parametrize(
+    ('name', 'text'),
+    [
+        ('wear_gain', 'much'),
+        ('wear_gain', 'true'),
+        ('seed', '[1]'),
+        ('score_window_s', '0.6'),
+        ('score_window_s', '[0.6]'),
+        ('score_window_s', '[0.6, "a"]'),
+    ],
+)
+def test_an_unusable_fact_is_named(name, text):
+    with pytest.raises(DdctError, match=f'{name} is '):
+        RunFacts.from_custom_data({**FACTS.to_custom_data(), name: text})

@@ -1,0 +1,92 @@
+"""Tables of runs on terminals, in pipes, and without colours."""
+
+import io
+
+import pytest
+
+from ddct_bringup.scoring import METRIC_NAMES
+from ddct_bringup.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
+
+
+def run(controller='pi', *, valid=True, reason='', **metrics):
+    return {
+        'bag': controller,
+        'controller': controller,
+        'wear_gain': 1.0,
+        'valid': valid,
+        'reason': reason,
+        'metrics': {**dict.fromkeys(METRIC_NAMES), **metrics},
+    }
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def printed(runs, columns=(CONTROLLER, WEAR, *COLUMNS), stream=None):
+    stream = stream or io.StringIO()
+    print_runs(runs, columns, stream)
+    return stream.getvalue()
+
+
+def test_every_column_has_its_value():
+    text = printed([run(engagement_time_s=0.88, torsion_speed_std_rpm=0.7049)])
+    assert '0.880' in text
+    assert '0.705' in text
+    assert 'yes' in text
+
+
+def test_an_undefined_metric_is_a_dash():
+    lines = printed([run()]).splitlines()
+    row = next(line for line in lines if 'pi' in line)
+    assert row.split() == ['pi', '1', '-', '-', '-', '-', '-', '-', 'yes']
+
+
+def test_the_reason_of_an_invalid_run_stands_below_the_table():
+    text = printed([run('ls8', valid=False, reason='ended early: 1 of 2 steps ' + 'x' * 300)])
+    assert f'ls8: not valid: ended early: 1 of 2 steps {"x" * 300}\n' in text
+
+
+def test_a_pipe_gets_no_escape_sequence_and_no_cut_cell():
+    controller = 'a-controller-with-a-long-name-' * 2
+    text = printed([run(controller, valid=False)])
+    assert '\x1b' not in text
+    assert controller in text
+
+
+def test_brackets_are_printed_as_they_are():
+    assert '[bold]' in printed([run('[bold]')])
+
+
+def test_no_color_is_honoured(monkeypatch):
+    monkeypatch.setenv('TERM', 'xterm-256color')
+    monkeypatch.delenv('NO_COLOR', raising=False)
+    runs = [run(valid=False, reason='x')]
+    assert '\x1b[1m' in printed(runs, stream=Terminal())
+    monkeypatch.setenv('NO_COLOR', '1')
+    coloured = [f'\x1b[{code}' for code in range(30, 50)]
+    assert not any(code in printed(runs, stream=Terminal()) for code in coloured)
+
+
+def test_a_terminal_of_80_columns_shows_every_number(monkeypatch):
+    monkeypatch.setenv('COLUMNS', '80')
+    monkeypatch.setenv('TERM', 'xterm-256color')
+    numbers = {
+        'engagement_time_s': 0.881,
+        'torsion_speed_std_rpm': 12.345,
+        'acceleration_std_m_s2': 0.205,
+        'slip_final_rpm': -123.45,
+        'slip_rmse_rpm': 123.45,
+        'peak_jerk_m_s3': 67.89,
+    }
+    text = printed([run('feedforward', **numbers)], stream=Terminal())
+    for number in ('0.881', '12.345', '0.205', '-123.45', ' 123.45', '67.89', 'feedforward'):
+        assert number in text
+
+
+@pytest.mark.parametrize('name', METRIC_NAMES)
+def test_every_metric_can_be_a_column(name):
+    column = metric(name, 'heading', '{:.1f}')
+    assert isinstance(column, Column)
+    assert column.text(run(**{name: 2})) == '2.0'

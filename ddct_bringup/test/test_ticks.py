@@ -1,0 +1,112 @@
+"""Which ticks of a recording count as complete, and what is wrong with the others."""
+
+import pytest
+
+from ddct_bringup.ticks import check_ticks, complete_ticks, tick_topics
+from ddct_bringup.topics import PLANT_TOPICS, TOPICS, recorded_topics, resolved_name
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import stamp_of_step
+
+
+def stamps_of(steps=5):
+    topics = tick_topics([], lockstep=True)
+    return {topic: [stamp_of_step(k) for k in range(steps + 1)] for topic in topics}
+
+
+def test_a_whole_recording_has_no_complaint():
+    assert check_ticks(stamps_of(5), lockstep=True) == 5
+
+
+@pytest.mark.parametrize('step', [0, 2, 5])
+def test_a_missing_reply_is_named_with_its_step(step):
+    stamps = stamps_of(5)
+    stamps['/load/torque'].remove(stamp_of_step(step))
+    with pytest.raises(DdctError, match=f'/load/torque has no message at step {step} '):
+        check_ticks(stamps, lockstep=True)
+
+
+def test_a_missing_reply_is_no_error_in_real_time():
+    stamps = stamps_of(5)
+    stamps['/load/torque'].remove(stamp_of_step(2))
+    assert check_ticks(stamps, lockstep=False) == 5
+
+
+@pytest.mark.parametrize('lockstep', [True, False])
+def test_a_gap_in_the_states_is_an_error_in_every_mode(lockstep):
+    stamps = stamps_of(5)
+    for topic in stamps:
+        stamps[topic].remove(stamp_of_step(3))
+    with pytest.raises(DdctError, match='no message at step 3 '):
+        check_ticks(stamps, lockstep=lockstep)
+
+
+@pytest.mark.parametrize('lockstep', [True, False])
+def test_a_doubled_message_is_an_error_in_every_mode(lockstep):
+    stamps = stamps_of(5)
+    stamps['/clutch/torque'].append(stamp_of_step(4))
+    with pytest.raises(DdctError, match='/clutch/torque has 2 messages at step 4 '):
+        check_ticks(stamps, lockstep=lockstep)
+
+
+def test_a_reply_after_the_last_tick_is_an_error():
+    stamps = stamps_of(5)
+    stamps['/clutch/torque'].append(stamp_of_step(6))
+    with pytest.raises(DdctError, match='/clutch/torque goes on after the last tick at step 5 '):
+        check_ticks(stamps, lockstep=True)
+
+
+def test_a_stamp_off_the_grid_is_an_error():
+    stamps = stamps_of(5)
+    stamps['/clutch/torque'][2] += 1
+    with pytest.raises(DdctError, match='/clutch/torque: stamp 1020000001 ns'):
+        check_ticks(stamps, lockstep=True)
+
+
+def test_a_topic_without_any_message_is_an_error():
+    stamps = stamps_of(5)
+    del stamps['/clutch/torque']
+    with pytest.raises(DdctError, match='no message on /clutch/torque'):
+        check_ticks(stamps, lockstep=True)
+
+
+def test_complete_ticks_end_at_the_first_hole():
+    stamps = stamps_of(5)
+    stamps['/recorder/ack'].remove(stamp_of_step(3))
+    assert complete_ticks(stamps, tick_topics(stamps, lockstep=True)) == 3
+    assert complete_ticks(stamps, tick_topics(stamps, lockstep=False)) == 6
+
+
+def test_engine_torque_request_is_needed_once_it_was_recorded():
+    assert '/engine/torque_request' not in tick_topics([], lockstep=True)
+    assert '/engine/torque_request' in tick_topics(['/engine/torque_request'], lockstep=True)
+
+
+def test_a_lock_step_recording_holds_no_wall_clock_topic():
+    names = {topic.name for topic in recorded_topics(lockstep=True, two_input=True)}
+    assert names.isdisjoint({'controller/timing', '/diagnostics'})
+    assert {topic.name for topic in recorded_topics(lockstep=False, two_input=True)} == {
+        topic.name for topic in TOPICS
+    }
+
+
+def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
+    names = [topic.name for topic in recorded_topics(lockstep=True) if topic.every_tick]
+    assert names == [
+        '/clock',
+        'driveline/joint_states',
+        'clutch/slip',
+        'vehicle/twist',
+        'vehicle/accel',
+        'engine/torque_demand',
+        'engine/torque',
+        'load/torque',
+        'clutch/slip_reference',
+        'controller/status',
+        'clutch/torque_request',
+        'actuator/torque',
+        'clutch/torque',
+        'recorder/ack',
+    ]
+    assert set(PLANT_TOPICS) < set(names)
+    assert resolved_name('clutch/slip') == '/clutch/slip'
+    assert resolved_name('/clock') == '/clock'
