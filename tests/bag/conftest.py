@@ -1,0 +1,110 @@
+"""Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ddct_bringup.bag_reader import mcap_of
+from ddct_bringup.bag_records import read_records
+from ddct_bringup.bag_writer import BagWriter
+from ddct_bringup.run_facts import RunFacts
+from ddct_bringup.topics import TOPICS
+from ddct_bringup.trajectory import Trajectory
+
+RUN_INFO = {'load': [('version', '1.0')], 'engine': [('version', '1.0'), ('seed', '0')]}
+
+
+def facts(steps, **changes):
+    """Return the facts of a run of `steps` steps that is scored over its last half."""
+    duration = steps / 100.0
+    window = (round(duration / 2.0, 2), duration)
+    values = {
+        'controller': 'pi',
+        'architecture': 'detailed',
+        'scenario': 'made-up',
+        'clutch': 'linear',
+        'wear_gain': 1.0,
+        'mode': 'lockstep',
+        'seed': 0,
+        'control_start_s': 0.1,
+        'score_window_s': window,
+        'duration_s': duration,
+    }
+    return RunFacts(**{**values, **changes})
+
+
+def random_trajectory(steps, preview_steps=2):
+    """Return a run of random numbers."""
+    random = np.random.default_rng(steps)
+    widths = {
+        'joint_position': (4,),
+        'joint_speed': (4,),
+        'joint_effort': (4,),
+        'slip_reference': (preview_steps + 1,),
+        'slip_reference_rate': (preview_steps + 1,),
+        'actuator_torque': (11,),
+        'clutch_torque': (11,),
+    }
+    arrays = {
+        field.name: random.normal(0.0, 100.0, (steps + 1, *widths.get(field.name, ())))
+        for field in dataclasses.fields(Trajectory)
+        if field.name != 'status'
+    }
+    status = tuple(
+        (('part_n_m', repr(float(value))), ('saturated', 'true' if value < 0.0 else 'false'))
+        for value in random.normal(0.0, 100.0, steps + 1)
+    )
+    return Trajectory(status=status, **arrays)
+
+
+class Bags:
+    """Makes bags below one folder."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+
+    def write(self, trajectory, name='pi', folder=None, engine_torque_request=None, **changes):
+        """Write a run as the recorder would, and return the bag's folder."""
+        pytest.importorskip('rclpy', reason='rclpy serialises the messages')
+        from ddct_bringup.trajectory_bag import write_trajectory
+
+        bag = self.folder / (folder or name)
+        custom_data = facts(trajectory.steps, controller=name, **changes).to_custom_data()
+        write_trajectory(
+            trajectory,
+            bag,
+            name,
+            custom_data,
+            RUN_INFO,
+            engine_torque_request=engine_torque_request,
+        )
+        return bag
+
+    def rewrite(self, source, name, edit=lambda messages: messages, **changes):
+        """Write the messages of a bag again, edited, as a list of (topic, stamp, bytes)."""
+        records = read_records(mcap_of(source))
+        bag = self.folder / name
+        known = {topic.resolved_name: topic for topic in TOPICS}
+        topics = [known[channel.topic] for channel in records.channels.values()]
+        with BagWriter(bag, name, topics, {**records.custom_data, **changes}) as writer:
+            for message in edit(records.messages):
+                writer.write(*message)
+        return bag
+
+
+@pytest.fixture
+def bags(tmp_path):
+    return Bags(tmp_path)
+
+
+@pytest.fixture
+def trajectory():
+    """Return a run of 0.6 s: more than two chunks of messages."""
+    return random_trajectory(60)
+
+
+@pytest.fixture
+def make_trajectory():
+    return random_trajectory

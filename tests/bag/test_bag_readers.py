@@ -1,0 +1,143 @@
+"""Readers that are not ours take our bags: rosbags and the MCAP library with its ROS 2 decoder."""
+
+import numpy as np
+import pytest
+import yaml
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+from ddct_bringup.bag_reader import mcap_of, read_bag
+from ddct_bringup.topics import recorded_topics
+
+rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
+rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')
+
+# What rosbag2's decoder of version 9 asks for, in its order.
+INFORMATION_KEYS = [
+    'version',
+    'storage_identifier',
+    'duration',
+    'starting_time',
+    'message_count',
+    'topics_with_message_count',
+    'compression_format',
+    'compression_mode',
+    'relative_file_paths',
+    'files',
+    'custom_data',
+    'ros_distro',
+]
+QOS_KEYS = [
+    'history',
+    'depth',
+    'reliability',
+    'durability',
+    'deadline',
+    'lifespan',
+    'liveliness',
+    'liveliness_lease_duration',
+    'avoid_ros_namespace_conventions',
+]
+
+
+@pytest.fixture
+def bag(bags, trajectory):
+    return bags.write(trajectory)
+
+
+def test_rosbags_reads_every_message(bag, trajectory):
+    store = rosbags_typesys.get_typestore(rosbags_typesys.Stores.ROS2_JAZZY)
+    slips, points, statuses = [], [], []
+    with rosbags_rosbag2.Reader(bag) as reader:
+        assert reader.message_count == 2 + 14 * (trajectory.steps + 1)
+        for connection, _, data in reader.messages():
+            message = store.deserialize_cdr(data, connection.msgtype)
+            if connection.topic == '/clutch/slip':
+                slips.append(message.twist.angular.x)
+            elif connection.topic == '/clutch/torque':
+                points.append([point.effort[0] for point in message.points])
+            elif connection.topic == '/controller/status':
+                pairs = message.status[0].values
+                statuses.append(tuple((pair.key, pair.value) for pair in pairs))
+    assert np.array_equal(slips, trajectory.slip_speed)
+    assert np.array_equal(points, trajectory.clutch_torque)
+    assert tuple(statuses) == trajectory.status
+
+
+def test_rosbags_computes_the_same_type_hashes_from_our_schemas(bag):
+    with rosbags_rosbag2.Reader(bag) as reader:
+        for connection in reader.connections:
+            store = rosbags_typesys.get_typestore(rosbags_typesys.Stores.EMPTY)
+            definition = connection.msgdef.data
+            store.register(rosbags_typesys.get_types_from_msg(definition, connection.msgtype))
+            assert store.hash_rihs01(connection.msgtype) == connection.digest
+
+
+def test_latched_topics_are_marked_transient_local(bag):
+    with rosbags_rosbag2.Reader(bag) as reader:
+        for connection in reader.connections:
+            (qos,) = connection.ext.offered_qos_profiles
+            latched = connection.topic == '/run_info'
+            assert qos.durability.name == ('TRANSIENT_LOCAL' if latched else 'VOLATILE')
+            assert qos.depth == (1 if latched else 10)
+            assert qos.reliability.name == 'RELIABLE'
+
+
+def test_the_index_leads_to_every_message_with_simulated_time(bag, trajectory):
+    with mcap_of(bag).open('rb') as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        summary = reader.get_summary()
+        assert reader.get_header().profile == 'ros2'
+        assert len(summary.chunk_indexes) >= 2
+        assert summary.statistics.message_count == 2 + 14 * (trajectory.steps + 1)
+        assert {schema.encoding for schema in summary.schemas.values()} == {'ros2msg'}
+        decoded = list(reader.iter_decoded_messages())
+    assert len(decoded) == summary.statistics.message_count
+    assert decoded[0].message.log_time == 1_000_000_000
+    assert all(entry.message.log_time == entry.message.publish_time for entry in decoded)
+
+
+def test_chunks_are_compressed_and_far_below_1_mib(bag):
+    with mcap_of(bag).open('rb') as stream:
+        chunks = make_reader(stream).get_summary().chunk_indexes
+    assert {chunk.compression for chunk in chunks} == {'zstd'}
+    assert max(chunk.uncompressed_size for chunk in chunks) < 128 * 1024
+
+
+def test_metadata_has_what_rosbag2_asks_for(bag, trajectory):
+    information = yaml.safe_load((bag / 'metadata.yaml').read_text())[
+        'rosbag2_bagfile_information'
+    ]
+    assert list(information) == INFORMATION_KEYS
+    assert information['version'] == 9
+    assert information['relative_file_paths'] == [mcap_of(bag).name]
+    assert information['starting_time'] == {'nanoseconds_since_epoch': 1_000_000_000}
+    assert information['duration'] == {'nanoseconds': trajectory.steps * 10_000_000}
+    topics = information['topics_with_message_count']
+    assert [topic['topic_metadata']['name'] for topic in topics] == [
+        topic.resolved_name for topic in recorded_topics(lockstep=True)
+    ]
+    assert sum(topic['message_count'] for topic in topics) == information['message_count']
+    for topic in topics:
+        metadata = topic['topic_metadata']
+        assert metadata['serialization_format'] == 'cdr'
+        assert metadata['type_description_hash'].startswith('RIHS01_')
+        assert [list(qos) for qos in metadata['offered_qos_profiles']] == [QOS_KEYS]
+    assert all(isinstance(value, str) for value in information['custom_data'].values())
+
+
+def test_the_file_alone_holds_the_same_metadata_at_its_end(bag):
+    with mcap_of(bag).open('rb') as stream:
+        records = [record.metadata for record in make_reader(stream).iter_metadata()]
+    texts = [yaml.safe_load(record['serialized_metadata']) for record in records]
+    beside = yaml.safe_load((bag / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    assert len(texts) == 2
+    assert texts[0]['custom_data'] == beside['custom_data']
+    assert texts[0]['message_count'] == 0
+    assert texts[1] == beside
+
+
+def test_the_file_alone_is_enough_for_our_reader(bag, trajectory):
+    file = mcap_of(bag)
+    (bag / 'metadata.yaml').unlink()
+    assert read_bag(file).trajectory.sha256() == trajectory.sha256()

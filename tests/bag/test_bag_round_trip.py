@@ -1,0 +1,140 @@
+"""What goes into a bag comes out of it, to the last bit and byte."""
+
+import ctypes
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from ddct_bringup.bag_reader import mcap_of, read_bag
+from ddct_bringup.bag_records import read_records
+from ddct_bringup.bag_writer import BagWriter
+from ddct_bringup.topics import TopicSpec, recorded_topics
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import START_NS, stamp_of_step
+
+
+def test_trajectory_comes_back_to_the_last_bit(bags, trajectory):
+    recording = read_bag(bags.write(trajectory))
+    assert recording.trajectory.sha256() == trajectory.sha256()
+    assert recording.engine_torque_request is None
+    assert recording.missed == {}
+
+
+def test_run_info_facts_and_counts_come_back(bags, trajectory):
+    recording = read_bag(bags.write(trajectory, wear_gain=0.7))
+    assert recording.run_info == {
+        'engine': {'version': '1.0', 'seed': '0'},
+        'load': {'version': '1.0'},
+    }
+    assert recording.facts.wear_gain == 0.7
+    assert recording.counts.pop('/run_info') == 2
+    assert set(recording.counts.values()) == {trajectory.steps + 1}
+
+
+def test_two_input_runs_carry_the_engine_torque_request(bags, trajectory):
+    request = np.random.default_rng(3).normal(size=trajectory.steps + 1)
+    recording = read_bag(bags.write(trajectory, engine_torque_request=request))
+    assert np.array_equal(recording.engine_torque_request, request)
+    assert recording.trajectory.sha256() == trajectory.sha256()
+
+
+def test_non_finite_values_come_back(bags, trajectory):
+    spoiled = trajectory.torque_request.copy()
+    spoiled[5:8] = math.nan, math.inf, -math.inf
+    recording = read_bag(bags.write(dataclasses.replace(trajectory, torque_request=spoiled)))
+    assert np.array_equal(recording.trajectory.torque_request, spoiled, equal_nan=True)
+
+
+def test_every_tick_is_written_in_the_order_of_the_topic_table(bags, trajectory):
+    messages = read_records(mcap_of(bags.write(trajectory))).messages
+    assert [(topic, stamp) for topic, stamp, _ in messages[:2]] == [('/run_info', START_NS)] * 2
+    order = [topic.resolved_name for topic in recorded_topics(lockstep=True) if topic.every_tick]
+    expected = [(topic, stamp_of_step(k)) for k in range(trajectory.steps + 1) for topic in order]
+    assert [(topic, stamp) for topic, stamp, _ in messages[2:]] == expected
+
+
+def spoil_free_memory(byte):
+    """Fill freed blocks of the sizes that messages have, so that unset bytes show."""
+    libc = ctypes.CDLL(None)
+    libc.malloc.restype = ctypes.c_void_p
+    libc.malloc.argtypes = [ctypes.c_size_t]
+    libc.free.argtypes = [ctypes.c_void_p]
+    blocks = []
+    for size in range(8, 2048, 8):
+        for _ in range(8):
+            blocks.append(libc.malloc(size))
+            ctypes.memset(blocks[-1], byte, size)
+    for block in blocks:
+        libc.free(block)
+
+
+def test_equal_runs_give_equal_bytes_whatever_was_in_memory(bags, trajectory):
+    written = []
+    for byte in (0x00, 0x55, 0xFF):
+        spoil_free_memory(byte)
+        bag = bags.write(trajectory, folder=f'memory-{byte}')
+        written.append([file.read_bytes() for file in sorted(bag.iterdir())])
+    assert len(written[0]) == 2
+    assert written[0] == written[1] == written[2]
+
+
+def test_a_different_last_bit_gives_different_bytes(bags, trajectory):
+    changed = trajectory.slip_speed.copy()
+    changed[30] = np.nextafter(changed[30], math.inf)
+    first = bags.write(trajectory, folder='first')
+    second = bags.write(dataclasses.replace(trajectory, slip_speed=changed), folder='second')
+    assert mcap_of(first).read_bytes() != mcap_of(second).read_bytes()
+
+
+def test_rewriting_a_bag_gives_the_same_bytes(bags, trajectory):
+    first = bags.write(trajectory, folder='first')
+    second = bags.rewrite(first, 'pi')
+    assert mcap_of(first).read_bytes() == mcap_of(second).read_bytes()
+
+
+def test_a_bag_holds_no_path(bags, trajectory):
+    bag = bags.write(trajectory)
+    for file in bag.iterdir():
+        assert str(bags.folder).encode() not in file.read_bytes()
+
+
+def test_an_existing_bag_is_never_overwritten(bags, trajectory):
+    bag = bags.write(trajectory)
+    before = mcap_of(bag).read_bytes()
+    with pytest.raises(DdctError, match='pi_0.mcap: already there'):
+        bags.write(trajectory)
+    assert mcap_of(bag).read_bytes() == before
+
+
+def test_a_topic_the_bag_was_opened_without_is_refused(tmp_path):
+    bag = BagWriter(tmp_path, 'x', recorded_topics(lockstep=True), {})
+    with pytest.raises(DdctError, match='without a topic controller/timing'):
+        bag.write('controller/timing', START_NS, b'')
+
+
+def test_bytes_that_are_no_message_of_the_topic_are_refused(tmp_path):
+    bag = BagWriter(tmp_path, 'x', recorded_topics(lockstep=True), {})
+    with pytest.raises(DdctError, match=r'clutch/slip at stamp 1000000000 ns: .*cut short'):
+        bag.write('clutch/slip', START_NS, b'\x00\x01\x00\x00' + bytes(8))
+
+
+def test_an_unknown_message_type_is_an_error_that_says_what_to_install(tmp_path):
+    topic = TopicSpec('x', 'no_such_msgs/msg/Thing')
+    with pytest.raises(DdctError, match='no message definitions of no_such_msgs .* install'):
+        BagWriter(tmp_path, 'x', [topic], {})
+
+
+def test_an_exception_leaves_the_bag_unfinished(tmp_path):
+    with pytest.raises(KeyError), BagWriter(tmp_path, 'x', recorded_topics(lockstep=True), {}):
+        raise KeyError
+    assert not (tmp_path / 'metadata.yaml').exists()
+    with pytest.raises(DdctError, match='unfinished'):
+        read_bag(tmp_path)
+
+
+def test_a_folder_that_cannot_be_made_is_an_error(tmp_path):
+    (tmp_path / 'file').write_text('in the way')
+    with pytest.raises(DdctError, match='x_0.mcap: cannot write the recording'):
+        BagWriter(tmp_path / 'file' / 'x', 'x', recorded_topics(lockstep=True), {})

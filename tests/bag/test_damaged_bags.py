@@ -1,0 +1,167 @@
+"""Missing, cut, damaged and foreign bags are told apart, and never taken for whole ones."""
+
+import random
+
+import pytest
+import yaml
+from mcap.writer import Writer
+
+from ddct_bringup.bag_reader import mcap_of, read_bag
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import stamp_of_step
+
+
+def test_a_missing_bag_is_an_error(tmp_path):
+    with pytest.raises(DdctError, match='no such file or folder'):
+        read_bag(tmp_path / 'nothing')
+
+
+def test_a_folder_without_a_bag_is_an_error(tmp_path):
+    with pytest.raises(DdctError, match='no .mcap file in this folder'):
+        read_bag(tmp_path)
+
+
+@pytest.mark.parametrize(('content', 'message'), [(b'', 'is empty'), (b'hello', 'not an MCAP')])
+def test_a_file_that_is_no_mcap_is_an_error(tmp_path, content, message):
+    file = tmp_path / 'x.mcap'
+    file.write_bytes(content)
+    with pytest.raises(DdctError, match=f'x.mcap: .*{message}'):
+        read_bag(file)
+
+
+def test_a_cut_bag_is_called_unfinished_and_repair_is_suggested(bags, trajectory):
+    file = mcap_of(bags.write(trajectory))
+    whole = file.read_bytes()
+    for length in range(8, len(whole), 997):
+        file.write_bytes(whole[:length])
+        with pytest.raises(DdctError, match=r'pi_0.mcap: .*unfinished.*score --repair'):
+            read_bag(file)
+
+
+def test_no_flipped_bit_goes_unnoticed(bags, trajectory):
+    file = mcap_of(bags.write(trajectory))
+    whole = file.read_bytes()
+    rng = random.Random(5)
+    places = [*range(0, len(whole), 701), *range(len(whole) - 80, len(whole))]
+    for place in places:
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << rng.randrange(8)
+        file.write_bytes(damaged)
+        with pytest.raises(DdctError, match='damaged|unfinished|not an MCAP'):
+            read_bag(file)
+
+
+def test_a_foreign_bag_is_called_so(tmp_path):
+    file = tmp_path / 'foreign.mcap'
+    with file.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start(profile='ros2')
+        schema = writer.register_schema('std_msgs/msg/Header', 'ros2msg', b'string frame_id')
+        writer.register_channel('/chatter', 'cdr', schema)
+        writer.finish()
+    with pytest.raises(DdctError, match='foreign.mcap: no topic /driveline/joint_states'):
+        read_bag(file)
+
+
+@pytest.mark.parametrize(
+    ('type_name', 'encoding', 'text', 'message'),
+    [
+        ('std_msgs/msg/Header', 'ros2msg', b'string frame_id', 'does not carry CDR messages'),
+        ('sensor_msgs/msg/JointState', 'jsonschema', b'{}', 'does not carry CDR messages'),
+        ('sensor_msgs/msg/JointState', 'ros2msg', b'what is this?', 'unusable message definition'),
+        ('sensor_msgs/msg/JointState', 'ros2msg', b'string[] name', 'cannot be decoded'),
+    ],
+)
+def test_a_foreign_type_on_our_topic_is_an_error(
+    bags, trajectory, tmp_path, type_name, encoding, text, message
+):
+    file = tmp_path / 'foreign.mcap'
+    custom_data = read_bag(bags.write(trajectory)).custom_data
+    with file.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start(profile='ros2')
+        record = {'serialized_metadata': yaml.safe_dump({'custom_data': custom_data})}
+        writer.add_metadata('rosbag2', record)
+        schema = writer.register_schema(type_name, encoding, text)
+        channel = writer.register_channel('/driveline/joint_states', 'cdr', schema)
+        writer.add_message(channel, 1_000_000_000, b'\x00\x01\x00\x00' + bytes(8), 0)
+        writer.finish()
+    with pytest.raises(DdctError, match=f'foreign.mcap: /driveline/joint_states.* {message}'):
+        read_bag(file)
+
+
+def test_a_bag_without_the_facts_of_the_run_is_called_foreign(bags, trajectory):
+    bag = bags.rewrite(bags.write(trajectory), 'bare', score_window_s='')
+    with pytest.raises(DdctError, match='score_window_s is .* not a recording of this project'):
+        read_bag(bag)
+
+
+def without(topic, step):
+    return lambda messages: [
+        message for message in messages if message[:2] != (topic, stamp_of_step(step))
+    ]
+
+
+def test_a_missing_message_is_named(bags, trajectory):
+    bag = bags.rewrite(bags.write(trajectory), 'gap', without('/load/torque', 17))
+    with pytest.raises(DdctError, match='gap_0.mcap: /load/torque has no message at step 17 '):
+        read_bag(bag)
+
+
+def test_a_missing_acknowledgement_is_named(bags, trajectory):
+    bag = bags.rewrite(bags.write(trajectory), 'gap', without('/recorder/ack', 60))
+    with pytest.raises(DdctError, match='/recorder/ack has no message at step 60 '):
+        read_bag(bag)
+
+
+def test_a_doubled_message_is_named(bags, trajectory):
+    bag = bags.rewrite(
+        bags.write(trajectory), 'double', lambda messages: [*messages, messages[-1]]
+    )
+    with pytest.raises(DdctError, match='/recorder/ack has 2 messages at step 60 '):
+        read_bag(bag)
+
+
+def test_a_message_under_another_stamp_is_an_error(bags, trajectory):
+    def swap(messages):
+        topic, _, data = messages[-1]
+        return [*messages[:-1], (topic, stamp_of_step(61), data)]
+
+    bag = bags.rewrite(bags.write(trajectory), 'shifted', swap)
+    with pytest.raises(DdctError, match='/recorder/ack at 1610000000 ns carries the stamp 16000'):
+        read_bag(bag)
+
+
+def test_real_time_bags_hold_the_last_reply(bags, trajectory):
+    def thin_out(messages):
+        for step in (0, 20, 21, 60):
+            messages = without('/clutch/torque_request', step)(messages)
+        return messages
+
+    bag = bags.rewrite(bags.write(trajectory), 'rt', thin_out, mode='realtime')
+    recording = read_bag(bag)
+    expected = trajectory.torque_request.copy()
+    expected[0] = expected[1]
+    expected[20:22] = expected[19]
+    expected[60] = expected[59]
+    assert recording.trajectory.torque_request.tolist() == expected.tolist()
+    assert recording.missed == {'clutch/torque_request': 4}
+
+
+def test_real_time_bags_must_have_every_state(bags, trajectory):
+    bag = bags.rewrite(
+        bags.write(trajectory), 'rt', without('/driveline/joint_states', 9), mode='realtime'
+    )
+    with pytest.raises(DdctError, match='/driveline/joint_states has no message at step 9 '):
+        read_bag(bag)
+
+
+def test_a_reply_that_never_came_is_an_error_in_real_time_too(bags, trajectory):
+    bag = bags.rewrite(
+        bags.write(trajectory),
+        'rt',
+        lambda messages: [message for message in messages if message[0] != '/clutch/torque'],
+        mode='realtime',
+    )
+    with pytest.raises(DdctError, match='no message on /clutch/torque'):
+        read_bag(bag)

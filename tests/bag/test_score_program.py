@@ -1,0 +1,186 @@
+"""The program `score`: what it prints, writes and returns."""
+
+import csv
+import dataclasses
+import io
+import json
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+
+from ddct_bringup.bag_reader import mcap_of
+from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.score import main
+
+ENTRY_KEYS = [
+    'bag',
+    'controller',
+    'architecture',
+    'scenario',
+    'clutch',
+    'wear_gain',
+    'mode',
+    'seed',
+    'valid',
+    'reason',
+    'metrics',
+]
+
+
+def runs_in(text):
+    def refuse(constant):
+        raise AssertionError(f'{constant} is no JSON')
+
+    return json.loads(text, parse_constant=refuse)['runs']
+
+
+def test_a_valid_bag_gives_0_and_a_table(bags, trajectory, capsys):
+    assert main([str(bags.write(trajectory))]) == 0
+    output = capsys.readouterr().out
+    assert 't_a' in output
+    assert 'pi' in output
+    assert '\x1b' not in output
+
+
+def test_json_has_every_key_in_order(bags, trajectory, capsys):
+    bag = bags.write(trajectory, wear_gain=0.7, seed=3)
+    assert main([str(bag), '--json', '-']) == 0
+    captured = capsys.readouterr()
+    (run,) = runs_in(captured.out)
+    assert list(run) == ENTRY_KEYS
+    assert (run['wear_gain'], run['seed'], run['valid'], run['reason']) == (0.7, 3, True, '')
+    assert run['bag'] == str(bag)
+    assert run['metrics']['steps'] == trajectory.steps
+    assert run['metrics']['resends'] is None
+    assert 't_a' in captured.err
+
+
+def test_a_folder_is_searched_and_bags_are_named_from_it(bags, trajectory, tmp_path):
+    bags.write(trajectory, 'pi', folder='demo/pi')
+    bags.write(trajectory, 'ls8', folder='demo/more/ls8')
+    scores = tmp_path / 'scores.json'
+    assert main([str(tmp_path / 'demo'), '--json', str(scores)]) == 0
+    assert [run['bag'] for run in runs_in(scores.read_text())] == ['more/ls8', 'pi']
+
+
+def test_timing_beside_the_bag_is_scored(bags, trajectory, capsys):
+    bag = bags.write(trajectory)
+    RunTiming([10.0, 20.0, 30.0], missed_steps=1, resends=2).write(bag)
+    assert main([str(bag), '--json', '-']) == 0
+    metrics = runs_in(capsys.readouterr().out)[0]['metrics']
+    assert metrics['update_time_median_us'] == 20.0
+    assert (metrics['missed_steps'], metrics['resends']) == (1, 2)
+
+
+def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
+    bag = bags.write(trajectory, duration_s=2.0, score_window_s=(0.1, 2.0))
+    assert main([str(bag), '--json', '-']) == 1
+    captured = capsys.readouterr()
+    (run,) = runs_in(captured.out)
+    assert not run['valid']
+    assert run['reason'] == 'ended early: 60 of 200 steps'
+    assert run['metrics']['torsion_speed_std_rpm'] is None
+    assert 'ended early: 60 of 200 steps' in captured.err
+
+
+def test_a_non_finite_value_is_not_valid_and_named(bags, trajectory, capsys):
+    spoiled = trajectory.joint_speed.copy()
+    spoiled[30, 3] = math.nan
+    bag = bags.write(dataclasses.replace(trajectory, joint_speed=spoiled))
+    assert main([str(bag), '--json', '-']) == 1
+    (run,) = runs_in(capsys.readouterr().out)
+    assert run['reason'] == 'non-finite value in joint_speed at 0.3 s'
+    assert run['metrics']['torsion_speed_std_rpm'] is None
+    assert run['metrics']['acceleration_std_m_s2'] > 0.0
+
+
+def test_a_cut_bag_is_reported_and_the_others_are_scored(bags, trajectory, capsys):
+    bags.write(trajectory, 'ls8', folder='demo/ls8')
+    cut = mcap_of(bags.write(trajectory, 'pi', folder='demo/pi'))
+    cut.write_bytes(cut.read_bytes()[:-10])
+    assert main([str(bags.folder / 'demo'), '--json', '-']) == 1
+    captured = capsys.readouterr()
+    whole, broken = runs_in(captured.out)
+    assert whole['valid']
+    assert (broken['controller'], broken['valid']) == ('pi', False)
+    assert 'unfinished' in broken['reason']
+    assert set(broken['metrics']) == set(whole['metrics'])
+    assert set(broken['metrics'].values()) == {None}
+    assert captured.err.startswith(f'score: {cut}: the recording is unfinished')
+
+
+def test_repair_rescues_before_scoring(bags, trajectory, capsys):
+    bag = bags.write(trajectory)
+    file = mcap_of(bag)
+    file.write_bytes(file.read_bytes()[:-10])
+    assert main([str(bag), '--repair', '--json', '-']) == 0
+    captured = capsys.readouterr()
+    assert runs_in(captured.out)[0]['metrics']['steps'] == trajectory.steps
+    assert 'rescued steps 0 to 60 (0.6 s)' in captured.err
+
+
+def test_signals_come_as_csv_to_the_last_bit(bags, trajectory, tmp_path):
+    bags.write(trajectory, folder='demo/pi')
+    assert main([str(tmp_path / 'demo'), '--signals-csv', str(tmp_path / 'csv')]) == 0
+    rows = list(csv.DictReader((tmp_path / 'csv' / 'pi.csv').open()))
+    assert len(rows) == trajectory.steps + 1
+    assert [float(row['slip_speed_rad_s']) for row in rows] == trajectory.slip_speed.tolist()
+    assert float(rows[7]['time_s']) == 0.07
+    assert float(rows[7]['driveshaft_speed_rad_s']) == trajectory.joint_speed[7, 3]
+
+
+def test_csv_has_one_row_per_bag(bags, trajectory, capsys):
+    assert main([str(bags.write(trajectory)), '--csv', '-']) == 0
+    (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    assert row['controller'] == 'pi'
+    assert row['steps'] == '60'
+    assert row['resends'] == ''
+
+
+@pytest.mark.parametrize('arguments', [['nothing-here'], ['--json', '-', '--csv', '-', '.']])
+def test_a_mistake_gives_1_and_one_line(arguments, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.startswith('score: ')
+    assert captured.err.count('\n') == 1
+
+
+def test_a_folder_without_bags_is_a_mistake(tmp_path, capsys):
+    assert main([str(tmp_path)]) == 1
+    assert 'no .mcap file' in capsys.readouterr().err
+
+
+def test_an_unwritable_output_is_a_mistake(bags, trajectory, tmp_path, capsys):
+    bag = bags.write(trajectory)
+    assert main([str(bag), '--csv', str(tmp_path / 'missing' / 'scores.csv')]) == 1
+    assert 'cannot be written (No such file or directory)' in capsys.readouterr().err
+
+
+def test_help_has_examples(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(['--help'])
+    assert end.value.code == 0
+    assert 'score --repair' in capsys.readouterr().out
+
+
+def test_scoring_needs_no_ros(bags, trajectory):
+    bag = bags.write(trajectory)
+    program = (
+        'import sys; from ddct_bringup.score import main; '
+        f'code = main([{str(bag)!r}]); '
+        "sys.exit(code or ('rclpy' in sys.modules) or ('sensor_msgs' in sys.modules))"
+    )
+    environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(filter(None, sys.path))}
+    result = subprocess.run(
+        [sys.executable, '-c', program],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+    )
+    assert result.returncode == 0, result.stderr
