@@ -17,6 +17,9 @@ _HEADER = b'\x00\x01'
 """First bytes of plain little-endian CDR; two option bytes follow, then the body."""
 _BODY = 4
 
+_LAYOUTS_KEPT = 32
+"""Layouts remembered per message size; numbers written as text have a few lengths each."""
+
 _NESTED = 1
 _STRING = 17
 _SIZES = {2: 1, 3: 1, 4: 2, 5: 2, 6: 4, 7: 4, 8: 8, 9: 8, 10: 4, 11: 8, 13: 1, 15: 1, 16: 1}
@@ -82,15 +85,20 @@ class CdrNormaliser:
         """Raise DdctError for a type with fields that this reader does not know."""
         self._type_name = definition.type_name
         self._walk = _struct(definition, definition.type_name)
-        self._layouts: dict[int, _Layout] = {}
+        self._layouts: dict[int, list[_Layout]] = {}
 
     def normalise(self, cdr: bytes) -> bytes:
         """Return the message with zeros between its values; raise DdctError if it is no such."""
         value = int.from_bytes(cdr, 'little')
-        layout = self._layouts.get(len(cdr))
+        known = self._layouts.setdefault(len(cdr), [])
         # Equal lengths at the same places mean the same layout, so a walk is seldom needed.
-        if layout is None or value & layout.lengths != layout.length_values:
-            layout = self._layouts[len(cdr)] = self._layout(cdr)
+        for layout in known:
+            if value & layout.lengths == layout.length_values:
+                break
+        else:
+            layout = self._layout(cdr)
+            known.insert(0, layout)
+            del known[_LAYOUTS_KEPT:]
         return (value & layout.keep).to_bytes(layout.size, 'little')
 
     def _layout(self, cdr: bytes) -> _Layout:

@@ -54,7 +54,8 @@ class McapFile:
         self._custom_data = dict(custom_data)
         self._counts = [0] * len(channels)
         self._schemas: dict[str, int] = {}
-        self._first_ns = self._last_ns = 0
+        self._first_ns: int | None = None
+        self._last_ns = 0
         self._sink = _Sink(path)
         self._writer = Writer(
             cast(Any, self._sink),
@@ -70,7 +71,7 @@ class McapFile:
         """Append a message to the channel with this index; raise DdctError when it fails."""
         if self._sink.closed:
             raise DdctError(f'{self._path}: the recording is already closed')
-        if not any(self._counts):
+        if self._first_ns is None:
             self._first_ns = self._last_ns = stamp_ns
         self._first_ns = min(self._first_ns, stamp_ns)
         self._last_ns = max(self._last_ns, stamp_ns)
@@ -107,7 +108,7 @@ class McapFile:
                 TopicCount(each.topic, each.type_name, each.type_hash, each.qos, count)
                 for each, count in zip(self._channels, self._counts, strict=True)
             ],
-            self._first_ns,
+            self._first_ns or 0,
             self._last_ns,
             self._custom_data,
         )

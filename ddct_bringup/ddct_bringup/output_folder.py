@@ -1,6 +1,7 @@
 """Output folders: never half a result, never somebody else's files overwritten."""
 
 import shutil
+import tempfile
 from pathlib import Path
 
 from ddct_plant.errors import DdctError
@@ -24,11 +25,12 @@ class StagedFolder:
         self.path = final.with_name(f'{final.name}.partial')
         self._overwrite = overwrite
         self._require_free(final, 'choose another --out or add --overwrite')
-        self._require_free(
-            self.path,
-            'it is what an interrupted run left: rescue it with `score --repair`, '
-            'then remove it or add --overwrite',
-        )
+        require_ours_or_empty(self.path)
+        if not overwrite and any(self.path.rglob('*.mcap')):
+            raise DdctError(
+                f'{self.path} holds what an interrupted run left: rescue it with '
+                '`score --repair`, then remove it or add --overwrite'
+            )
         try:
             if self.path.exists():
                 shutil.rmtree(self.path)
@@ -39,15 +41,19 @@ class StagedFolder:
 
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""
-        old = self.final.with_name(f'{self.final.name}.old')
+        self._require_free(self.final, 'it came while this run took place')
         try:
+            aside = Path(tempfile.mkdtemp(prefix=f'.{self.final.name}-', dir=self.final.parent))
+            replaced = aside / self.final.name
             if self.final.exists():
-                if old.exists():
-                    shutil.rmtree(old)
-                self.final.rename(old)
-            self.path.rename(self.final)
-            if old.exists():
-                shutil.rmtree(old)
+                self.final.rename(replaced)
+            try:
+                self.path.rename(self.final)
+            except OSError:
+                if replaced.exists():
+                    replaced.rename(self.final)
+                raise
+            shutil.rmtree(aside)
         except OSError as error:
             raise DdctError(f'{self.final}: cannot be replaced ({error.strerror})') from error
 
@@ -59,7 +65,9 @@ class StagedFolder:
 
 def require_ours_or_empty(folder: Path) -> None:
     """Raise DdctError when `folder` holds anything that these programs did not write."""
-    if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+    if folder.is_symlink():
+        raise DdctError(f'{folder} is a symbolic link: give the folder itself, or another --out')
+    if folder.exists() and not folder.is_dir():
         raise DdctError(f'{folder} is not a folder: choose another --out')
     if not is_empty(folder) and not (folder / MARKER).is_file():
         raise DdctError(

@@ -127,7 +127,8 @@ class RecorderNode(GraphNode):
 
     def _on_timing(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
-        self._timing.update_times_us += [float(value) for _, value in status_pairs_of(message)]
+        times = dict(status_pairs_of(message)).get('update_times_us', '')
+        self._timing.update_times_us += [float(value) for value in times.split()]
         self._record_unordered(TIMING, cdr)
 
     def _on_diagnostics(self, cdr: bytes) -> None:
@@ -161,16 +162,16 @@ class RecorderNode(GraphNode):
     def _write_tick(self, stamp: int, tick: Tick) -> None:
         assert self._bag is not None
         ack = serialize_message(ack_message(stamp))
+        # The tick is safe here now: the graph goes on while it is being written.
+        self._ack.publish(ack)
         for topic in self._tick_topics:
             cdr = ack if topic == ACK else tick.get(topic)
             if cdr is not None:
                 self._bag.write(topic, stamp, cdr)
-        self._ack.publish(ack)
 
     def _open_bag(self) -> bool:
         if self._expected_nodes - set(self._run_info):
             return False
-        self._first_tick_at = time.monotonic()
         name = self._run_info['controller'][1]['controller']
         steps = int(self._run_info['driveline'][1]['steps'])
         self._bag = BagWriter(
@@ -180,6 +181,7 @@ class RecorderNode(GraphNode):
             self._bag.write(RUN_INFO_TOPIC, START_NS, self._run_info[node][0])
         for topic, stamp, cdr in self._unordered:
             self._bag.write(topic, stamp, cdr)
+        self._first_tick_at = time.monotonic()
         return True
 
     def _same_message(self, topic: str, first: bytes, second: bytes) -> bool:

@@ -9,6 +9,8 @@ from ddct_plant.errors import DdctError
 
 _DOMAINS = range(1, 100)
 """Domain ids whose DDS ports stay below those that the kernel hands out."""
+_LAST_DOMAIN = 232
+"""Beyond it DDS has no ports, and its middleware ends the process."""
 _FIRST_PORT = 28400
 """A domain is taken while somebody listens on this port plus its id."""
 
@@ -22,7 +24,7 @@ def own_domain() -> Iterator[int]:
     """
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     given = os.environ.get('ROS_DOMAIN_ID')
-    if given is not None:
+    if given:
         yield _domain(given)
         return
     with _reserved() as domain:
@@ -49,7 +51,6 @@ def _reserved() -> Iterator[int]:
 
 
 def _domain(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError as error:
-        raise DdctError(f'ROS_DOMAIN_ID is {text!r}: give a whole number') from error
+    if not text.isdecimal() or int(text) > _LAST_DOMAIN:
+        raise DdctError(f'ROS_DOMAIN_ID is {text!r}: give a whole number from 0 to {_LAST_DOMAIN}')
+    return int(text)

@@ -38,7 +38,7 @@ def execute(plan: RunPlan, folder: Path, stopped: Callable[[], bool] = lambda: F
                 _execute_single_process(plan, folder, work, stopped)
         shutil.rmtree(work)
     except OSError as error:
-        raise DdctError(f'{error.filename or folder}: {error.strerror}') from error
+        raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
 
 
 def _execute_processes(

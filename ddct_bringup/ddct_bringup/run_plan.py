@@ -7,6 +7,7 @@ from typing import Any
 import yaml
 
 from ddct_controllers.registry import make_controller
+from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import scenario_to_yaml
 
@@ -25,8 +26,12 @@ class RunPlan:
     layout: str = 'processes'
 
     def __post_init__(self) -> None:
-        """Build the controller once; raise DdctError now rather than in the graph."""
+        """Refuse now what would fail in the graph; raise DdctError."""
         make_controller(self.controller, self.settings)
+        if self.layout == 'headless' and not self.settings.lockstep:
+            raise ParameterError(
+                'mode realtime needs the graph, which --headless does without: drop one of them'
+            )
 
     @property
     def steps(self) -> int:

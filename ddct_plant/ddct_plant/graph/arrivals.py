@@ -1,5 +1,6 @@
 """Read messages off the wire with checks, so that a bad value never enters the loop."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -23,12 +24,16 @@ def read_torque(topic: str, message: Any) -> float:
 
 def read_torque_points(topic: str, message: Any) -> list[float]:
     """Return the (11,) torques in N m over the coming period; raise DdctError unless finite."""
-    if len(message.points) != SUBSTEPS + 1 or not all(point.effort for point in message.points):
+    try:
+        torques = torque_points_of(message)
+    except IndexError:
+        torques = []
+    if len(torques) != SUBSTEPS + 1:
         raise DdctError(
             f'{topic} has {len(message.points)} points: it needs {SUBSTEPS + 1}, '
             '1 ms apart, each with an effort'
         )
-    return _finite(topic, torque_points_of(message))
+    return _finite(topic, torques)
 
 
 def read_slip(topic: str, message: Any) -> float:
@@ -73,4 +78,7 @@ def read_slip_reference(
 
 
 def _finite(topic: str, values: Sequence[float]) -> list[float]:
-    return [require_finite(topic, value) for value in values]
+    if not all(map(math.isfinite, values)):
+        for value in values:
+            require_finite(topic, value)
+    return list(values)

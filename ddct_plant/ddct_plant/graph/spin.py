@@ -1,5 +1,6 @@
 """Run one node, or several in one process, until done or asked to stop."""
 
+import gc
 import signal
 import sys
 from collections.abc import Callable
@@ -35,6 +36,9 @@ def spin_until(executor: Executor, done: Any, stopped: Callable[[], bool]) -> No
 
     Jazzy's EventsExecutor spins without end at full load when it is called without a timeout.
     """
+    # What start-up made stays: collecting it again and again would interrupt the loop.
+    gc.collect()
+    gc.freeze()
     while not done.done() and not stopped():
         executor.spin_until_future_complete(done, SLICE_S)
 

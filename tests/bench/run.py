@@ -1,0 +1,114 @@
+"""
+`make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
+
+Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
+times do not. Also measured: the headless loop and each controller's update.
+"""
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from bare_chain import WIRING
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.ros_domain import own_domain
+from ddct_bringup.run_execution import execute
+from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.run_timing import TIMING_FILE, RunTiming
+from ddct_controllers.registry import controller_names
+from ddct_plant.output_file import write_json
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+PERIOD_US = 10_000.0
+WORST_RATIO = 1.5
+"""What the graph's nodes may cost over a chain that does no work."""
+BARE = Path(__file__).with_name('bare_chain.py')
+
+
+def main() -> int:
+    """Measure, print, and return 0 when both ratios reach their goal."""
+    parser = argparse.ArgumentParser(description='Measure the graph against bare rclpy.')
+    parser.add_argument('--rounds', type=int, default=5)
+    parser.add_argument('--duration', type=float, default=20.0, help='simulated seconds per run')
+    parser.add_argument('--json', metavar='FILE')
+    options = parser.parse_args()
+    settings = RunSettings(load_scenario('thesis', [f'duration_s={options.duration}']))
+    results = {
+        layout: _measure(layout, settings, options.rounds)
+        for layout in ('processes', 'single-process')
+    }
+    headless = [_headless_us(settings, name) for name in controller_names()]
+    for name, (step_us, update_us) in zip(controller_names(), headless, strict=True):
+        print(
+            f'headless {name}: {step_us:.1f} us per step ({PERIOD_US / step_us:.0f}x real time), '
+            f'of which its update {update_us:.1f} us'
+        )
+    if options.json:
+        write_json(options.json, {**results, 'headless_us': headless})
+    return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1
+
+
+def _measure(layout: str, settings: RunSettings, rounds: int) -> dict[str, object]:
+    """Return the times per step of chain and graph in us, and the ratio of their medians."""
+    bare, graph = [], []
+    for _ in range(rounds):
+        bare.append(_bare_us(layout, settings.scenario.steps))
+        graph.append(_graph_us(layout, settings))
+    bare_us, graph_us = statistics.median(bare), statistics.median(graph)
+    ratios = sorted(ours / floor for ours, floor in zip(graph, bare, strict=True))
+    print(
+        f'{layout}: bare {bare_us:.0f} us, graph {graph_us:.0f} us per step '
+        f'({PERIOD_US / graph_us:.1f}x real time), ratio {graph_us / bare_us:.2f} '
+        f'(rounds {ratios[0]:.2f} to {ratios[-1]:.2f}; at most {WORST_RATIO} wanted)',
+        flush=True,
+    )
+    return {'bare_us': bare, 'graph_us': graph, 'ratio': graph_us / bare_us}
+
+
+def _graph_us(layout: str, settings: RunSettings) -> float:
+    with tempfile.TemporaryDirectory() as folder:
+        execute(RunPlan(settings, 'pi', layout), Path(folder))
+        timing = json.loads((Path(folder) / TIMING_FILE).read_text(encoding='utf-8'))
+    return 1e6 * timing['wall_time_s'] / timing['steps']
+
+
+def _bare_us(layout: str, steps: int) -> float:
+    names = ['all'] if layout == 'single-process' else list(WIRING)
+    with own_domain():
+        processes = [
+            subprocess.Popen(
+                [sys.executable, str(BARE), name, str(steps)], stdout=subprocess.PIPE, text=True
+            )
+            for name in names
+        ]
+        try:
+            output, _ = processes[-1].communicate(timeout=300)
+        finally:
+            for process in processes:
+                process.terminate()
+            for process in processes:
+                process.wait(timeout=20)
+    return float(output)
+
+
+def _headless_us(settings: RunSettings, controller: str) -> tuple[float, float]:
+    """Return the best of five times per step and the median update, both in us."""
+    steps, updates = [], []
+    for _ in range(5):
+        timing = RunTiming()
+        started = time.perf_counter()
+        run_headless(settings, controller, timing)
+        steps.append(1e6 * (time.perf_counter() - started) / timing.steps)
+        updates += timing.update_times_us
+    return min(steps), statistics.median(updates)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())
