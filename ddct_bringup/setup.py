@@ -31,5 +31,12 @@ setup(
             'recorder = ddct_bringup.recorder_node:main',
             'score = ddct_bringup.score:main',
         ],
+        'ddct.thesis_numbers': [
+            'closed_loop = ddct_bringup.thesis_values:closed_loop_values',
+        ],
+        'ddct.thesis_figures': [
+            'runs = ddct_bringup.thesis_run_figures:FIGURES',
+            'scenario = ddct_bringup.thesis_scenario_figures:FIGURES',
+        ],
     },
 )

@@ -40,7 +40,7 @@ def _bringup(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bag')
     plan = RunPlan(settings_of(options), options.controller, options.layout)
     mark_folder(options.out)
-    folder = StagedFolder(options.out / plan.controller, overwrite=options.overwrite)
+    folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
     run_with_progress(plan, folder.path)
     entry = score_bag(folder.path)
     if not entry['valid']:
@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument('--controller', default='pi', metavar='NAME')
+    parser.add_argument('--controller', default='pi', metavar='NAME|FILE')
     parser.add_argument('--out', type=Path, metavar='DIR')
     add_run_options(parser)
     return parser

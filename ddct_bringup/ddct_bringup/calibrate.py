@@ -17,6 +17,7 @@ from ddct_bringup.calibration_tables import CalibrationTable, all_tables, check_
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text
+from ddct_plant.page_tables import read_page
 from ddct_plant.scenario_file import load_scenario
 from ddct_plant.table import print_table
 
@@ -50,7 +51,7 @@ def _run(argv: list[str]) -> int:
         parser.error('--json - and --write - both want standard output: give one a file')
     for output in (options.json, options.write, options.write_doc):
         _require_writable(output)
-    page = _read_page(options.write_doc) if options.write_doc else ''
+    page = read_page(options.write_doc) if options.write_doc else ''
     quiet = STDOUT in (options.json, options.write)
     if options.quick:
         record = check_frozen(load_scenario('thesis'), _progress)
@@ -93,13 +94,6 @@ def _require_optimum(record: Record) -> None:
             f'scenario thesis is not the optimum: a refit moves {moved[0]} by '
             f'{100.0 * moved[1]:+.1f} % of its range; run calibrate without --quick'
         )
-
-
-def _read_page(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding='utf-8')
-    except (OSError, UnicodeDecodeError) as error:
-        raise DdctError(f'--write-doc {path}: cannot be read ({error})') from error
 
 
 def _require_writable(output: str | None) -> None:

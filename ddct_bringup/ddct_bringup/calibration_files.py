@@ -1,12 +1,9 @@
 """The two files that a calibration writes: the scenario, and the tables of docs/calibration.md."""
 
-import re
-from collections.abc import Sequence
-
 from ddct_bringup.calibration_parameters import BASE
 from ddct_bringup.calibration_record import NAMES, Record
-from ddct_bringup.calibration_tables import CalibrationTable, all_tables
-from ddct_plant.errors import DdctError
+from ddct_bringup.calibration_tables import all_tables
+from ddct_plant.page_tables import fill_tables
 
 _SCENARIO_HEAD = (
     '# The slip phase behind Table 5.1 of the thesis, which does not print it.',
@@ -14,7 +11,6 @@ _SCENARIO_HEAD = (
     '# fitted: to the LS8, Hinf1 and PI rows of Table 5.1; what they show is a fit residual.',
     '# assumed: chosen by us; docs/calibration.md shows fits with other choices.',
 )
-_BLOCK = re.compile(r'(<!-- calibrate: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
 
 
 def scenario_text(record: Record) -> str:
@@ -50,22 +46,6 @@ def fill_page(page: str, record: Record) -> str:
     """
     Return the page with its tables from the record; what stands around them is kept.
 
-    A table stands between the lines `<!-- calibrate: NAME -->` and `<!-- end -->`. Raise DdctError
-    unless the page has each table of `all_tables` once.
+    Raise DdctError unless the page has each table of `all_tables` once.
     """
-    tables = all_tables(record)
-    names = [match[2] for match in _BLOCK.finditer(page)]
-    if sorted(names) != sorted(tables):
-        raise DdctError(
-            f'--write-doc: the page must have these tables, each once: {", ".join(tables)}; '
-            f'it has: {", ".join(names) or "none"}'
-        )
-    return _BLOCK.sub(lambda match: f'{match[1]}{_markdown(tables[match[2]])}\n{match[3]}', page)
-
-
-def _markdown(table: CalibrationTable) -> str:
-    def line(cells: Sequence[str]) -> str:
-        return f'| {" | ".join(cells)} |'
-
-    separator = ['---'] * len(table.headers)
-    return '\n'.join(line(cells) for cells in (table.headers, separator, *table.rows))
+    return fill_tables(page, 'calibrate', all_tables(record))

@@ -3,7 +3,7 @@
 import time
 from typing import Any
 
-from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_plant.actuator import Actuator
 from ddct_plant.clutch import LinearClutch
@@ -12,7 +12,7 @@ from ddct_plant.engine import Engine
 from ddct_plant.initial import initial_state
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import RunSettings
-from ddct_reference.crf_ramp import CrfRamp
+from ddct_reference.factory import make_reference
 
 
 class ClosedLoop:
@@ -25,10 +25,8 @@ class ClosedLoop:
         self._driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
         self._engine = Engine(scenario.engine)
         self._load = RoadLoad(scenario.load, scenario.vehicle)
-        self._reference = CrfRamp(
-            scenario.reference.slope_rad_s2, scenario.control_start_step, controller.preview_steps
-        )
-        self._architecture = DetailedArchitecture(settings, controller)
+        self._reference = make_reference(settings, controller.preview_steps)
+        self._architecture = make_architecture(settings, controller)
         self._actuator = Actuator(initial.torque_request)
         self._clutch = LinearClutch(settings.wear_gain)
         self.update_time_us = 0.0

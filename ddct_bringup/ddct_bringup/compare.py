@@ -5,12 +5,13 @@ import sys
 from pathlib import Path
 
 from ddct_bringup.comparison_table import print_comparison
+from ddct_bringup.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
 from ddct_bringup.output_folder import StagedFolder, mark_folder
 from ddct_bringup.progress import run_with_progress
 from ddct_bringup.run_options import add_run_options, print_choices, settings_of
 from ddct_bringup.run_plan import RunPlan
 from ddct_bringup.scoring import Entry, score_bag, scores_document, unreadable_entry
-from ddct_controllers.registry import controller_names
+from ddct_controllers.registry import controller_label, controller_names
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.output_file import STDOUT, write_json
@@ -25,8 +26,9 @@ examples:
   compare --controllers all --wear-gain 0.7 --out runs/worn
   compare --controllers pi,mine --headless --json - --out runs/mine
 
-Writes one bag per controller and DIR/scores.json. Either every run is valid, or DIR is not
-touched, what was recorded stays in DIR.partial, and the exit code is 1.
+Writes one bag per controller, DIR/scores.json, and DIR/frequency.json with the margins of
+the linear ones. Either every run is valid, or DIR is not touched, what was recorded stays in
+DIR.partial, and the exit code is 1.
 """
 
 
@@ -54,22 +56,26 @@ def _compare(argv: list[str]) -> int:
     failed = [entry['controller'] for entry in entries if not entry['valid']]
     if failed:
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
+    write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
     folder.commit()
-    print(f'{PROGRAM}: bags and {SCORES_FILE} are in {folder.final}', file=sys.stderr)
+    print(
+        f'{PROGRAM}: bags, {SCORES_FILE} and {FREQUENCY_FILE} are in {folder.final}',
+        file=sys.stderr,
+    )
     return 0
 
 
 def _run(plan: RunPlan, out: Path, label: str) -> Entry:
     """Return the scores of one run, or the invalid entry that says why there are none."""
-    bag = out / plan.controller
+    bag = out / plan.name
     try:
         mark_folder(bag)
         run_with_progress(plan, bag, label)
         return score_bag(bag, relative_to=out)
     except DdctError as error:
-        print(f'{PROGRAM}: {plan.controller}: {error}', file=sys.stderr)
+        print(f'{PROGRAM}: {plan.name}: {error}', file=sys.stderr)
         entry = unreadable_entry(bag, error, relative_to=out)
-        return {**entry, 'controller': plan.controller}
+        return {**entry, 'controller': plan.name}
 
 
 def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:
@@ -85,9 +91,10 @@ def _controllers(text: str) -> list[str]:
     names = [name.strip() for name in text.split(',') if name.strip()]
     if not names:
         raise ParameterError('--controllers is empty: name at least one, or all')
-    for name in names:
-        if names.count(name) > 1:
-            raise ParameterError(f'--controllers names {name} twice: name each once')
+    labels = [controller_label(name) for name in names]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ParameterError(f'--controllers names {label} twice: name each once')
     return names
 
 

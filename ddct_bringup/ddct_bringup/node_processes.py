@@ -1,6 +1,8 @@
 """Start the graph's nodes as processes, watch them, and leave none behind."""
 
+import contextlib
 import ctypes
+import os
 import signal
 import subprocess
 import sys
@@ -12,28 +14,45 @@ from pathlib import Path
 from ddct_bringup.graph_nodes import NodeSpec
 from ddct_plant.errors import DdctError
 
-STOP_LADDER = ((signal.SIGINT, 3.0), (signal.SIGTERM, 2.0), (signal.SIGKILL, 2.0))
-"""Signals to stop a node with, and how long to wait after each, in s."""
+STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
+"""Signals to stop a node with, and how long to wait after each, in s; a busy machine is slow."""
 POLL_S = 0.01
 _SET_PARENT_DEATH_SIGNAL = 1
 
 
 @dataclass
 class NodeProcess:
-    """A running node and the file that holds what it prints."""
+    """A running node and what it prints."""
 
     name: str
     process: subprocess.Popen[bytes]
+    printed: int
+    """File descriptor, in memory: a full disk must not swallow the reason of a failure."""
     log: Path
+    """Where `keep_log` writes it."""
+    hung: bool = False
+    """Whether it had to be killed because it did not stop when asked."""
 
     def last_words(self) -> str:
         """Return the last line that the node printed, or '' if it printed nothing."""
-        lines = self.log.read_text(encoding='utf-8', errors='replace').strip().splitlines()
+        lines = self._all_words().decode(errors='replace').strip().splitlines()
         return lines[-1].strip() if lines else ''
+
+    def keep_log(self) -> None:
+        """Write what the node printed to its log, if there is room for it."""
+        with contextlib.suppress(OSError):
+            self.log.write_bytes(self._all_words())
+        os.close(self.printed)
+
+    def _all_words(self) -> bytes:
+        # Not by seek and read: the node writes at the file position that we share with it.
+        return os.pread(self.printed, os.fstat(self.printed).st_size, 0)
 
     def obituary(self) -> str:
         """Say in one line how the node ended."""
         code = self.process.returncode
+        if self.hung:
+            return f'node {self.name} did not stop when asked and was killed'
         if code < 0:
             return f'node {self.name} was killed by {signal.Signals(-code).name}'
         words = self.last_words().removeprefix(f'{self.name}: ')
@@ -44,7 +63,7 @@ class NodeProcesses:
     """The processes of one graph; as a context manager it always stops them."""
 
     def __init__(self, logs: Path, parameter_file: Path) -> None:
-        """Nodes print to `<logs>/<node>.log` and take their parameters from the file."""
+        """Leave `<logs>/<node>.log` at the end; nodes take their parameters from the file."""
         self._logs = logs
         self._parameter_file = parameter_file
         self._nodes: list[NodeProcess] = []
@@ -54,32 +73,33 @@ class NodeProcesses:
 
     def __exit__(self, *_: object) -> None:
         self.stop(lambda name: True)
+        for node in self._nodes:
+            node.keep_log()
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
         """Start one process per node, in the given order."""
-        self._logs.mkdir(exist_ok=True)
         for spec in specs:
-            log = self._logs / f'{spec.name}.log'
             command = [sys.executable, '-m', spec.module]
             command += ['--ros-args', '--params-file', str(self._parameter_file)]
-            with log.open('wb') as output:
-                process = subprocess.Popen(
-                    command,
-                    stdin=subprocess.DEVNULL,
-                    stdout=output,
-                    stderr=subprocess.STDOUT,
-                    start_new_session=True,
-                    preexec_fn=_end_with_parent,
-                )
-            self._nodes.append(NodeProcess(spec.name, process, log))
+            printed = os.memfd_create(spec.name)
+            process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=printed,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=_end_with_parent,
+            )
+            log = self._logs / f'{spec.name}.log'
+            self._nodes.append(NodeProcess(spec.name, process, printed, log))
 
     def wait_for(self, name: str, stopped: Callable[[], bool]) -> None:
         """Wait until node `name` has done its work; raise DdctError when any node fails."""
         while True:
             ended = [node for node in self._nodes if node.process.poll() is not None]
-            for node in ended:
-                if node.name != name or node.process.returncode != 0:
-                    raise DdctError(f'{_culprit(ended).obituary()}; its log is {node.log}')
+            if any(node.name != name or node.process.returncode != 0 for node in ended):
+                culprit = _culprit(ended)
+                raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
             if ended:
                 return
             if stopped():
@@ -87,11 +107,12 @@ class NodeProcesses:
             time.sleep(POLL_S)
 
     def stop(self, chosen: Callable[[str], bool]) -> None:
-        """Stop the chosen nodes, first by SIGINT, then harder; raise DdctError if one fails."""
+        """Stop the chosen nodes, first by SIGINT, then harder."""
         nodes = [node for node in self._nodes if chosen(node.name)]
         for number, patience_s in STOP_LADDER:
             for node in nodes:
                 if node.process.poll() is None:
+                    node.hung = number == signal.SIGKILL
                     node.process.send_signal(number)
             deadline = time.monotonic() + patience_s
             while time.monotonic() < deadline and _running(nodes):

@@ -14,7 +14,7 @@ from ddct_plant.graph.spin import stop_signals
 def run_with_progress(plan: RunPlan, folder: Path, label: str = '') -> None:
     """Carry out `plan` into `folder`, saying what runs and how fast it went."""
     scenario = plan.settings.scenario
-    what = f'{label}{plan.controller}: {scenario.duration_s:g} s of {scenario.name}'
+    what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     stops = stop_signals()
     started = time.monotonic()
     with Console(file=sys.stderr).status(f'{what}, {plan.layout}'):

@@ -193,7 +193,7 @@ class RecorderNode(GraphNode):
         silent = sorted(self._expected_nodes - set(self._run_info))
         if silent:
             return f'no run_info came from {", ".join(silent)}: start them, or set `nodes`'
-        return 'no whole tick came: check that the driveline is running'
+        return 'no whole tick came: start it first or set require_recorder on driveline'
 
 
 def _stamp_ns(cdr: bytes) -> int:

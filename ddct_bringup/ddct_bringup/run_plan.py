@@ -6,7 +6,8 @@ from typing import Any
 
 import yaml
 
-from ddct_controllers.registry import make_controller
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import scenario_to_yaml
@@ -23,15 +24,21 @@ class RunPlan:
 
     settings: RunSettings
     controller: str
+    """A name of the registry or the path of a controller's YAML file."""
     layout: str = 'processes'
 
     def __post_init__(self) -> None:
         """Refuse now what would fail in the graph; raise DdctError."""
-        make_controller(self.controller, self.settings)
+        make_architecture(self.settings, make_controller(self.controller, self.settings))
         if self.layout == 'headless' and not self.settings.lockstep:
             raise ParameterError(
                 'mode realtime needs the graph, which --headless does without: drop one of them'
             )
+
+    @property
+    def name(self) -> str:
+        """What the controller is called in bags and tables; names the bag's folder."""
+        return controller_label(self.controller)
 
     @property
     def steps(self) -> int:
@@ -56,7 +63,7 @@ class RunPlan:
                 'mode': self.settings.mode,
                 'seed': self.settings.seed,
             },
-            'recorder': {'out': str(folder), 'name': self.controller},
+            'recorder': {'out': str(folder), 'name': self.name},
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},

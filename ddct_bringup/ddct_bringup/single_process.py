@@ -8,12 +8,11 @@ import rclpy
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
-from rclpy.task import Future
 
 from ddct_bringup.graph_nodes import GRAPH_NODES, NodeSpec
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.spin import finish_node, make_executor, spin_until
+from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
 
 
 def run_single_process(
@@ -51,24 +50,30 @@ def _build(
 
 
 def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool]) -> None:
-    any_done: Future = Future()
-    for node in nodes:
-        node.done.add_done_callback(lambda _: any_done.done() or any_done.set_result(None))
     executor = make_executor(context)
-    for node in nodes:
-        executor.add_node(node)
-    spin_until(executor, any_done, stopped)
-    # The recorder comes first in the list and must hear what the others flush.
-    for node in reversed(nodes):
-        if not any(failure(other) for other in nodes):
-            finish_node(executor, node)
-        else:
-            node.close()
-    for node in nodes:
+    try:
+        for node in nodes:
+            executor.add_node(node)
+        spin_until(executor, end_of(nodes, stopped))
+        interrupted = not any(node.done.done() for node in nodes)
+        # The last one, driveline, owns time: without it the others have nothing more to do.
+        nodes[-1].finish()
+        failed = [node for node in nodes if failure(node)]
+        # The recorder comes first in the list and must hear what the others flush.
+        for node in reversed(nodes):
+            if failed:
+                node.close()
+            else:
+                finish_node(executor, node)
+    finally:
+        # Otherwise it keeps the nodes, and what they latched, in the domain of the next run.
+        executor.shutdown()
+    # What failed first made others fail when they were closed.
+    for node in [*failed, *nodes]:
         error = failure(node)
         if error is not None:
             raise DdctError(f'node {node.get_name()}: {error}')
-    if not any_done.done():
+    if interrupted:
         raise KeyboardInterrupt
 
 

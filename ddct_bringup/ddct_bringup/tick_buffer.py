@@ -4,10 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from ddct_plant.errors import DdctError
-from ddct_plant.timebase import step_of_stamp
+from ddct_plant.timebase import stamp_of_step, step_of_stamp
 
 GIVE_UP_AFTER_STEPS = 10
 """In real time a tick is written with what it has once one this much later has begun."""
+
+LAG_LIMIT_STEPS = 100
+"""In lock-step a tick that is still not whole this much later has lost a message for good."""
 
 Tick = dict[str, bytes]
 """Serialised messages of one stamp by topic."""
@@ -36,13 +39,21 @@ class TickBuffer:
 
     def offer(self, topic: str, stamp_ns: int, cdr: bytes) -> list[tuple[int, Tick]]:
         """Take one message and return the (step, tick) pairs that can now be written, in order."""
-        step = step_of_stamp(stamp_ns)
+        try:
+            step = step_of_stamp(stamp_ns)
+        except DdctError as error:
+            raise DdctError(f'{topic}: {error}') from error
         if step < self._next_step:
             self._check_repeat(step, topic, cdr)
             return []
+        if self.wait_for_all and step > self._next_step + LAG_LIMIT_STEPS:
+            raise DdctError(
+                f'{topic}: step {step} came where step {self._next_step} was due: this recorder '
+                'missed a part of the run, start it first or set require_recorder on driveline'
+            )
         tick = self._pending.setdefault(step, {})
         if topic in tick:
-            self._require_same(topic, tick[topic], cdr, stamp_ns)
+            self._require_same(topic, tick[topic], cdr, step)
             return []
         tick[topic] = cdr
         return self._ready(step - GIVE_UP_AFTER_STEPS)
@@ -73,9 +84,9 @@ class TickBuffer:
             return
         self._require_same(topic, self._last[topic], cdr, step)
 
-    def _require_same(self, topic: str, first: bytes, second: bytes, when: int) -> None:
+    def _require_same(self, topic: str, first: bytes, second: bytes, step: int) -> None:
         if first != second and not self.same(topic, first, second):
             raise DdctError(
-                f'{topic} carries two different messages for one stamp ({when}): stop the second '
-                'node that publishes it, or use another ROS_DOMAIN_ID'
+                f'{topic} carries two different messages for stamp {stamp_of_step(step)} ns: stop '
+                'the second node that publishes it, or use another ROS_DOMAIN_ID'
             )

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.run_timing import RunTiming
-from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_plant.driveline_model import driveline_matrices
@@ -19,7 +19,7 @@ from ddct_plant.load import RoadLoad
 from ddct_plant.printed import ACTUATOR
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
-from ddct_reference.crf_ramp import CrfRamp
+from ddct_reference.factory import make_reference
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 
@@ -35,8 +35,8 @@ def tight_tolerance_slip(settings: RunSettings, name: str) -> np.ndarray:
     plant, filter_ = driveline_matrices(scenario.driveline), ACTUATOR.to_state_space()
     initial = initial_state(settings)
     engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
-    ramp = CrfRamp(scenario.reference.slope_rad_s2, scenario.control_start_step)
-    architecture = DetailedArchitecture(settings, make_controller(name, settings))
+    reference = make_reference(settings)
+    architecture = make_architecture(settings, make_controller(name, settings))
     delayed = initial.torque_request
     state = np.concatenate(
         [
@@ -50,7 +50,7 @@ def tight_tolerance_slip(settings: RunSettings, name: str) -> np.ndarray:
         slips.append(w_m - w_p)
         speed = scenario.vehicle.wheel_radius_m * w_r
         c_m, c_load = engine.torque(step), load.torque(speed)
-        references, rates = ramp.update(step, w_m - w_p)
+        references, rates = reference.update(step, w_m - w_p)
         request = architecture.update(
             Measurement(step, w_m, w_p, w_r, speed, c_m, references, rates)
         ).torque

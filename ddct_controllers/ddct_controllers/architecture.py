@@ -1,10 +1,15 @@
-"""Control architectures of Section 1.6: how open loop and feedback make one torque request."""
+"""Control architectures of the thesis: how open loop and feedback make one torque request."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from numbers import Real
+from typing import Protocol
 
+from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.checks import require_finite
+from ddct_plant.errors import DdctError
 from ddct_plant.load import RoadLoad
+from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.static_torque import constant_slip_torque
 
@@ -21,35 +26,65 @@ class TorqueRequest:
     """Pairs for `controller/status`: both parts, saturation, then the controller's own."""
 
 
-class DetailedArchitecture:
-    """
-    C_f = C_fOL + C_fCL (Section 1.4.5.1): the static controller is always on.
+class OpenLoop(Protocol):
+    """The part of the request that does not depend on the slip."""
 
-    Feedback is held in reset until the scenario's `control_start_s`. The static controller takes
-    C_m, and C_load computed from V_x and the slope.
+    def update(self, engine_torque: float, load_torque: float) -> float:
+        """Return the torque in N m for C_m and C_load in N m of the coming period."""
+
+
+class NoOpenLoop:
+    """The base architecture has feedback alone (Section 1.6.1)."""
+
+    def update(self, engine_torque: float, load_torque: float) -> float:
+        """Return 0."""
+        return 0.0
+
+
+class StaticController:
+    """C_fOL, always on in the detailed architecture (Section 1.4.5.1)."""
+
+    def __init__(self, driveline: DrivelineParameters) -> None:
+        """Take the driveline whose slip it keeps constant."""
+        self._driveline = driveline
+
+    def update(self, engine_torque: float, load_torque: float) -> float:
+        """Return the torque that keeps the slip constant."""
+        return constant_slip_torque(self._driveline, engine_torque, load_torque)
+
+
+class Architecture:
+    """
+    C_f = open loop + feedback; feedback is held in reset until its first step.
+
+    The open loop takes C_m, and C_load computed from V_x and the slope.
     """
 
-    def __init__(self, settings: RunSettings, controller: Controller) -> None:
-        """Wire `controller` as the feedback of a run with these settings."""
-        scenario = settings.scenario
+    def __init__(
+        self,
+        open_loop: OpenLoop,
+        load: RoadLoad,
+        controller: Controller,
+        feedback_start_step: int,
+    ) -> None:
+        """Wire `controller` as the feedback, on from `feedback_start_step`."""
+        self._open_loop = open_loop
+        self._load = load
         self._controller = controller
-        self._driveline = scenario.driveline
-        self._load = RoadLoad(scenario.load, scenario.vehicle)
-        self._start_step = scenario.control_start_step
+        self._start_step = feedback_start_step
 
     def update(self, measurement: Measurement) -> TorqueRequest:
         """Return the request for the period that starts at the measurement's step."""
         load_torque = self._load.torque(measurement.vehicle_speed)
-        open_loop = constant_slip_torque(self._driveline, measurement.engine_torque, load_torque)
+        open_loop = self._open_loop.update(measurement.engine_torque, load_torque)
         if measurement.step >= self._start_step:
             feedback = 'on'
-            command = self._controller.update(measurement)
+            command = _checked(self._controller.update(measurement), measurement.step)
         else:
             feedback = 'held in reset'
             self._controller.reset()
             command = _FEEDBACK_OFF
-        source = f"the controller's torque at step {measurement.step}"
-        torque = open_loop + require_finite(source, command.clutch_torque)
+        torque = open_loop + command.clutch_torque
         return TorqueRequest(
             torque,
             (
@@ -60,3 +95,40 @@ class DetailedArchitecture:
                 *command.status,
             ),
         )
+
+
+def _checked(command: object, step: int) -> Command:
+    """Return the command with a plain float as torque; raise DdctError for any other answer."""
+    if not isinstance(command, Command):
+        raise DdctError(
+            f"the controller's answer at step {step} is of type {type(command).__name__}: "
+            'return a ddct_controllers.interface.Command'
+        )
+    torque: object = command.clutch_torque
+    source = f"the controller's torque at step {step}"
+    if not isinstance(torque, Real):
+        raise DdctError(f'{source} is {torque!r}: give a number in N m')
+    number = require_finite(source, float(torque))
+    return replace(command, clutch_torque=number)
+
+
+def make_architecture(settings: RunSettings, controller: Controller) -> Architecture:
+    """
+    Build the run's architecture around `controller`.
+
+    In `detailed` feedback starts at the scenario's `control_start_s`, in the others at t = 0.
+    """
+    scenario = settings.scenario
+    return Architecture(
+        _make_open_loop(settings),
+        RoadLoad(scenario.load, scenario.vehicle),
+        controller,
+        scenario.control_start_step if settings.detailed else 0,
+    )
+
+
+def _make_open_loop(settings: RunSettings) -> OpenLoop:
+    driveline = settings.scenario.driveline
+    if settings.detailed:
+        return StaticController(driveline)
+    return NoOpenLoop() if settings.architecture == 'base' else Feedforward(driveline)

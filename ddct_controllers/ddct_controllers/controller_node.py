@@ -10,10 +10,10 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.architecture import make_architecture
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Measurement
-from ddct_controllers.registry import controller_names, make_controller
+from ddct_controllers.registry import controller_label, controller_names, make_controller
 from ddct_plant.errors import ParameterError
 from ddct_plant.graph.arrivals import (
     read_joint_speeds,
@@ -44,14 +44,14 @@ class ControllerNode(FollowerNode):
         super().__init__('controller', **kwargs)
         name = declare(self, 'controller', 'pi', f'One of: {", ".join(controller_names())}')
         self._controller = make_controller(name, self.settings)
-        self._architecture = DetailedArchitecture(self.settings, self._controller)
+        self._architecture = make_architecture(self.settings, self._controller)
         self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
         self._status = self.create_publisher(DiagnosticArray, 'controller/status', LOOP_QOS)
         self._timing = self.create_publisher(DiagnosticArray, 'controller/timing', LOOP_QOS)
         self._request_message = WrenchStamped()
         self._update_times_us: list[float] = []
         self._declare_gains()
-        self.publish_run_info(controller_info(name, self._controller))
+        self.publish_run_info(controller_info(controller_label(name), self._controller))
         self.follow(
             [
                 (JointState, 'driveline/joint_states'),
@@ -104,8 +104,9 @@ class ControllerNode(FollowerNode):
             self._publish_timing(step)
 
     def _publish_timing(self, step: int) -> None:
-        pairs = [('update_time_us', f'{value:.3f}') for value in self._update_times_us]
+        times = ' '.join(f'{value:.3f}' for value in self._update_times_us)
         self._update_times_us = []
+        pairs = [('update_times_us', times)]
         self._timing.publish(status_message(stamp_of_step(step), self.get_name(), pairs))
 
     def _declare_gains(self) -> None:

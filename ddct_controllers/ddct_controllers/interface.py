@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ddct_plant.errors import ParameterError
+from ddct_plant.lti import StateSpace
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.units import rpm_from_rad_s
 
@@ -76,6 +77,15 @@ class Controller(ABC):
     @abstractmethod
     def update(self, measurement: Measurement) -> Command:
         """Advance by one period and return the command that holds over it."""
+
+    def linear_model(self) -> StateSpace | None:
+        """
+        Return the feedback as a sampled system from slip error in rpm to torque in N m.
+
+        One input, one output, period 10 ms, with the present gains. None says that the controller
+        is not linear and has no frequency response.
+        """
+        return None
 
     def gains(self) -> Mapping[str, float]:
         """Return the gains that may be changed between two updates, by name."""

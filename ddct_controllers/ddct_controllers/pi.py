@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_plant.checks import require_number
 from ddct_plant.errors import ParameterError
+from ddct_plant.lti import StateSpace
 from ddct_plant.timebase import PERIOD_S
 
 _GAINS = ('proportional_gain', 'integral_gain')
@@ -39,6 +42,12 @@ class PiController(Controller):
         )
         self._integral_rpm_s += PERIOD_S * error_rpm
         return Command(torque)
+
+    def linear_model(self) -> StateSpace:
+        """Return -(K_p + K_i T / (z - 1)); its state is the integral of the error."""
+        proportional, integral = (np.array([[-self._gains[name]]]) for name in _GAINS)
+        one = np.ones((1, 1))
+        return StateSpace(one, PERIOD_S * one, integral, proportional, PERIOD_S)
 
     def gains(self) -> Mapping[str, float]:
         """Return K_p and K_i."""

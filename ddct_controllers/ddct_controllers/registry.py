@@ -1,13 +1,16 @@
-"""Controllers by name: those of this package and those that other packages add."""
+"""Controllers by name: our own, those that other packages add, and those in a file."""
 
 import importlib.metadata
 from collections.abc import Callable, Mapping
 
+from ddct_controllers.design.hinf_controllers import SYNTHESISED, synthesised_controller
+from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.linear import LinearController
 from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.run_settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
@@ -17,36 +20,60 @@ Factory = Callable[[ControllerContext], Controller]
 
 
 def controller_names() -> list[str]:
-    """Return every name that `make_controller` takes, our own first."""
+    """Return every name that `make_controller` takes besides files, our own first."""
     own = list(_own_factories())
     return own + sorted(point.name for point in _entry_points() if point.name not in own)
 
 
 def make_controller(name: str, settings: RunSettings) -> Controller:
     """
-    Build the controller called `name` for a run with these settings.
+    Build the controller called `name`, or described by the YAML file `name`, for a run.
 
     Raise ParameterError for an unknown name or a gain that the controller does not take, and
-    DdctError when a third party's factory fails.
+    DdctError when a file cannot be read or a third party's factory fails.
     """
-    factory = _own_factories().get(name) or _third_party_factory(name)
+    if is_designed_file(name):
+        designed = _load_designed(name)
+        name, factory = designed.name, _linear_factory(designed.name, designed.sampled())
+    else:
+        factory = _own_factories().get(name) or _third_party_factory(name)
     gains = settings.scenario.controllers.get(name, {})
     return factory(ControllerContext(settings, gains))
 
 
+def controller_label(name: str) -> str:
+    """Return what a controller is called in bags and tables: a file gives its own name."""
+    return _load_designed(name).name if is_designed_file(name) else name
+
+
+def _load_designed(file: str) -> DesignedController:
+    designed = load_designed(file)
+    if designed.name in controller_names():
+        raise ParameterError(
+            f'controller file {file}: the name {designed.name!r} is taken by another controller; '
+            'change it in the file'
+        )
+    return designed
+
+
 def _own_factories() -> Mapping[str, Factory]:
-    printed = {name: _printed_factory(name) for name in PRINTED_CONTROLLERS}
-    return {'pi': make_pi, **printed}
+    printed = {name: _linear_factory(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
+    synthesised = {name: _synthesised_factory(name) for name in SYNTHESISED}
+    return {'pi': make_pi, **printed, **synthesised}
 
 
-def _printed_factory(name: str) -> Factory:
+def _synthesised_factory(name: str) -> Factory:
+    return lambda context: _linear_factory(name, synthesised_controller(name))(context)
+
+
+def _linear_factory(name: str, model: FactoredTransferFunction | StateSpace) -> Factory:
     def make(context: ControllerContext) -> Controller:
         if context.gains:
             raise ParameterError(
                 f'controllers.{name}: {", ".join(context.gains)} given, but this controller is '
-                'the printed transfer function and takes no gains'
+                'a given transfer function and takes no gains'
             )
-        return LinearController(PRINTED_CONTROLLERS[name])
+        return LinearController(model)
 
     return make
 
@@ -56,7 +83,9 @@ def _third_party_factory(name: str) -> Factory:
         if point.name == name:
             return _loaded(point)
     choices = ', '.join(controller_names())
-    raise ParameterError(f'unknown controller {name!r}: choose from {choices}')
+    raise ParameterError(
+        f'unknown controller {name!r}: choose from {choices}, or give the path of a YAML file'
+    )
 
 
 def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
@@ -69,7 +98,15 @@ def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
         ) from error
 
     def make(context: ControllerContext) -> Controller:
-        controller = factory(context)
+        try:
+            controller = factory(context)
+        except DdctError:
+            raise
+        except Exception as error:
+            raise DdctError(
+                f'controller {point.name!r}: {point.value} failed '
+                f'({type(error).__name__}: {error}): mend the package that adds it'
+            ) from error
         if not isinstance(controller, Controller):
             raise DdctError(
                 f'controller {point.name!r}: {point.value} returned '

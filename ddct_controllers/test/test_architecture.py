@@ -1,15 +1,16 @@
-"""The detailed architecture adds the static torque and holds feedback until control starts."""
+"""Each architecture adds its open loop, and starts feedback, where the thesis has it."""
 
 import math
 from dataclasses import replace
 
 import pytest
 
-from ddct_controllers.architecture import DetailedArchitecture
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.errors import DdctError
 from ddct_plant.load import RoadLoad
-from ddct_plant.run_settings import RunSettings
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
 from ddct_plant.scenario_file import load_scenario
 from ddct_plant.static_torque import constant_slip_torque
 
@@ -26,6 +27,7 @@ BEFORE = Measurement(
     slip_reference_rate=[0.0],
 )
 ON = replace(BEFORE, step=START)
+FEEDFORWARD = ['feedforward', 'feedforward_tanh']
 
 
 class Recording(Controller):
@@ -41,22 +43,35 @@ class Recording(Controller):
         return Command(self.torque, (('mine', 'yes'),))
 
 
-def static_torque() -> float:
+def load_torque() -> float:
     scenario = SETTINGS.scenario
-    load = RoadLoad(scenario.load, scenario.vehicle).torque(6.0)
-    return constant_slip_torque(scenario.driveline, 250.0, load)
+    return RoadLoad(scenario.load, scenario.vehicle).torque(6.0)
 
 
-def test_feedback_is_held_in_reset_until_control_starts():
+def static_torque() -> float:
+    return constant_slip_torque(SETTINGS.scenario.driveline, 250.0, load_torque())
+
+
+def test_detailed_holds_feedback_in_reset_until_control_starts():
     controller = Recording()
-    request = DetailedArchitecture(SETTINGS, controller).update(BEFORE)
+    request = make_architecture(SETTINGS, controller).update(BEFORE)
     assert request.torque == static_torque()
     assert controller.calls == ['reset']
     assert dict(request.status)['feedback'] == 'held in reset'
 
 
-def test_then_both_parts_add_up_and_the_status_says_so():
-    request = DetailedArchitecture(SETTINGS, Recording()).update(ON)
+@pytest.mark.parametrize('name', [name for name in ARCHITECTURES if name != 'detailed'])
+def test_the_others_have_feedback_from_the_first_step(name):
+    controller = Recording()
+    architecture = make_architecture(replace(SETTINGS, architecture=name), controller)
+    request = architecture.update(replace(BEFORE, step=0))
+    assert controller.calls == ['update']
+    assert dict(request.status)['feedback'] == 'on'
+    assert dict(request.status)['closed_loop_torque_n_m'] == '7.0'
+
+
+def test_both_parts_add_up_and_the_status_says_so():
+    request = make_architecture(SETTINGS, Recording()).update(ON)
     status = dict(request.status)
     assert request.torque == static_torque() + 7.0
     assert float(status['open_loop_torque_n_m']) == static_torque()
@@ -64,8 +79,33 @@ def test_then_both_parts_add_up_and_the_status_says_so():
     assert (status['saturated'], status['mine']) == ('false', 'yes')
 
 
+def test_base_is_feedback_alone():
+    request = make_architecture(replace(SETTINGS, architecture='base'), Recording()).update(ON)
+    assert request.torque == 7.0
+    assert dict(request.status)['open_loop_torque_n_m'] == '0.0'
+
+
+@pytest.mark.parametrize('name', FEEDFORWARD)
+def test_feedforward_adds_what_the_filter_makes_of_both_torques(name):
+    architecture = make_architecture(replace(SETTINGS, architecture=name), Recording())
+    filter_ = Feedforward(SETTINGS.scenario.driveline)
+    for step in range(3):
+        request = architecture.update(replace(BEFORE, step=step))
+        expected = filter_.update(250.0, load_torque())
+        assert request.torque == expected + 7.0
+        assert dict(request.status)['open_loop_torque_n_m'] == repr(expected)
+
+
+def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():
+    filter_ = Feedforward(SETTINGS.scenario.driveline)
+    rising = [filter_.update(2.5 * step, load_torque()) for step in range(101)]
+    assert rising[-1] > static_torque() + 5.0
+    held = [filter_.update(250.0, load_torque()) for _ in range(300)]
+    assert held[-1] == pytest.approx(static_torque(), rel=1e-4)
+
+
 def test_a_negative_request_is_reported_as_saturated_but_passed_on():
-    request = DetailedArchitecture(SETTINGS, Recording(-1e4)).update(ON)
+    request = make_architecture(SETTINGS, Recording(-1e4)).update(ON)
     assert request.torque < 0.0
     assert dict(request.status)['saturated'] == 'true'
 
@@ -73,4 +113,4 @@ def test_a_negative_request_is_reported_as_saturated_but_passed_on():
 @pytest.mark.parametrize('torque', [math.nan, math.inf])
 def test_a_command_that_is_not_finite_ends_the_run(torque):
     with pytest.raises(DdctError, match=f'torque at step {START} is'):
-        DetailedArchitecture(SETTINGS, Recording(torque)).update(ON)
+        make_architecture(SETTINGS, Recording(torque)).update(ON)

@@ -6,7 +6,8 @@ import pytest
 from ddct_controllers.interface import Measurement
 from ddct_controllers.linear import LinearController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.errors import ParameterError
+from ddct_plant.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.units import rad_s_from_rpm
 
 
@@ -59,3 +60,24 @@ def test_reset_forgets_the_past(name):
     fresh = response(controller, [1.0, 2.0, 3.0])
     controller.reset()
     assert response(controller, [1.0, 2.0, 3.0]) == fresh
+
+
+def test_a_sampled_controller_is_taken_as_it_is():
+    """G_c(z) = 3 + 2/(z - 0.5): its first outputs by hand."""
+    model = StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]], 0.01)
+    controller = LinearController(model)
+    assert response(controller, [1.0, 0.0, 2.0]) == pytest.approx([3.0, 2.0, 7.0])
+    assert controller.linear_model() is model
+
+
+@pytest.mark.parametrize(
+    'model',
+    [
+        StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]]),
+        StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]], 0.02),
+        StateSpace([[0.5]], [[1.0, 1.0]], [[2.0]], [[3.0, 1.0]], 0.01),
+    ],
+)
+def test_another_period_or_size_is_refused(model):
+    with pytest.raises(ParameterError, match='one input, one output and a period of 0.01 s'):
+        LinearController(model)

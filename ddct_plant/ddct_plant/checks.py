@@ -1,6 +1,7 @@
 """Checks of single values, used when parameters are built and when messages arrive."""
 
 import math
+from collections.abc import Sequence
 from numbers import Real
 
 from ddct_plant.errors import DdctError, ParameterError
@@ -32,6 +33,12 @@ def require_number(
     if at_most is not None and number > at_most:
         raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}')
     return number
+
+
+def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
+    """Raise ParameterError that names the choices when `value` is none of them."""
+    if value not in choices:
+        raise ParameterError(f'unknown {name} {value!r}: choose from {", ".join(choices)}')
 
 
 def require_finite(source: str, value: float) -> float:

@@ -12,6 +12,7 @@ from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory
 
 from ddct_plant.driveline import Driveline
+from ddct_plant.errors import DdctError
 from ddct_plant.graph.arrivals import read_torque, read_torque_points
 from ddct_plant.graph.messages import (
     accel_message,
@@ -122,7 +123,12 @@ class DrivelineNode(GraphNode):
 
     def _subscribe(self, message_type: type, topic: str, read: Callable[[Any], Any]) -> None:
         def receive(message: Any) -> None:
-            self.owner.offer(topic, stamp_ns(message), read(message))
+            stamp = stamp_ns(message)
+            try:
+                reply = read(message)
+            except DdctError as error:
+                raise DdctError(f'at stamp {stamp} ns: {error}') from error
+            self.owner.offer(topic, stamp, reply)
 
         self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
 

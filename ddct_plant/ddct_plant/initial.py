@@ -31,7 +31,7 @@ class InitialState:
     load_torque: float
     """C_load(0) in N m."""
     torque_request: float
-    """What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`."""
+    """What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere."""
     clutch_torque: float
     """What it transmits then, in N m."""
 
@@ -45,7 +45,8 @@ def initial_state(settings: RunSettings) -> InitialState:
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
     engine_torque = Engine(scenario.engine).torque(0)
-    torque_request = max(constant_slip_torque(driveline, engine_torque, load_torque), 0.0)
+    static_torque = constant_slip_torque(driveline, engine_torque, load_torque)
+    torque_request = max(static_torque, 0.0) if settings.detailed else 0.0
     return InitialState(
         engine_speed=scenario.initial.engine_speed_rad_s,
         shaft_speed=scenario.initial.shaft_speed_rad_s,

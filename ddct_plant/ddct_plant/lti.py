@@ -78,10 +78,22 @@ class FactoredTransferFunction:
         """(number of poles,) complex, in rad/s."""
         return _roots(self.denominator)
 
+    def __mul__(self, other: 'FactoredTransferFunction') -> 'FactoredTransferFunction':
+        """Return the product with every factor of both; none is cancelled."""
+        return FactoredTransferFunction(
+            self.gain * other.gain,
+            self.numerator + other.numerator,
+            self.denominator + other.denominator,
+        )
+
+    def at(self, s: np.ndarray) -> np.ndarray:
+        """Return the complex value, the shape of `s`, at points of the complex plane in rad/s."""
+        s = np.asarray(s, dtype=complex)
+        return self.gain * _product(self.numerator, s) / _product(self.denominator, s)
+
     def frequency_response(self, omega: np.ndarray) -> np.ndarray:
         """Return the complex response, the shape of `omega`, at frequencies in rad/s."""
-        s = 1j * np.asarray(omega, dtype=float)
-        return self.gain * _product(self.numerator, s) / _product(self.denominator, s)
+        return self.at(1j * np.asarray(omega, dtype=float))
 
     def to_state_space(self) -> StateSpace:
         """Return a real cascade realisation; raise ParameterError when it is not proper."""

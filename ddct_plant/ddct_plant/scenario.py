@@ -3,13 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ddct_plant.checks import require_number
+from ddct_plant.checks import require_choice, require_number
 from ddct_plant.engine import TorqueProfile
 from ddct_plant.errors import ParameterError
 from ddct_plant.load import LoadParameters
 from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.timebase import steps_in
 from ddct_plant.vehicle import VehicleParameters
+
+REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
+"""How a slip reference can run to zero once control starts."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +36,19 @@ class ReferenceParameters:
 
     slope_rad_s2: float = 90.0
     """Rate at which the CRF ramp runs to zero."""
+    shape: str = 'ramp'
+    """One of REFERENCE_SHAPES; the architecture `feedforward_tanh` makes the ramp a tanh."""
+    reference_end_s: float = 1.6
+    """When tanh and polynomial reach zero, a multiple of 10 ms; the ramp ends by its slope."""
 
     def __post_init__(self) -> None:
-        """Check the slope; raise ParameterError when it is bad."""
+        """Check every value; raise ParameterError that names a bad one."""
+        require_choice('reference.shape', self.shape, REFERENCE_SHAPES)
         require_number('reference.slope_rad_s2', self.slope_rad_s2, above=0.0, at_most=1e4)
+        require_number(
+            'reference.reference_end_s', self.reference_end_s, above=0.0, at_most=3600.0
+        )
+        steps_in('reference.reference_end_s', self.reference_end_s)
 
 
 @dataclass(frozen=True)

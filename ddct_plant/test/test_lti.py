@@ -62,6 +62,16 @@ def test_realisation_has_the_frequency_response_of_its_factors(name):
     np.testing.assert_allclose(system.frequency_response(OMEGA), expected, rtol=1e-11)
 
 
+def test_a_product_is_the_product_of_the_values_anywhere_in_the_plane():
+    first, second = ACTUATOR, CLUTCH_TO_SLIP.factored()
+    product, points = first * second, np.array([1.0 + 2.0j, -30.0, 0.01j])
+    by_roots = [
+        product.gain * np.prod(s - product.zeros) / np.prod(s - product.poles) for s in points
+    ]
+    np.testing.assert_allclose(product.at(points), by_roots, rtol=1e-11)
+    np.testing.assert_allclose(first.at(points) * second.at(points), by_roots, rtol=1e-11)
+
+
 @pytest.mark.parametrize('name', SYSTEMS)
 def test_realisation_has_one_state_per_pole_and_its_poles(name):
     system = SYSTEMS[name]

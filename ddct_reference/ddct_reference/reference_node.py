@@ -11,22 +11,19 @@ from ddct_plant.graph.messages import SlipReferenceMessage
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_reference.crf_ramp import CrfRamp
+from ddct_reference.factory import make_reference
 
 
 class ReferenceNode(FollowerNode):
     """Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead."""
 
     def __init__(self, **kwargs: Any) -> None:
-        """Build the reference of the run's scenario."""
+        """Build the reference of the run's scenario and architecture."""
         super().__init__('reference', **kwargs)
-        scenario = self.settings.scenario
         preview_steps = declare(
             self, 'preview_steps', 0, 'Periods to look ahead, as the controller needs', 0, 1000
         )
-        self._reference = CrfRamp(
-            scenario.reference.slope_rad_s2, scenario.control_start_step, preview_steps
-        )
+        self._reference = make_reference(self.settings, preview_steps)
         self._publisher = self.create_publisher(JointTrajectory, 'clutch/slip_reference', LOOP_QOS)
         self._message = SlipReferenceMessage(preview_steps)
         self.publish_run_info({'preview_steps': str(preview_steps)})

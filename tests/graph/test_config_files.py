@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 import rclpy
 import yaml
-from ddct_bringup.graph_nodes import GRAPH_NODES, NodeSpec
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
+
+from ddct_bringup.graph_nodes import GRAPH_NODES, NodeSpec
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted(ROOT.glob('ddct_*/config/*.yaml'))

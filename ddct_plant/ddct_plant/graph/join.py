@@ -45,7 +45,10 @@ class StampJoin:
 
     def offer(self, topic: str, stamp_ns: int, message: Any) -> Verdict:
         """Take one message; raise DdctError for a stamp off the grid or, in lock-step, a gap."""
-        step = step_of_stamp(stamp_ns)
+        try:
+            step = step_of_stamp(stamp_ns)
+        except DdctError as error:
+            raise DdctError(f'{topic}: {error}') from error
         if self.last_step is not None and step <= self.last_step:
             if step == self.last_step and topic == self.topics[0]:
                 return Verdict.REPEAT

@@ -3,22 +3,27 @@
 import gc
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
 
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 
 SLICE_S = 0.1
-"""Longest time the executor runs before signals are looked at."""
+"""How often signals are looked at, and the longest time the executor is left alone."""
 
 
 LAST_SLICE_S = 0.03
 """How long a stopped node still takes in messages that are on their way."""
+
+
+_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 def make_executor(context: Any = None) -> Executor:
@@ -30,17 +35,35 @@ def make_executor(context: Any = None) -> Executor:
     return EventsExecutor(context=context)
 
 
-def spin_until(executor: Executor, done: Any, stopped: Callable[[], bool]) -> None:
+def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
     """
-    Spin in finite slices until the future `done` is set or `stopped()` is true.
+    Return a future that is set once any of the nodes is done or `stopped()` is true.
+
+    A timer looks at `stopped`: a busy EventsExecutor does not come back to look at its timeout.
+    """
+    over: Future = Future()
+
+    def end(*_: object) -> None:
+        if not over.done():
+            over.set_result(None)
+
+    for node in nodes:
+        node.done.add_done_callback(end)
+    nodes[0].create_timer(SLICE_S, lambda: end() if stopped() else None, clock=_STEADY)
+    return over
+
+
+def spin_until(executor: Executor, over: Future) -> None:
+    """
+    Spin in finite slices until the future `over` is set.
 
     Jazzy's EventsExecutor spins without end at full load when it is called without a timeout.
     """
     # What start-up made stays: collecting it again and again would interrupt the loop.
     gc.collect()
     gc.freeze()
-    while not done.done() and not stopped():
-        executor.spin_until_future_complete(done, SLICE_S)
+    while not over.done():
+        executor.spin_until_future_complete(over, SLICE_S)
 
 
 def stop_signals() -> list[int]:
@@ -54,7 +77,13 @@ def stop_signals() -> list[int]:
 def finish_node(executor: Executor, node: GraphNode) -> None:
     """Let the node take in what has already reached it, then flush it."""
     if not node.done.done():
-        executor.spin_until_future_complete(node.done, LAST_SLICE_S)
+        over: Future = Future()
+        timer = node.create_timer(
+            LAST_SLICE_S, lambda: over.done() or over.set_result(None), clock=_STEADY
+        )
+        executor.spin_until_future_complete(over, SLICE_S)
+        # In one process these would add up, and rclpy complain of too many timers.
+        node.destroy_timer(timer)
     node.close()
 
 
@@ -68,12 +97,12 @@ def run_node(
     a DdctError.
     """
     stops = stop_signals()
-    rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
     try:
+        _init(arguments)
         node = factory()
         executor = make_executor()
         executor.add_node(node)
-        spin_until(executor, node.done, lambda: bool(stops))
+        spin_until(executor, end_of([node], lambda: bool(stops)))
         finish_node(executor, node)
         error = node.done.result() if node.done.done() else None
         node.destroy_node()
@@ -87,3 +116,11 @@ def run_node(
         return 0
     print(f'{name}: {error}', file=sys.stderr, flush=True)
     return 1
+
+
+def _init(arguments: list[str] | None) -> None:
+    try:
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:  # so rcl refuses arguments and environment variables
+        reason = str(error).split(', at /')[0]
+        raise DdctError(f'{reason}: mend what stands behind --ros-args or in ROS_*') from error

@@ -1,0 +1,80 @@
+"""Which controllers the thesis shows together, in which loop, and what it says of them."""
+
+from dataclasses import dataclass
+
+_FIRST_THREE = ('ls1', 'ls2', 'ls3')
+_LAST_SIX = ('ls4', 'ls5', 'ls6', 'ls7', 'ls8', 'ls9')
+_H_INFINITY = ('hinf1', 'hinf2', 'hinf3')
+
+
+@dataclass(frozen=True)
+class RunGroup:
+    """Figures of the same runs."""
+
+    numbers: tuple[str, ...]
+    """Figures of w_d, w_sr and A_x, or of w_d alone."""
+    architecture: str
+    controllers: tuple[str, ...]
+    """Registry names."""
+    thesis_says: str
+    """What its text says of these figures."""
+    verdict: str
+    """How far ours agree."""
+    wear_gains: tuple[float, ...] = (1.0,)
+
+
+_OSCILLATING = 'w_d good, but oscillations in w_sr and A_x'
+_NOT_GOOD = 'not good with this reference either'
+_FEW_GOOD = 'few controllers with good results'
+
+RUN_GROUPS = (
+    RunGroup(
+        *(('2.11', '2.13', '2.14'), 'feedforward', _FIRST_THREE, _OSCILLATING),
+        verdict='Agrees, except that w_d is near the reference with LS3 only',
+    ),
+    RunGroup(
+        *(('2.12', '2.15', '2.16'), 'feedforward', _LAST_SIX, _OSCILLATING),
+        verdict='The oscillations agree; w_d trails behind the reference, less with more gain',
+    ),
+    RunGroup(
+        *(('2.17', '2.18', '2.19'), 'feedforward_tanh', _FIRST_THREE, _NOT_GOOD),
+        verdict='Agrees: it changes little',
+    ),
+    RunGroup(
+        *(('2.20', '2.21', '2.22'), 'feedforward_tanh', _LAST_SIX, _NOT_GOOD),
+        verdict='Agrees: A_x varies more than with the reference of CRF',
+    ),
+    RunGroup(
+        *(('2.23', '2.24', '2.25'), 'detailed', (*_FIRST_THREE, 'pi'), _FEW_GOOD),
+        verdict='Agrees: LS1 swings far below zero, LS2 and LS3 oscillate more than the PI',
+    ),
+    RunGroup(
+        *(('2.26', '2.27', '2.28'), 'detailed', (*_LAST_SIX, 'pi'), _FEW_GOOD),
+        verdict='Agrees: LS8 and LS9 are faster than the PI, at the cost of w_sr',
+    ),
+    RunGroup(
+        *(('3.10',), 'base', ('hinf2',), 'the only one that tracks the reference here'),
+        verdict='It tracks',
+    ),
+    RunGroup(
+        *(('3.11', '3.12', '3.13'), 'feedforward', _H_INFINITY),
+        thesis_says='the faster to zero, the larger the oscillations',
+        verdict='Agrees',
+    ),
+    RunGroup(
+        *(('3.14', '3.15', '3.16'), 'feedforward_tanh', _H_INFINITY),
+        thesis_says='no better with this reference',
+        verdict='Agrees for H∞1 and H∞3; H∞2 oscillates half as much in w_sr',
+    ),
+    RunGroup(
+        *(('3.17', '3.18', '3.19'), 'detailed', (*_H_INFINITY, 'pi')),
+        thesis_says='oscillations reduced, only H∞2 very bad in w_sr and A_x',
+        verdict='Agrees',
+    ),
+    RunGroup(
+        *(('5.1',), 'feedforward', ('hinf2',), 'good response whatever the wear'),
+        verdict='Agrees: w_d goes to zero at both ends',
+        wear_gains=(0.7, 1.3),
+    ),
+)
+"""Figures 2.11 to 2.28, 3.10 to 3.19 and 5.1."""

@@ -1,0 +1,164 @@
+"""Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
+
+import importlib.metadata
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+from ddct_bringup import thesis_run_figures, thesis_scenario_figures
+from ddct_bringup.headless import run_headless
+from ddct_bringup.metrics import compute_metrics
+from ddct_bringup.thesis_runs import THESIS_SCENARIO, thesis_run
+from ddct_controllers.design.thesis_figures.collect import (
+    ENTRY_POINT_GROUP,
+    OWN_FIGURES,
+    collect_figures,
+    figures_not_drawn,
+)
+from ddct_controllers.design.thesis_figures.gallery import DrawnFigure, page_tables
+from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, figure_order
+from ddct_plant.page_tables import fill_tables, read_page
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.units import rpm_from_rad_s
+
+FIGURES = {
+    figure.number: figure
+    for figure in sorted(
+        (*OWN_FIGURES, *thesis_scenario_figures.FIGURES, *thesis_run_figures.FIGURES),
+        key=lambda figure: figure_order(figure.number),
+    )
+}
+PAGE = Path(__file__).parents[2] / 'docs' / 'figures.md'
+SETUP = Path(__file__).parents[1] / 'setup.py'
+
+
+def drawing(number: str) -> Drawing:
+    return FIGURES[number].draw(FIGURES[number].heading)
+
+
+def lines(axes: Axes) -> dict[str, np.ndarray]:
+    """Return x and y, (2, n), by label."""
+    return {line.get_label(): np.array(line.get_data()) for line in axes.get_lines()}
+
+
+@pytest.mark.parametrize(
+    ('number', 'architecture', 'wear', 'unit'),
+    [
+        ('2.26', 'detailed', 1.0, 'w_d, rpm'),
+        ('2.15', 'feedforward', 1.0, 'w_sr, rpm'),
+        ('2.22', 'feedforward_tanh', 1.0, 'A_x, m/s²'),
+    ],
+)
+def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, wear, unit):
+    axes = drawing(number).figure.axes[0]
+    run = run_headless(RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear), 'ls8')
+    signals = {
+        'w_d, rpm': rpm_from_rad_s(run.slip_speed),
+        'w_sr, rpm': rpm_from_rad_s(run.joint_speed[:, 3]),
+        'A_x, m/s²': run.vehicle_accel,
+    }
+    np.testing.assert_array_equal(lines(axes)['LS8'], (run.time_s[50:], signals[unit][50:]))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ('Time, s', unit)
+    names = {'LS4', 'LS5', 'LS6', 'LS7', 'LS8', 'LS9'}
+    names |= {'PI'} if architecture == 'detailed' else set()
+    assert set(lines(axes)) == names | ({'reference'} if unit == 'w_d, rpm' else set())
+
+
+def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
+    drawn = drawing('5.1')
+    shown = lines(drawn.figure.axes[0])
+    for wear in (0.7, 1.3):
+        run = run_headless(RunSettings(THESIS_SCENARIO, 'feedforward', wear_gain=wear), 'hinf2')
+        label = f'H∞2 (K_usura = {wear:g})'
+        np.testing.assert_array_equal(shown[label][1], rpm_from_rad_s(run.slip_speed[50:]))
+        assert abs(shown[label][1][-1]) < 1.0
+
+
+def torsion_std_rpm(controller: str, architecture: str) -> float:
+    run = thesis_run(controller, architecture, 1.0)
+    return compute_metrics(
+        run,
+        control_start_s=THESIS_SCENARIO.control_start_s,
+        score_window_s=THESIS_SCENARIO.score_window_s,
+    ).torsion_speed_std_rpm
+
+
+def test_verdicts_on_the_h_infinity_figures_hold():
+    by_loop = {
+        architecture: [torsion_std_rpm(f'hinf{number}', architecture) for number in (1, 3, 2)]
+        for architecture in ('feedforward', 'feedforward_tanh', 'detailed')
+    }
+    for architecture, from_slow_to_fast in by_loop.items():
+        assert from_slow_to_fast == sorted(from_slow_to_fast), architecture
+    assert by_loop['feedforward_tanh'][-1] == pytest.approx(
+        by_loop['feedforward'][-1] / 2.0, rel=0.1
+    )
+    assert by_loop['detailed'] < by_loop['feedforward']
+
+
+def test_verdicts_on_the_loop_shaping_figures_hold():
+    lowest_rpm = {
+        name: rpm_from_rad_s(thesis_run(name, 'detailed', 1.0).slip_speed.min())
+        for name in ('ls1', 'pi')
+    }
+    assert lowest_rpm['ls1'] < -100.0 < -20.0 < lowest_rpm['pi']
+    pi = torsion_std_rpm('pi', 'detailed')
+    assert all(torsion_std_rpm(name, 'detailed') > pi for name in ('ls2', 'ls3', 'ls8', 'ls9'))
+
+
+def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():
+    time, values = lines(drawing('1.12').figure.axes[0])['reference']
+    run = run_headless(RunSettings(THESIS_SCENARIO), 'pi')
+    np.testing.assert_array_equal(values, rpm_from_rad_s(run.slip_reference[: len(time), 0]))
+
+
+def test_plant_figure_has_all_models_on_one_curve():
+    shown = lines(drawing('1.23').figure.axes[0])
+    detailed = shown.pop('detailed model')[1]
+    printed = shown.pop('LTI, coefficients as printed')[1]
+    assert len(shown) == 3
+    for name, (_, slip) in shown.items():
+        assert np.abs(slip - detailed).max() < 1e-9 * detailed.max(), name
+    assert np.abs(printed - detailed).max() < 0.01 * detailed.max()
+
+
+def test_tanh_figure_reaches_zero_at_the_chosen_times():
+    shown = lines(drawing('1.27').figure.axes[0])
+    for end_s in (1.2, 1.6, 2.0):
+        time, values = shown[f'tanh, zero at {end_s:.1f} s']
+        assert values[np.isclose(time, end_s)] == 0.0
+        assert values[np.isclose(time, end_s - 0.01)] > 0.0
+
+
+def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
+    counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
+    every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
+    reasons = figures_not_drawn(set())
+    assert list(reasons) == every
+    without_own = {number for number, reason in reasons.items() if 'not installed' in reason}
+    assert set(FIGURES) == without_own
+
+
+def test_installed_package_adds_its_figures_to_those_of_the_design(monkeypatch):
+    text = SETUP.read_text(encoding='utf-8')
+    listed = re.search(rf"'{ENTRY_POINT_GROUP}': \[(.*?)\]", text, re.DOTALL)[1]
+    points = [
+        importlib.metadata.EntryPoint(name, value, ENTRY_POINT_GROUP)
+        for name, value in re.findall(r"'(\w+) = ([\w.:]+)'", listed)
+    ]
+    monkeypatch.setattr(importlib.metadata, 'entry_points', lambda group: points)
+    assert [figure.number for figure in collect_figures()] == list(FIGURES)
+
+
+def test_page_of_the_documentation_is_what_the_command_writes():
+    drawn = [DrawnFigure(figure, drawing(number).remark) for number, figure in FIGURES.items()]
+    page = read_page(str(PAGE))
+    written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn(set(FIGURES))))
+    number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')
+    assert number.sub('#', page) == number.sub('#', written)
+    values = [[float(text) for text in number.findall(text)] for text in (page, written)]
+    # Another processor may round the last printed digit the other way.
+    np.testing.assert_allclose(*values, rtol=0.02, atol=0.011)

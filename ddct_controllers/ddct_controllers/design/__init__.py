@@ -1,0 +1,1 @@
+"""Design and analysis of linear slip-speed controllers: loops, margins, step responses."""

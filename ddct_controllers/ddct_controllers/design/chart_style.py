@@ -1,0 +1,101 @@
+"""The one look of every chart: sizes, line styles, and colours fit for colour-blind readers."""
+
+import re
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from ddct_plant.errors import DdctError
+
+BLACK = '#000000'
+GREY = '#7f7f7f'
+BLUE = '#0072b2'
+VERMILLION = '#d55e00'
+GREEN = '#009e73'
+PURPLE = '#cc79a7'
+ORANGE = '#e69f00'
+SKY = '#56b4e9'
+_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+"""Okabe's and Ito's, without the yellow that is faint on white."""
+_DASHES = ('-', (0, (5, 1.2)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
+"""Neighbouring lines differ in these too, so that a grey print can be read."""
+REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth': 1.3}
+"""How what should be followed is drawn."""
+BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
+"""How what should not be exceeded is drawn."""
+_INDEXED = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
+"""A symbol with its index and perhaps a power, such as W_s^-1."""
+_STYLE: dict[Any, Any] = {
+    'figure.figsize': (8.0, 5.0),
+    'figure.dpi': 130.0,
+    'figure.constrained_layout.use': True,
+    'figure.constrained_layout.w_pad': 0.1,
+    'figure.constrained_layout.h_pad': 0.08,
+    'font.size': 11.0,
+    'axes.titlesize': 12.0,
+    'axes.grid': True,
+    'axes.axisbelow': True,
+    'axes.spines.top': False,
+    'axes.spines.right': False,
+    'grid.color': '#d8d8d8',
+    'grid.linewidth': 0.6,
+    'lines.linewidth': 1.5,
+    'legend.fontsize': 10.0,
+    'legend.framealpha': 0.9,
+    'svg.hashsalt': 'ddct',
+}
+
+
+def chart_style() -> AbstractContextManager[None]:
+    """Return a context in which charts are to be made and saved."""
+    return matplotlib.rc_context(_STYLE)
+
+
+def new_chart(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
+    """Return a figure with this title and `panels` axes side by side."""
+    figure = Figure()
+    figure.suptitle(title)
+    axes = figure.subplots(1, panels, squeeze=False)
+    return figure, list(axes[0])
+
+
+def line_styles() -> Iterator[dict[str, Any]]:
+    """Yield the keywords of one line after the other, without end."""
+    pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
+    return ({'color': colour, 'linestyle': dashes} for colour, dashes in pairs)
+
+
+def save_chart(figure: Figure, path: Path) -> None:
+    """
+    Write the figure to a file of the kind that its ending tells.
+
+    Symbols such as w_sr or W_s^-1 come out typeset. Raise DdctError when it cannot be written.
+    """
+    for text in figure.findobj(Text):
+        text.set_text(typeset(text.get_text()))
+    temporary = path.with_name(f'.partial-{path.name}')
+    try:
+        figure.savefig(temporary)
+        temporary.replace(path)
+    except OSError as error:
+        raise DdctError(f'{path}: cannot be written ({error.strerror})') from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def typeset(text: str) -> str:
+    """Return the text with its indexed symbols as Matplotlib's mathematics."""
+    return text if '$' in text else _INDEXED.sub(_mathematics, text)
+
+
+def _mathematics(symbol: re.Match[str]) -> str:
+    letter, index, power = symbol.groups()
+    exponent = f'^{{{power}}}' if power else ''
+    return f'${letter}_{{{index}}}{exponent}$'

@@ -1,0 +1,152 @@
+"""Feedforward filters C_1 and C_2 of Section 1.6.2, made proper and stable by model matching."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import solve_discrete_are
+
+from ddct_controllers.design.state_space import series
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.errors import DdctError
+from ddct_plant.lti import StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.timebase import PERIOD_S
+
+TORQUE_RATE_WEIGHT = 0.03
+"""rho in rad/s per N m/s: the price of torque beyond the static law; docs/feedforward.md tells."""
+
+_ENGINE, _CLUTCH, _LOAD = range(3)
+
+
+def design_feedforward(
+    driveline: DrivelineParameters, torque_rate_weight: float = TORQUE_RATE_WEIGHT
+) -> StateSpace:
+    """
+    Return the filter from [C_m, C_load] to the torque request, all N m, sampled at 10 ms.
+
+    C_1 = P_1/(P_2 G_a) and C_2 = P_3/(P_2 G_a) as printed are unstable, because G_a has zeros in
+    the right half-plane, and C_1 is not proper. Here the request u minimises, over all stable
+    causal filters, the sum over all periods of
+    w_d^2 + rho^2 [d/dt (u - C_fOL)]^2 for a C_m that becomes a ramp and a C_load that becomes a
+    step, in the sampled plant with hold and actuator delay. w_d is the slip left over,
+    P_1 C_m + P_3 C_load + P_2 G_a u; C_fOL the torque of the static controller. Raise DdctError
+    when the driveline has no such filter.
+    """
+    problem = _problem(driveline, torque_rate_weight)
+    state_gain, disturbance_gain = _optimal_gains(problem)
+    engine, engine_step, load = disturbance_gain
+    c = -np.append(state_gain, -engine_step)[np.newaxis]
+    d = -np.array([[engine + engine_step, load]])
+    states = len(problem.a)
+    a, b = np.zeros((states + 1, states + 1)), np.zeros((states + 1, 2))
+    a[:states, :states] = problem.a
+    a[:states] += problem.b @ c
+    b[:states] = problem.g[:, [0, 2]] + problem.b @ d
+    b[states, 0] = 1.0
+    model = StateSpace(a, b, c, d, PERIOD_S)
+    largest = float(np.max(np.abs(np.linalg.eigvals(model.a))))
+    if not largest < 1.0:
+        raise _no_filter(f'its largest pole would be at |z| = {largest:.9f}')
+    return model
+
+
+def state_at_rest(model: StateSpace, engine_torque: float) -> np.ndarray:
+    """
+    Return the filter's state, (n,), before a run that starts with this C_m in N m.
+
+    The driveline and the actuator in it are at rest. Its last state, the C_m of the period before,
+    is that of now, because the torque that a run starts with is no ramp.
+    """
+    state = np.zeros(len(model.a))
+    state[-1] = engine_torque
+    return state
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """
+    x_(k+1) = a x + b u + g w, w_(k+1) = s w; minimise the sum of |c x + d u + f w|^2.
+
+    w = [C_m, C_m less that of the period before, C_load]: all is known at k, nothing ahead.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+    g: np.ndarray
+    s: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+    f: np.ndarray
+
+
+def _problem(driveline: DrivelineParameters, torque_rate_weight: float) -> _Problem:
+    plant = discretise_zoh(series(_actuator_stage(), _relative_driveline(driveline)), PERIOD_S)
+    states = len(plant.a)
+    a, b = np.zeros((states + 1, states + 1)), np.zeros((states + 1, 1))
+    a[:states] = np.hstack([plant.a, plant.b[:, [_CLUTCH]]])  # the last state is u of k - 1
+    b[states] = 1.0
+    g = np.zeros((states + 1, 3))
+    g[:states, [0, 2]] = plant.b[:, [_ENGINE, _LOAD]]
+    c, d, f = np.zeros((2, states + 1)), np.zeros((2, 1)), np.zeros((2, 3))
+    c[0, :states] = plant.c[0]
+    rate = torque_rate_weight / PERIOD_S
+    c[1, states], d[1, 0] = -rate, rate
+    f[1, 1] = -rate * constant_slip_torque(driveline, 1.0, 0.0)
+    ramp = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    return _Problem(a, b, g, ramp, c, d, f)
+
+
+def _actuator_stage() -> StateSpace:
+    """Return G_a for the request, second of three inputs, with C_m and C_load passed through."""
+    actuator = ACTUATOR.to_state_space()
+    states = len(actuator.a)
+    b, c = np.zeros((states, 3)), np.zeros((3, states))
+    b[:, [_CLUTCH]], c[_CLUTCH] = actuator.b, actuator.c[0]
+    return StateSpace(actuator.a, b, c, np.diag([1.0, 0.0, 1.0]))
+
+
+def _relative_driveline(driveline: DrivelineParameters) -> StateSpace:
+    """
+    Return x = y = [w_d, w_sr, theta_sr] for [C_m, C_f, C_load]: the driveline of Section 1.5.
+
+    The drags c_m and c_prim are left out: without them the common speed acts on nothing, and with
+    them the filter would remember it for minutes (the pole of C_1 at -0.0059 rad/s).
+    """
+    free = driveline_matrices(replace(driveline, engine_damping=0.0, shaft_damping=0.0))
+    relative = np.vstack([free.c, [0.0, 0.0, 0.0, 1.0]])
+    with_shaft_at_rest = np.zeros((4, 3))
+    with_shaft_at_rest[0, 0], with_shaft_at_rest[2, 1], with_shaft_at_rest[3, 2] = 1.0, -1.0, 1.0
+    a, b = relative @ free.a @ with_shaft_at_rest, relative @ free.b
+    return StateSpace(a, b, np.eye(3), np.zeros((3, 3)))
+
+
+def _optimal_gains(problem: _Problem) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return K (n,) and K_w (3,) of the optimal u = -K x - K_w w.
+
+    With the value x' P x + 2 x' X w + ..., P solves the Riccati equation and X the linear one
+    X = A_c' X S + A_c' P G + C_c' F, A_c = A - B K, C_c = C - D K. That has a solution although
+    ramps do not decay, because A_c does.
+    """
+    p = problem
+    try:
+        value = solve_discrete_are(p.a, p.b, p.c.T @ p.c, p.d.T @ p.d, s=p.c.T @ p.d)
+    except (np.linalg.LinAlgError, ValueError) as error:
+        raise _no_filter(str(error)) from error
+    weight = (p.d.T @ p.d + p.b.T @ value @ p.b)[0, 0]
+    state_gain = (p.b.T @ value @ p.a + p.d.T @ p.c)[0] / weight
+    closed, output = p.a - p.b * state_gain, p.c - p.d * state_gain
+    constant = closed.T @ value @ p.g + output.T @ p.f
+    equations = np.eye(constant.size) - np.kron(closed.T, p.s.T)
+    coupling = np.linalg.solve(equations, constant.ravel()).reshape(constant.shape)
+    disturbance_gain = (p.b.T @ (value @ p.g + coupling @ p.s) + p.d.T @ p.f)[0] / weight
+    return state_gain, disturbance_gain
+
+
+def _no_filter(reason: str) -> DdctError:
+    return DdctError(
+        f'feedforward: no stable filter for this driveline ({reason}): check driveline.* in the '
+        'scenario, or choose the architecture base'
+    )

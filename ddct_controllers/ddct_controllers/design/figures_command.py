@@ -1,0 +1,102 @@
+"""Subcommand `design figures`: the thesis's figures as pictures with a gallery."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.output_file import write_text
+from ddct_plant.page_tables import fill_tables, read_page
+
+_DESCRIPTION = """\
+Draw the figures of the thesis's Chapters 1 to 3 and Figure 5.1 that can be computed,
+as figure_<chapter>_<number>.png, with a page index.html that shows those just drawn and
+tells what agrees with the thesis and what does not. Closed-loop figures come from
+ddct_bringup: they need the installed workspace."""
+_EXAMPLES = """\
+examples:
+  design figures --out figures
+  design figures --out figures --only 2.10,3.5 --overwrite
+  design figures --out figures --overwrite --write-doc docs/figures.md"""
+_PAGE = 'index.html'
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `figures` to the subcommands of `design`."""
+    parser = subparsers.add_parser(
+        'figures',
+        help='the figures of the thesis, and a page that shows them',
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--out', required=True, metavar='DIR', help='folder, created if absent')
+    parser.add_argument('--only', metavar='N,N...', help='numbers such as 2.10,3.5')
+    parser.add_argument(
+        '--overwrite', action='store_true', help='replace earlier figures in the folder'
+    )
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw into the folder and return the exit code."""
+    # Matplotlib takes half a second to import: the other subcommands do without.
+    try:
+        from ddct_controllers.design.chart_style import chart_style, save_chart
+        from ddct_controllers.design.thesis_figures import collect, gallery
+    except ModuleNotFoundError as error:
+        raise DdctError(f'figures: Python package {error.name} is missing: install it') from None
+
+    if options.write_doc and options.only:
+        raise ParameterError('--write-doc is for all figures: leave out --only')
+    page = read_page(options.write_doc) if options.write_doc else ''
+    figures = collect.collect_figures()
+    numbers = {figure.number for figure in figures}
+    not_drawn = collect.figures_not_drawn(numbers)
+    if options.only:
+        wanted = _wanted(options.only, numbers, not_drawn)
+        figures = [figure for figure in figures if figure.number in wanted]
+    folder = Path(options.out)
+    pictures = [folder / gallery.picture_name(figure.number) for figure in figures]
+    _make_room(folder, [*pictures, folder / _PAGE], gallery.GENERATOR, options.overwrite)
+    drawn = []
+    for count, (figure, picture) in enumerate(zip(figures, pictures, strict=True), start=1):
+        print(f'{count}/{len(figures)} {figure.heading}', file=sys.stderr, flush=True)
+        with chart_style():
+            drawing = figure.draw(figure.heading)
+            save_chart(drawing.figure, picture)
+        drawn.append(gallery.DrawnFigure(figure, drawing.remark))
+    write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
+    if options.write_doc:
+        tables = gallery.page_tables(drawn, not_drawn)
+        write_text(options.write_doc, fill_tables(page, 'figures', tables))
+    print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
+    return 0
+
+
+def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:
+    wanted = {number.strip() for number in only.split(',')}
+    for number in sorted(wanted - numbers):
+        if number in not_drawn:
+            raise ParameterError(f'figure {number} is not drawn: {not_drawn[number]}')
+        raise ParameterError(f'--only: the thesis has no figure {number!r}; write 2.10,3.5')
+    return wanted
+
+
+def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool) -> None:
+    """Create the folder; raise DdctError when a file in it would be lost."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        taken = [path for path in files if path.exists()]
+        page = folder / _PAGE
+        ours = not page.exists() or generator in page.read_text(encoding='utf-8')
+    except UnicodeDecodeError:
+        ours = False
+    except OSError as error:
+        raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
+    if not ours:
+        raise DdctError(f'{page} is not a page of ours: choose another --out')
+    if taken and not overwrite:
+        raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')

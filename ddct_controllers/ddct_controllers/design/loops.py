@@ -1,0 +1,105 @@
+"""The loop opened at the slip error, L = G_c G_a P_2 30/pi K_usura, continuous and sampled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.design.state_space import series
+from ddct_plant.checks import require_number
+from ddct_plant.driveline_model import clutch_to_slip, driveline_matrices
+from ddct_plant.errors import ParameterError
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.timebase import PERIOD_S
+from ddct_plant.units import RPM_PER_RAD_S
+
+IDENTIFIED_DRIVELINE = DrivelineParameters()
+
+
+@dataclass(frozen=True)
+class ContinuousLoop:
+    """A continuous L(s), with a dead time if the actuator's delay is counted."""
+
+    transfer_function: FactoredTransferFunction
+    """L(s) without the dead time."""
+    delay_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the delay; raise ParameterError when it is bad."""
+        require_number('delay_s', self.delay_s, at_least=0.0)
+
+    def response(self, omega: np.ndarray) -> np.ndarray:
+        """Return L(j omega), the shape of `omega`, at frequencies in rad/s."""
+        delay = np.exp(-1j * self.delay_s * np.asarray(omega, dtype=float))
+        return self.transfer_function.frequency_response(omega) * delay
+
+    def to_state_space(self) -> StateSpace:
+        """Return a realisation; raise ParameterError for a loop with delay, which has none."""
+        if self.delay_s:
+            raise ParameterError(
+                f'loop: a delay of {self.delay_s:g} s has no state space: leave it out, or sample'
+            )
+        return self.transfer_function.to_state_space()
+
+
+def plant_in_rpm(
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE, wear_gain: float = 1.0
+) -> FactoredTransferFunction:
+    """Return G_a P_2 30/pi K_usura: slip speed in rpm for the torque requested in N m."""
+    gain = FactoredTransferFunction(RPM_PER_RAD_S * wear_gain)
+    return gain * ACTUATOR * clutch_to_slip(parameters)
+
+
+def continuous_loop(
+    controller: FactoredTransferFunction,
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    wear_gain: float = 1.0,
+    delay_s: float = 0.0,
+) -> ContinuousLoop:
+    """
+    Return L(s) = G_c G_a P_2 30/pi K_usura for a controller in N m per rpm of error.
+
+    The thesis designs and judges its loops without hold and delay (Sections 2.2 and 3.2).
+    """
+    return ContinuousLoop(controller * plant_in_rpm(parameters, wear_gain), delay_s)
+
+
+def sampled_plant(
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE, wear_gain: float = 1.0
+) -> StateSpace:
+    """
+    Return z^-1 times G_a P_2 30/pi K_usura under a zero-order hold at 10 ms.
+
+    States: the delayed request in N m, those of G_a, then [w_m, w_p, w_r, theta_sr]. Output: slip
+    speed in rpm. The run holds the actuator's torque as 1 ms straight lines, which is within 5e-5
+    of this.
+    """
+    driveline = driveline_matrices(parameters)
+    clutch_to_slip_rpm = StateSpace(
+        driveline.a,
+        driveline.b[:, 1:2] * wear_gain,
+        driveline.c[:1] * RPM_PER_RAD_S,
+        driveline.d[:1, 1:2],
+    )
+    held = discretise_zoh(series(ACTUATOR.to_state_space(), clutch_to_slip_rpm), PERIOD_S)
+    one = np.ones((1, 1))
+    delay = StateSpace(np.zeros((1, 1)), one, one, np.zeros((1, 1)), PERIOD_S)
+    return series(delay, held)
+
+
+def sampled_loop(
+    controller: StateSpace,
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    wear_gain: float = 1.0,
+) -> StateSpace:
+    """
+    Return L(z), the loop as it runs: a controller sampled at 10 ms, the hold and the delay.
+
+    `controller` maps the error in rpm to the torque in N m; its states come first. Raise
+    ParameterError when it is not sampled at 10 ms.
+    """
+    if controller.period_s != PERIOD_S:
+        kind = f'sampled at {controller.period_s} s' if controller.period_s else 'continuous'
+        raise ParameterError(f'controller is {kind}: discretise it at {PERIOD_S} s')
+    return series(controller, sampled_plant(parameters, wear_gain))

@@ -1,0 +1,115 @@
+"""Time specifications and what they ask of S, T and L, by the second-order prototype."""
+
+import math
+from dataclasses import dataclass
+
+from ddct_plant.checks import require_number
+from ddct_plant.errors import ParameterError
+
+LONGEST_RISE_TIME_S = 5.0
+"""An engagement takes about a second."""
+
+
+class SpecificationError(ParameterError):
+    """A specification makes no sense, or no controller of the kind asked for meets it."""
+
+
+@dataclass(frozen=True)
+class TimeSpecifications:
+    """
+    Rise time and overshoot of the step response, with their translation (Sections 2.2 and 3.2).
+
+    The prototype is T(s) = w_n^2 / (s^2 + 2 zeta w_n s + w_n^2), L = w_n^2 / (s (s + 2 zeta w_n)).
+    """
+
+    rise_time_s: float
+    """t_r, until the first crossing of the final value."""
+    overshoot: float
+    """s^, as a fraction of the final value: 0.14 is 14 %."""
+
+    def __post_init__(self) -> None:
+        """Check both; raise SpecificationError that names a bad one."""
+        try:
+            rise_time_s = require_number('rise time', self.rise_time_s, unit='s', above=0.0)
+            require_number('rise time', rise_time_s, unit='s', at_most=LONGEST_RISE_TIME_S)
+            percent = 100.0 * require_number('overshoot', self.overshoot)
+            require_number('overshoot', percent, unit='%', above=0.0)
+        except ParameterError as error:
+            raise SpecificationError(str(error)) from error
+        if percent >= 100.0:
+            raise SpecificationError(
+                f'overshoot is {percent:g} %: it must be below 100 %, where oscillation never ends'
+            )
+
+    @property
+    def damping(self) -> float:
+        """Least zeta, that of `damping_of_overshoot`."""
+        return damping_of_overshoot(self.overshoot)
+
+    @property
+    def sensitivity_peak(self) -> float:
+        """S_p, the bound on max |S|."""
+        return prototype_sensitivity_peak(self.damping)
+
+    @property
+    def complementary_peak(self) -> float:
+        """T_p, the bound on max |T|."""
+        return prototype_complementary_peak(self.damping)
+
+    @property
+    def natural_frequency_rad_s(self) -> float:
+        """Least w_n, (pi - arccos zeta) / (t_r sqrt(1 - zeta^2)) (Section 3.2)."""
+        return rise_angle(self.damping) / self.rise_time_s
+
+    @property
+    def crossover_rad_s(self) -> float:
+        """Least w_c, from t_r w_c at this zeta."""
+        return rise_time_crossover_product(self.damping) / self.rise_time_s
+
+
+def damping_of_overshoot(overshoot: float) -> float:
+    """Return zeta = |ln s^| / sqrt(pi^2 + ln^2 s^), s^ being a fraction in (0, 1)."""
+    logarithm = math.log(overshoot)
+    return -logarithm / math.hypot(math.pi, logarithm)
+
+
+def prototype_sensitivity_peak(damping: float) -> float:
+    """
+    Return S_p = max |S| of the prototype.
+
+    S_p = 2 zeta sqrt(2 + 4 zeta^2 + 2 r) / (r + 4 zeta^2 - 1) with r = sqrt(1 + 8 zeta^2).
+    """
+    root = math.sqrt(1.0 + 8.0 * damping**2)
+    above = 2.0 * damping * math.sqrt(2.0 + 4.0 * damping**2 + 2.0 * root)
+    return above / (root + 4.0 * damping**2 - 1.0)
+
+
+def prototype_complementary_peak(damping: float) -> float:
+    """Return T_p = max |T| = 1 / (2 zeta sqrt(1 - zeta^2)), and 1 from zeta = 1/sqrt(2) on."""
+    if damping >= math.sqrt(0.5):
+        return 1.0
+    return 1.0 / (2.0 * damping * math.sqrt(1.0 - damping**2))
+
+
+def rise_angle(damping: float) -> float:
+    """
+    Return w_n t_r = (pi - arccos zeta) / sqrt(1 - zeta^2) of the prototype.
+
+    Section 3.2 prints the numerator without its minus sign.
+    """
+    return (math.pi - math.acos(damping)) / math.sqrt(1.0 - damping**2)
+
+
+def crossover_ratio(damping: float) -> float:
+    """Return w_c / w_n = sqrt(sqrt(1 + 4 zeta^4) - 2 zeta^2), where |L| of the prototype is 1."""
+    return math.sqrt(math.sqrt(1.0 + 4.0 * damping**4) - 2.0 * damping**2)
+
+
+def rise_time_crossover_product(damping: float) -> float:
+    """Return t_r w_c of the prototype: the curve of Figure 2.2."""
+    return rise_angle(damping) * crossover_ratio(damping)
+
+
+def prototype_phase_margin(damping: float) -> float:
+    """Return pi + arg L(j w_c) = arctan(2 zeta w_n / w_c) of the prototype, in rad."""
+    return math.atan2(2.0 * damping, crossover_ratio(damping))

@@ -1,0 +1,1 @@
+"""Every number that the thesis prints, beside what this repository computes for it."""

@@ -1,0 +1,67 @@
+"""Read the gate's file, `numbers.yaml`: groups of numbers that share a section or a reason."""
+
+import importlib.resources
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any
+
+import yaml
+
+from ddct_controllers.design.thesis.thesis_number import ThesisNumber, Tolerance
+from ddct_plant.errors import ParameterError
+
+_KEYS = frozenset(field.name for field in fields(ThesisNumber))
+_NUMBERS = 'numbers'
+
+
+def thesis_numbers() -> tuple[ThesisNumber, ...]:
+    """Return every number of the file in the order of the sections."""
+    file = importlib.resources.files('ddct_controllers.design.thesis') / 'numbers.yaml'
+    return parse_numbers(file.read_text(encoding='utf-8'))
+
+
+def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
+    """
+    Return the numbers that the YAML text lists, in the order of the sections.
+
+    It is a list of groups; each has a list `numbers` of entries, and any other key as default of
+    all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one.
+    """
+    numbers = tuple(_entries(yaml.safe_load(text)))
+    names = Counter(f'{number.section}, {number.item}' for number in numbers)
+    repeated = [name for name, count in names.items() if count > 1]
+    if repeated:
+        raise ParameterError(f'given twice: {"; ".join(repeated)}')
+    return tuple(sorted(numbers, key=_place))
+
+
+def _place(number: ThesisNumber) -> tuple[int, ...]:
+    """Return the section as numbers, without what follows a comma in it, such as a table."""
+    digits = number.section.partition(',')[0]
+    try:
+        return tuple(int(part) for part in digits.split('.'))
+    except ValueError:
+        raise ParameterError(f'section {number.section!r}: begin with numbers, 3.2') from None
+
+
+def _entries(groups: list[Mapping[str, Any]]) -> Iterator[ThesisNumber]:
+    for group in groups:
+        defaults = {key: value for key, value in group.items() if key != _NUMBERS}
+        for entry in group[_NUMBERS]:
+            yield _number({**defaults, **entry})
+
+
+def _number(entry: dict[str, Any]) -> ThesisNumber:
+    name = f'{entry.get("section")}, {entry.get("item")}'
+    unknown = sorted(entry.keys() - _KEYS)
+    if unknown:
+        raise ParameterError(f'{name}: unknown key {", ".join(unknown)}')
+    for key, value in entry.items():
+        if key != 'tolerance' and not isinstance(value, str):
+            raise ParameterError(f'{name}: {key} is {value!r}: put it in quotes')
+    tolerance = entry.pop('tolerance', None)
+    try:
+        return ThesisNumber(**entry, tolerance=Tolerance(**tolerance) if tolerance else None)
+    except TypeError as error:
+        raise ParameterError(f'{name}: {error}') from error

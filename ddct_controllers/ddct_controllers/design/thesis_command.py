@@ -1,0 +1,86 @@
+"""Subcommand `design thesis`: every number that the thesis prints, beside ours."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from ddct_controllers.design.thesis.gate import GateRow, judge
+from ddct_controllers.design.thesis.gate_tables import (
+    chapter_tables,
+    errata_table,
+    page_tables,
+    summary_table,
+)
+from ddct_controllers.design.thesis.number_file import thesis_numbers
+from ddct_controllers.design.thesis.sources import all_sources, compute
+from ddct_plant.errors import DdctError
+from ddct_plant.output_file import STDOUT, write_json, write_text
+from ddct_plant.page_tables import fill_tables, read_page
+from ddct_plant.table import print_table
+
+_DESCRIPTION = """\
+Compute every number that the thesis prints and hold it against the print:
+reproduced, calibrated (fitted to), predicted, erratum (with our value),
+not_reproducible (with the reason) or pending (still to be built)."""
+_EPILOG = """\
+examples:
+  design thesis
+  design thesis --json numbers.json
+  design thesis --json -                  as JSON on standard output, alone
+  design thesis --write-doc docs/thesis_gate.md
+
+The exit code is 0 when every claim holds: what is called reproduced or calibrated is
+within its tolerance, and every erratum differs from the print and is the value given
+as ours. Chapter 5 needs the closed loop of ddct_bringup."""
+_SHOWN_COMPLAINTS = 3
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `thesis` to the subcommands of `design`."""
+    parser = subparsers.add_parser(
+        'thesis',
+        help="the thesis's numbers beside ours",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--json', metavar='FILE', help='write all numbers; - is standard output')
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
+    page = read_page(options.write_doc) if options.write_doc else ''
+    rows = judge(thesis_numbers(), compute(all_sources(), _progress))
+    if options.json != STDOUT:
+        _print(rows)
+    if options.json:
+        write_json(options.json, {'numbers': [row.as_dict() for row in rows]})
+    _require_all(rows)
+    if options.write_doc:
+        write_text(options.write_doc, fill_tables(page, 'thesis', page_tables(rows)))
+    return 0
+
+
+def _progress(name: str) -> None:
+    print(f'design thesis: {name}', file=sys.stderr, flush=True)
+
+
+def _print(rows: Sequence[GateRow]) -> None:
+    tables = chapter_tables(rows, reasons=False).values()
+    for table in (*tables, errata_table(rows), summary_table(rows)):
+        print_table(table.title, table.headers, table.rows)
+
+
+def _require_all(rows: Sequence[GateRow]) -> None:
+    broken = [
+        f'{row.number.section}, {row.number.item}: {row.complaint}'
+        for row in rows
+        if row.complaint
+    ]
+    if broken:
+        more = len(broken) - _SHOWN_COMPLAINTS
+        rest = f'; and {more} more' if more > 0 else ''
+        raise DdctError(f'the gate does not hold: {"; ".join(broken[:_SHOWN_COMPLAINTS])}{rest}')

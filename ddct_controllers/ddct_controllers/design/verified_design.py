@@ -1,0 +1,88 @@
+"""What a linear controller does in the loop as it runs: sampled, held, delayed, clutch worn."""
+
+from dataclasses import dataclass
+
+from ddct_controllers.design.loop_curve import LoopCurve
+from ddct_controllers.design.loop_stability import closed_loop_stable
+from ddct_controllers.design.loops import sampled_loop
+from ddct_controllers.design.margins import LoopMargins, loop_margins
+from ddct_controllers.design.nichols import Contour, contours
+from ddct_controllers.design.specifications import TimeSpecifications
+from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.timebase import PERIOD_S
+
+WEAR_GAINS = (0.7, 1.3)
+"""Ends of the range of K_usura, inequality (3.2)."""
+LARGEST_SENSITIVITY_PEAK = 2.0
+"""Bound on M_s, whatever the overshoot: at least 30 degrees and 6 dB of margin."""
+_LOOK_AHEAD = 40.0
+"""Length of the step response in rise times asked for."""
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Figures of the sampled loop with hold and delay, beside the specifications."""
+
+    specifications: TimeSpecifications
+    margins: LoopMargins
+    rise_time_s: float | None
+    """None when the output never reaches the final value in the time looked at."""
+    overshoot: float | None
+    """Fraction; None for an unstable loop."""
+    contours: tuple[Contour, ...]
+    """At the curves of S_p and T_p."""
+    stable_when_worn: tuple[bool, ...]
+    """For each of WEAR_GAINS."""
+
+    @property
+    def complaints(self) -> tuple[str, ...]:
+        """What keeps the controller from being accepted; empty for a good one."""
+        if not self.margins.stable:
+            return ('the closed loop is unstable',)
+        found = []
+        limit_s, limit = self.specifications.rise_time_s, self.specifications.overshoot
+        if self.rise_time_s is None or self.rise_time_s > limit_s:
+            reached = 'never' if self.rise_time_s is None else f'{self.rise_time_s:.3f} s'
+            found.append(f'rise time {reached}, above {limit_s:g} s')
+        if self.overshoot is None or self.overshoot > limit:
+            found.append(f'overshoot above {100.0 * limit:g} %')
+        peak = self.margins.sensitivity_peak
+        if peak is None or peak > LARGEST_SENSITIVITY_PEAK:
+            found.append(f'sensitivity peak M_s above {LARGEST_SENSITIVITY_PEAK:g}')
+        for wear_gain, stable in zip(WEAR_GAINS, self.stable_when_worn, strict=True):
+            if not stable:
+                found.append(f'unstable with wear gain {wear_gain:g}')
+        return tuple(found)
+
+    @property
+    def respects_contours(self) -> bool:
+        """Whether L stays out of the S_p and the T_p curve."""
+        return self.margins.stable and all(contour.respected for contour in self.contours)
+
+
+def verify(
+    controller: FactoredTransferFunction,
+    specifications: TimeSpecifications,
+    parameters: DrivelineParameters,
+) -> Verification:
+    """Return what the controller, discretised as in the run, does in the sampled loop."""
+    sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
+    loop = sampled_loop(sampled, parameters)
+    margins = loop_margins(loop)
+    worn = tuple(
+        closed_loop_stable(sampled_loop(sampled, parameters, wear_gain))
+        for wear_gain in WEAR_GAINS
+    )
+    if not margins.stable:
+        return Verification(specifications, margins, None, None, (), worn)
+    reached_s, highest = step_figures(loop, _LOOK_AHEAD * specifications.rise_time_s)
+    at_contours = contours(LoopCurve(loop), specifications)
+    return Verification(specifications, margins, reached_s, highest, at_contours, worn)
+
+
+def step_figures(loop: StateSpace, duration_s: float) -> tuple[float | None, float]:
+    """Return rise time in s and overshoot as a fraction of a sampled loop."""
+    response = step_response(loop, duration_s)
+    return rise_time_s(*response), overshoot(*response)

@@ -1,0 +1,194 @@
+"""Margins are exact: against closed forms, python-control, and the closed loop's poles."""
+
+import math
+
+import control
+import numpy as np
+import pytest
+
+from ddct_controllers.design.loop_stability import closed_loop_stable, unstable_poles
+from ddct_controllers.design.loops import ContinuousLoop, continuous_loop, sampled_loop
+from ddct_controllers.design.margins import LoopMargins, loop_margins
+from ddct_controllers.design.state_space import frequency_response, scaled, series
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.timebase import PERIOD_S
+
+NAMES = sorted(PRINTED_CONTROLLERS)
+
+
+def sampled(name: str, wear_gain: float = 1.0) -> StateSpace:
+    controller = PRINTED_CONTROLLERS[name].to_state_space()
+    return sampled_loop(discretise_zoh(controller, PERIOD_S), wear_gain=wear_gain)
+
+
+def of_control(loop: StateSpace) -> control.StateSpace:
+    return control.ss(loop.a, loop.b, loop.c, loop.d, loop.period_s or 0)
+
+
+def delayed(loop: StateSpace, samples: int) -> StateSpace:
+    one, zero = np.ones((1, 1)), np.zeros((1, 1))
+    return series(loop, *[StateSpace(zero, one, one, zero, PERIOD_S)] * samples)
+
+
+def test_margins_of_a_third_order_loop_in_closed_form():
+    """L = 0.5/(s (s+1)^2): |L| = 1/2 at -180 deg, w = 1; |L| = 1 where w^3 + w = 0.5."""
+    margins = loop_margins(ContinuousLoop(FactoredTransferFunction(0.5, (), (0.0, 1.0, 1.0))))
+    crossover = float(np.roots([1.0, 0.0, 1.0, -0.5])[-1].real)
+    phase = math.pi / 2.0 - 2.0 * math.atan(crossover)
+    assert margins.stable
+    assert margins.gain_margin_db == pytest.approx(20.0 * math.log10(4.0), abs=1e-9)
+    assert margins.gain_reduction_margin_db == math.inf
+    assert margins.crossover_rad_s == pytest.approx(crossover, rel=1e-9)
+    assert margins.phase_margin_deg == pytest.approx(math.degrees(phase), abs=1e-8)
+    assert margins.delay_margin_s == pytest.approx(phase / crossover, rel=1e-9)
+
+
+def test_peaks_and_bandwidth_of_a_second_order_loop_in_closed_form():
+    """T = 1/(s^2 + 2 zeta s + 1): M_t = 1/(2 zeta sqrt(1 - zeta^2)), S = s (s + 2 zeta) T."""
+    zeta = 0.3
+    margins = loop_margins(ContinuousLoop(FactoredTransferFunction(1.0, (), (0.0, 2.0 * zeta))))
+    damped = 1.0 - 2.0 * zeta**2
+    omega = np.linspace(0.5, 3.0, 1_000_001)
+    distance = np.abs(-(omega**2) + 2.0j * zeta * omega)
+    sensitivity = distance / np.abs(1.0 - omega**2 + 2.0j * zeta * omega)
+    assert margins.complementary_peak == pytest.approx(
+        1.0 / (2.0 * zeta * math.sqrt(1.0 - zeta**2)), rel=1e-9
+    )
+    assert margins.sensitivity_peak == pytest.approx(sensitivity.max(), rel=1e-9)
+    assert margins.bandwidth_rad_s == pytest.approx(
+        math.sqrt(damped + math.sqrt(damped**2 + 1.0)), rel=1e-9
+    )
+    assert margins.gain_margin_db == math.inf
+
+
+@pytest.mark.parametrize('name', ['ls3', 'ls8', 'hinf2'])
+def test_they_are_those_of_python_control(name):
+    """Its margins interpolate between 3000 points and its disk margin takes the least of them."""
+    for loop in (continuous_loop(PRINTED_CONTROLLERS[name]).to_state_space(), sampled(name)):
+        found = loop_margins(loop)
+        last = math.pi / loop.period_s if loop.period_s else 1e3
+        omega = np.geomspace(1e-2, last, 3000)
+        values = frequency_response(loop, omega)
+        frd = control.frd(values, omega, smooth=True)
+        gain, phase, _, _, crossover, _ = control.stability_margins(frd)
+        assert found.gain_margin_db == pytest.approx(20.0 * math.log10(gain), abs=1e-3)
+        assert found.phase_margin_deg == pytest.approx(phase, abs=1e-3)
+        assert found.crossover_rad_s == pytest.approx(crossover, rel=1e-4)
+        disk = control.disk_margins(of_control(loop), omega, skew=0.0)[0]
+        assert found.disk_margin == pytest.approx(disk, rel=1e-3)
+        assert found.disk_margin <= disk * (1.0 + 1e-9)
+        assert found.sensitivity_peak == pytest.approx(
+            np.max(1.0 / np.abs(1.0 + values)), rel=1e-3
+        )
+        assert found.complementary_peak == pytest.approx(
+            np.max(np.abs(values / (1.0 + values))), rel=1e-3
+        )
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_the_gain_margins_are_where_poles_reach_the_unit_circle(name):
+    """Stable 0.1 % inside both, unstable 0.1 % outside, by eigenvalues of the closed loop."""
+    loop = sampled(name)
+    margins = loop_margins(loop)
+    raising = 10.0 ** (margins.gain_margin_db / 20.0)
+    lowering = 10.0 ** (-margins.gain_reduction_margin_db / 20.0)
+    assert closed_loop_stable(scaled(loop, raising * 0.999))
+    assert not closed_loop_stable(scaled(loop, raising * 1.001))
+    if lowering > 0.0:
+        assert closed_loop_stable(scaled(loop, lowering * 1.001))
+        assert not closed_loop_stable(scaled(loop, lowering * 0.999))
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_the_delay_margin_says_how_many_samples_of_delay_are_stable(name):
+    loop = sampled(name)
+    samples = math.floor(loop_margins(loop).delay_margin_s / PERIOD_S)
+    assert closed_loop_stable(delayed(loop, samples))
+    assert not closed_loop_stable(delayed(loop, samples + 1))
+
+
+@pytest.mark.parametrize(
+    ('name', 'crossover', 'phase', 'gain', 'complementary'),
+    [('ls2', 7.08, 55.0, 12.97, 1.185), ('ls7', 3.79, 73.7, 27.04, 1.150)],
+)
+def test_g_c1_and_g_c2_exceed_their_t_p_without_hold_and_delay(
+    name, crossover, phase, gain, complementary
+):
+    """Equations (2.1), (2.2): M_t of both is above the T_p = 1.11 of Section 2.2."""
+    margins = loop_margins(continuous_loop(PRINTED_CONTROLLERS[name]))
+    assert margins.crossover_rad_s == pytest.approx(crossover, abs=0.01)
+    assert margins.phase_margin_deg == pytest.approx(phase, abs=0.05)
+    assert margins.gain_margin_db == pytest.approx(gain, abs=0.01)
+    assert margins.complementary_peak == pytest.approx(complementary, abs=0.001)
+
+
+def test_hinf2_has_little_margin_in_the_loop_as_it_runs():
+    """M_s is 1.45 on paper, 3.35 with hold and delay, 9.66 at a wear gain of 1.3."""
+    paper = loop_margins(continuous_loop(PRINTED_CONTROLLERS['hinf2']))
+    assert paper.sensitivity_peak == pytest.approx(1.454, abs=0.001)
+    assert loop_margins(sampled('hinf2')).sensitivity_peak == pytest.approx(3.354, abs=0.001)
+    assert loop_margins(sampled('hinf2', 1.3)).sensitivity_peak == pytest.approx(9.656, abs=0.005)
+
+
+def test_an_unstable_loop_has_no_margins():
+    loop = sampled('hinf2', 1.6)
+    assert loop_margins(loop) == LoopMargins(stable=False)
+    assert vars(LoopMargins(stable=False)) == {
+        'stable': False,
+        **dict.fromkeys(
+            ('gain_margin_db', 'gain_reduction_margin_db', 'phase_margin_deg', 'delay_margin_s')
+            + ('disk_margin', 'sensitivity_peak', 'complementary_peak', 'crossover_rad_s')
+            + ('bandwidth_rad_s',)
+        ),
+    }
+
+
+def test_a_loop_that_needs_its_gain_has_a_reduction_margin():
+    """L = 3/(s - 1): the closed loop s + k - 1 is stable for every gain k above 1."""
+    margins = loop_margins(ContinuousLoop(FactoredTransferFunction(3.0, (), (-1.0,))))
+    assert margins.gain_reduction_margin_db == pytest.approx(20.0 * math.log10(3.0), abs=1e-9)
+    assert margins.gain_margin_db == math.inf
+
+
+def test_a_weak_loop_never_crosses_over():
+    margins = loop_margins(ContinuousLoop(FactoredTransferFunction(0.5, (), (1.0,))))
+    assert margins.crossover_rad_s == 0.0
+    assert margins.bandwidth_rad_s == 0.0
+    assert margins.phase_margin_deg == math.inf
+    assert margins.delay_margin_s == math.inf
+
+
+@pytest.mark.parametrize(('delay_s', 'poles'), [(1.5, 0), (1.6, 2), (7.8, 2), (7.9, 4)])
+def test_dead_time_around_an_integrator_moves_two_poles_at_a_time(delay_s, poles):
+    """1 + exp(-s tau)/s: pairs cross at tau = pi/2, 5 pi/2, ..."""
+    loop = ContinuousLoop(FactoredTransferFunction(1.0, (), (0.0,)), delay_s)
+    assert unstable_poles(loop) == poles
+
+
+def test_dead_time_can_stabilise_what_is_unstable_without():
+    """L = -0.5/(s^2 - 0.02 s + 1): a delay makes the feedback of position one of speed."""
+    oscillator = FactoredTransferFunction(-0.5, (), ((-0.02, 1.0),))
+    stable = [closed_loop_stable(ContinuousLoop(oscillator, delay)) for delay in (0.0, 1.0, 6.2)]
+    pade = [0]
+    for delay in (1.0, 6.2):
+        approximation = control.tf(*control.pade(delay, 12))
+        loop = control.tf([-0.5], [1.0, -0.02, 1.0]) * approximation
+        pade.append(int(np.all(control.feedback(loop, 1).poles().real < 0.0)))
+    assert stable == [bool(value) for value in pade]
+    assert any(stable)
+
+
+@pytest.mark.parametrize('name', ['ls2', 'ls7', 'hinf2'])
+@pytest.mark.parametrize('delay_s', [0.01, 0.03, 0.05])
+def test_dead_time_counts_as_a_high_order_pade_approximation_does(name, delay_s):
+    controller = PRINTED_CONTROLLERS[name]
+    loop = of_control(continuous_loop(controller).to_state_space())
+    pade = control.tf2ss(*control.pade(delay_s, 6))
+    poles = control.feedback(loop * pade, 1).poles()
+    found = continuous_loop(controller, delay_s=delay_s)
+    assert closed_loop_stable(found) == bool(np.all(poles.real < 0.0))
+    without = loop_margins(continuous_loop(controller)).delay_margin_s
+    assert closed_loop_stable(found) == (delay_s < without)
+    if closed_loop_stable(found):
+        assert loop_margins(found).delay_margin_s == pytest.approx(without - delay_s, rel=1e-6)

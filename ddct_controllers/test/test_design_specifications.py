@@ -1,0 +1,129 @@
+"""Time specifications become the thesis's numbers, and those that make no sense are named."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from ddct_controllers.design.crossover_bound import (
+    highest_crossover_rad_s,
+    require_reachable,
+    unavoidable_lag,
+)
+from ddct_controllers.design.loops import ContinuousLoop
+from ddct_controllers.design.margins import loop_margins
+from ddct_controllers.design.specifications import (
+    SpecificationError,
+    TimeSpecifications,
+    prototype_complementary_peak,
+    prototype_phase_margin,
+    prototype_sensitivity_peak,
+    rise_time_crossover_product,
+)
+from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.printed import ACTUATOR
+
+CHAPTER_2 = TimeSpecifications(rise_time_s=0.25, overshoot=0.14)
+CHAPTER_3 = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
+
+
+def prototype(damping: float) -> ContinuousLoop:
+    """Return L = 1/(s (s + 2 zeta)), w_n = 1."""
+    return ContinuousLoop(FactoredTransferFunction(1.0, (), (0.0, 2.0 * damping)))
+
+
+@pytest.mark.parametrize(
+    ('computed', 'printed', 'tolerance'),
+    [
+        (CHAPTER_2.damping, 0.5305, 5e-5),
+        (CHAPTER_2.sensitivity_peak, 1.427, 5e-4),
+        (CHAPTER_2.complementary_peak, 1.112, 5e-4),
+        (CHAPTER_3.damping, 0.627, 5e-4),
+        (CHAPTER_3.sensitivity_peak, 1.33, 5e-3),
+        (CHAPTER_3.complementary_peak, 1.024, 5e-4),
+        (CHAPTER_3.natural_frequency_rad_s, 9.61, 5e-3),
+    ],
+)
+def test_the_thesis_translations_come_out(computed, printed, tolerance):
+    assert computed == pytest.approx(printed, abs=tolerance)
+
+
+@pytest.mark.parametrize('damping', [0.2, 0.5305, 0.63, 0.69])
+def test_the_formulas_are_those_of_the_prototype(damping):
+    """Its margins and its step response, both computed without them."""
+    loop = prototype(damping)
+    margins = loop_margins(loop)
+    time, output = step_response(loop, 40.0)
+    expected = math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
+    assert overshoot(time, output) == pytest.approx(expected, rel=1e-5)
+    assert TimeSpecifications(1.0, expected).damping == pytest.approx(damping, rel=1e-12)
+    assert prototype_sensitivity_peak(damping) == pytest.approx(margins.sensitivity_peak, rel=1e-8)
+    assert prototype_complementary_peak(damping) == pytest.approx(
+        margins.complementary_peak, rel=1e-8
+    )
+    assert math.degrees(prototype_phase_margin(damping)) == pytest.approx(
+        margins.phase_margin_deg, abs=1e-6
+    )
+    assert rise_time_crossover_product(damping) == pytest.approx(
+        rise_time_s(time, output) * margins.crossover_rad_s, rel=1e-5
+    )
+
+
+def test_t_r_w_c_of_2_02_belongs_to_a_damping_of_0_63_and_not_to_14_percent():
+    damping = brentq(lambda x: rise_time_crossover_product(x) - 2.02, 0.3, 0.9)
+    assert damping == pytest.approx(0.633, abs=5e-4)
+    assert rise_time_crossover_product(CHAPTER_2.damping) == pytest.approx(1.921, abs=5e-4)
+    assert CHAPTER_2.crossover_rad_s == pytest.approx(7.69, abs=5e-3)
+
+
+def test_a_well_damped_prototype_has_no_peak_of_t():
+    assert prototype_complementary_peak(0.8) == 1.0
+
+
+@pytest.mark.parametrize(
+    ('rise_time', 'overshoot_asked', 'complaint'),
+    [
+        (-0.1, 0.14, 'rise time is -0.1 s: it must be above 0'),
+        (0.0, 0.14, 'rise time is 0 s: it must be above 0'),
+        (20.0, 0.14, 'rise time is 20 s: it must be at most 5'),
+        (math.nan, 0.14, 'rise time is nan: give a finite number'),
+        (0.25, 0.0, 'overshoot is 0 %: it must be above 0'),
+        (0.25, -0.1, 'overshoot is -10 %: it must be above 0'),
+        (0.25, 1.0, 'overshoot is 100 %: it must be below 100'),
+        (0.25, math.inf, 'overshoot is inf: give a finite number'),
+        (0.25, '14', "overshoot is '14': give a number"),
+    ],
+)
+def test_specifications_without_sense_are_named(rise_time, overshoot_asked, complaint):
+    with pytest.raises(SpecificationError, match=complaint):
+        TimeSpecifications(rise_time, overshoot_asked)
+
+
+def test_the_unavoidable_lag_is_that_of_delay_hold_and_the_right_half_plane_zeros():
+    """15 ms of delay and half hold, and all that G_a turns beyond its minimum-phase twin."""
+    omega = np.array([20.0])
+    mirrored = tuple(
+        (abs(factor[0]), factor[1]) if isinstance(factor, tuple) else factor
+        for factor in ACTUATOR.numerator
+    )
+    twin = FactoredTransferFunction(ACTUATOR.gain, mirrored, ACTUATOR.denominator)
+    turned = np.angle(twin.frequency_response(omega) / ACTUATOR.frequency_response(omega))[0]
+    assert unavoidable_lag(20.0) == pytest.approx(0.015 * 20.0 + turned, rel=1e-12)
+
+
+def test_less_overshoot_allows_less_crossover():
+    dampings = np.linspace(0.1, 0.9, 9)
+    bounds = [highest_crossover_rad_s(damping) for damping in dampings]
+    assert all(np.diff(bounds) < 0.0)
+    assert highest_crossover_rad_s(CHAPTER_2.damping) == pytest.approx(24.5, abs=0.1)
+
+
+def test_a_crossover_above_the_bound_is_refused_with_the_bound_and_a_way_out():
+    with pytest.raises(
+        SpecificationError,
+        match=r'crossover of 38.4 rad/s.*allow 24.5 rad/s: allow a rise time of 0.078 s or more',
+    ):
+        require_reachable(TimeSpecifications(rise_time_s=0.05, overshoot=0.14))
+    require_reachable(CHAPTER_2)

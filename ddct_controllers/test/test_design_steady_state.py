@@ -1,0 +1,60 @@
+"""The number of integrators follows from the final-value theorem, and the loop obeys it."""
+
+import math
+
+import pytest
+
+from ddct_controllers.design.loop_shaping import integrators
+from ddct_controllers.design.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.specifications import SpecificationError
+from ddct_controllers.design.steady_state import (
+    poles_at_zero,
+    required_integrators,
+    steady_state_error,
+)
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.driveline_model import engine_to_slip, load_to_slip
+from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.units import RPM_PER_RAD_S
+
+DRIVELINE = DrivelineParameters()
+PLANT = plant_in_rpm(DRIVELINE)
+ENGINE, LOAD = engine_to_slip(DRIVELINE), load_to_slip(DRIVELINE)
+
+
+def test_a_step_of_engine_torque_needs_one_integrator_as_section_2_2_says():
+    assert poles_at_zero(PLANT) == 1
+    assert required_integrators(PLANT, ENGINE) == 1
+
+
+@pytest.mark.parametrize(
+    ('path', 'order', 'expected'), [(ENGINE, 1, 2), (ENGINE, 2, 3), (LOAD, 0, 0), (LOAD, 1, 1)]
+)
+def test_higher_disturbances_need_more_and_the_load_one_less(path, order, expected):
+    """P_3 has no pole at 0: for C_load alone the plant's own integrator is enough."""
+    assert required_integrators(PLANT, path, order) == expected
+
+
+def test_engine_damping_takes_the_pole_from_plant_and_path_alike():
+    damped = DrivelineParameters(engine_damping=0.05)
+    assert required_integrators(plant_in_rpm(damped), engine_to_slip(damped)) == 1
+
+
+def test_ls8_leaves_no_error_after_a_step_a_finite_one_after_a_ramp():
+    loop = continuous_loop(PRINTED_CONTROLLERS['ls8']).transfer_function
+    assert steady_state_error(loop, ENGINE) == 0.0
+    assert 0.0 < steady_state_error(loop, ENGINE, 1) < math.inf
+    assert steady_state_error(loop, ENGINE, 2) == math.inf
+
+
+def test_without_integrator_the_error_is_that_of_the_engine_torque_over_the_gain():
+    """w_d = P_1 C_m / (1 + K G_a P_2) -> C_m / |K|, but for the rounding of G_a's print."""
+    loop = continuous_loop(integrators(-0.5, 0)).transfer_function
+    in_rpm = ENGINE * FactoredTransferFunction(RPM_PER_RAD_S)
+    assert steady_state_error(loop, in_rpm) == pytest.approx(2.0, rel=2e-5)
+
+
+def test_a_negative_disturbance_order_is_refused():
+    with pytest.raises(SpecificationError, match='disturbance order is -1'):
+        required_integrators(PLANT, ENGINE, -1)

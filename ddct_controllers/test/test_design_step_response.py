@@ -1,0 +1,71 @@
+"""Step responses, rise times and overshoots are those of Tables 2.1 and 3.1."""
+
+import math
+
+import numpy as np
+import pytest
+
+from ddct_controllers.design.loops import ContinuousLoop, continuous_loop, sampled_loop
+from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.errors import ParameterError
+from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.timebase import PERIOD_S
+
+SECOND_ORDER = FactoredTransferFunction(25.0, (), (0.0, 5.0))
+"""Closed by unit feedback: w_n = 5 rad/s, zeta = 0.5."""
+
+
+def test_a_second_order_loop_has_the_rise_time_and_overshoot_of_its_damping():
+    """t_r = (pi - arccos zeta)/(w_n sqrt(1 - zeta^2)), s = exp(-pi zeta/sqrt(1 - zeta^2))."""
+    damped = math.sqrt(1.0 - 0.25)
+    time, output = step_response(ContinuousLoop(SECOND_ORDER), 4.0)
+    expected_rise = (math.pi - math.acos(0.5)) / (5.0 * damped)
+    assert rise_time_s(time, output) == pytest.approx(expected_rise, abs=1e-6)
+    assert overshoot(time, output) == pytest.approx(math.exp(-0.5 * math.pi / damped), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ('name', 'rise', 'percent'),
+    [
+        ('ls1', 0.55, 27),
+        ('ls2', 0.25, 23),
+        ('ls4', 0.80, 20),
+        ('ls5', 0.75, 18),
+        ('ls6', 0.60, 15),
+        ('ls7', 0.52, 13),
+        ('ls8', 0.47, 11),
+        ('ls9', 0.40, 10),
+        ('hinf2', 0.05, 19),
+        ('hinf3', 0.40, 7),
+    ],
+)
+def test_rows_of_tables_2_1_and_3_1_come_out(name, rise, percent):
+    """Within 8.5 % or 0.02 s, and 1.5 points; not LS3's overshoot and Hinf1, which are errata."""
+    time, output = step_response(continuous_loop(PRINTED_CONTROLLERS[name]), 5.0)
+    assert rise_time_s(time, output) == pytest.approx(rise, rel=0.085, abs=0.02)
+    assert 100.0 * overshoot(time, output) == pytest.approx(percent, abs=1.5)
+
+
+def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
+    """19 % in Table 3.1, without hold and delay."""
+    controller = discretise_zoh(PRINTED_CONTROLLERS['hinf2'].to_state_space(), PERIOD_S)
+    time, output = step_response(sampled_loop(controller), 2.0)
+    assert time[1] == PERIOD_S
+    assert overshoot(time, output) == pytest.approx(0.760, abs=0.001)
+
+
+def test_rise_is_interpolated_and_none_when_the_final_value_is_not_reached():
+    time, output = np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.5, 1.5])
+    assert rise_time_s(time, output) == pytest.approx(1.5)
+    assert rise_time_s(time, output, final_value=0.25) == pytest.approx(0.5)
+    assert rise_time_s(time, output, final_value=2.0) is None
+    assert overshoot(time, output, final_value=2.0) == 0.0
+    assert overshoot(time, output, final_value=1.2) == pytest.approx(0.25)
+
+
+def test_a_dead_time_or_a_bad_duration_is_refused():
+    with pytest.raises(ParameterError, match='delay of 0.01 s has no state space'):
+        step_response(ContinuousLoop(SECOND_ORDER, 0.01), 1.0)
+    with pytest.raises(ParameterError, match='duration_s'):
+        step_response(ContinuousLoop(SECOND_ORDER), 0.0)

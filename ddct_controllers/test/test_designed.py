@@ -1,0 +1,91 @@
+"""Controllers in a file: read as written, refused by name, built by the registry."""
+
+import pytest
+
+from ddct_controllers.designed import DesignedController, load_designed
+from ddct_controllers.linear import LinearController
+from ddct_controllers.registry import controller_label, make_controller
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+G_C = FactoredTransferFunction(-0.1 / 3.0, (0.8361, (82.23, 2563.0)), (0.0, (5.325, 339.3)))
+SETTINGS = RunSettings(load_scenario('thesis'))
+TEXT = DesignedController('mine', G_C, {'method': 'by hand'}).to_yaml()
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write_text(text: str) -> str:
+        path = tmp_path / 'any.yaml'
+        path.write_text(text, encoding='utf-8')
+        return str(path)
+
+    return write_text
+
+
+def test_a_controller_comes_back_to_the_bit(write):
+    found = load_designed(write(TEXT))
+    assert found == DesignedController('mine', G_C, {'method': 'by hand'})
+
+
+def test_the_registry_builds_it_under_the_name_inside(write):
+    file = write(TEXT)
+    controller = make_controller(file, SETTINGS)
+    assert isinstance(controller, LinearController)
+    assert controller_label(file) == 'mine'
+    assert controller_label('ls8') == 'ls8'
+
+
+def test_it_takes_no_gains(write):
+    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gain: 2.0}']))
+    with pytest.raises(ParameterError, match='controllers.mine: gain given'):
+        make_controller(write(TEXT), settings)
+
+
+def test_it_may_not_take_the_name_of_another_controller(write):
+    with pytest.raises(ParameterError, match="the name 'ls8' is taken"):
+        make_controller(write(TEXT.replace('name: mine', 'name: ls8')), SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'complaint'),
+    [
+        ('format: ddct-linear-controller-1', 'format: other', "format is 'other'"),
+        ('input: rpm', 'input: rad/s', 'units are .* convert the controller'),
+        ('name: mine', 'name: ../mine', "controller name '../mine'"),
+        ('name: mine', 'name: 8', 'controller name 8'),
+        ('name: mine\n', '', 'key name is missing'),
+        ('  gain:', '  gian:', 'transfer_function: key gain is missing'),
+        ('provenance:', 'origin:', "unknown key 'origin'"),
+        ('- 0.8361', '- fast', "a coefficient is 'fast': give a number"),
+        ('- 0.8361', '- .nan', 'a coefficient is nan'),
+        ('- 0.8361', '- [1.0, 2.0, 3.0]', 'is no factor'),
+        ('- 0.0\n', '', 'has 3 zeros and 2 poles'),
+        ('format:', '- format:', 'not valid YAML'),
+    ],
+)
+def test_what_cannot_be_used_is_named_with_its_file(write, old, new, complaint):
+    assert old in TEXT
+    file = write(TEXT.replace(old, new))
+    with pytest.raises(DdctError, match=f'controller file {file}: .*{complaint}'):
+        make_controller(file, SETTINGS)
+
+
+@pytest.mark.parametrize('text', ['', 'just words', '[1, 2]'])
+def test_a_file_that_is_no_mapping_is_named(write, text):
+    with pytest.raises(ParameterError, match='give keys and values'):
+        make_controller(write(text), SETTINGS)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(DdctError, match='cannot be read .No such file'):
+        make_controller(str(tmp_path / 'none.yaml'), SETTINGS)
+
+
+def test_a_file_that_is_no_text_is_named(tmp_path):
+    path = tmp_path / 'binary.yaml'
+    path.write_bytes(b'\xff\xfe\x00')
+    with pytest.raises(DdctError, match='not UTF-8'):
+        make_controller(str(path), SETTINGS)

@@ -1,0 +1,171 @@
+"""The feedforward filter is the least-squares answer to a ramp, stable, and rings little."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_controllers.design.feedforward_design import (
+    TORQUE_RATE_WEIGHT,
+    design_feedforward,
+    state_at_rest,
+)
+from ddct_controllers.design.feedforward_residual import engine_residual, load_residual
+from ddct_controllers.design.loops import sampled_plant
+from ddct_controllers.design.state_space import poles_rad_s
+from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_plant.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
+from ddct_plant.errors import DdctError
+from ddct_plant.lti import StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.timebase import PERIOD_S
+from ddct_plant.units import RAD_S_PER_RPM
+
+DRIVELINE = DrivelineParameters()
+WITHOUT_DRAGS = replace(DRIVELINE, shaft_damping=0.0)
+FILTER = design_feedforward(DRIVELINE)
+EXACT = design_feedforward(DRIVELINE, 1e-4)
+STATIC_GAINS = [constant_slip_torque(DRIVELINE, *unit) for unit in ((1.0, 0.0), (0.0, 1.0))]
+STATIC = StateSpace(
+    np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([STATIC_GAINS]), PERIOD_S
+)
+"""The static controller's C_fOL, which knows of no actuator."""
+HORIZON_STEPS = 200
+CORNERS = [
+    replace(DRIVELINE, **{name: factor * getattr(DRIVELINE, name)})
+    for name in ('engine_inertia', 'shaft_inertia', 'halfshaft_damping', 'halfshaft_stiffness')
+    for factor in (0.8, 1.2)
+]
+
+
+def response(model: StateSpace, inputs: np.ndarray, state: np.ndarray | float = 0.0) -> np.ndarray:
+    """Return the output (N,) for inputs (N, m)."""
+    running = DiscreteFilter(model)
+    running.reset(state)
+    return np.array([running.update(*row) for row in inputs])
+
+
+def slip(model: StateSpace, inputs: np.ndarray) -> np.ndarray:
+    """Return w_d in rad/s that the filter leaves of [C_m, C_load] (N, 2), without drags."""
+    paths = (engine_to_slip(WITHOUT_DRAGS), load_to_slip(WITHOUT_DRAGS))
+    disturbed = sum(
+        response(discretise_zoh(path.to_state_space(), PERIOD_S), inputs[:, [column]])
+        for column, path in enumerate(paths)
+    )
+    request = response(model, inputs)[:, np.newaxis]
+    return disturbed + RAD_S_PER_RPM * response(sampled_plant(WITHOUT_DRAGS), request)
+
+
+def ramp_and_step() -> dict[str, np.ndarray]:
+    """Return [C_m, C_load] of an engine torque that starts to rise, and of a load that comes."""
+    steps = np.arange(HORIZON_STEPS)
+    nothing = np.zeros(HORIZON_STEPS)
+    return {
+        'engine ramp': np.column_stack([6.0 * (steps + 1.0), nothing]),
+        'load step': np.column_stack([nothing, nothing + 60.0]),
+    }
+
+
+def least_squares_request(inputs: np.ndarray) -> np.ndarray:
+    """Return the request (N,) that minimises the cost of the design, by linear least squares."""
+    impulse = np.zeros((HORIZON_STEPS, 1))
+    impulse[0] = 1.0
+    column = RAD_S_PER_RPM * response(sampled_plant(WITHOUT_DRAGS), impulse)
+    convolution = np.zeros((HORIZON_STEPS, HORIZON_STEPS))
+    for k in range(HORIZON_STEPS):
+        convolution[k:, k] = column[: HORIZON_STEPS - k]
+    nothing = replace(STATIC, d=np.zeros((1, 2)))
+    rate = TORQUE_RATE_WEIGHT / PERIOD_S
+    difference = rate * (np.eye(HORIZON_STEPS) - np.eye(HORIZON_STEPS, k=-1))
+    wanted = difference @ inputs[:, 0] * STATIC_GAINS[0]
+    return np.linalg.lstsq(
+        np.vstack([convolution, difference]),
+        np.concatenate([-slip(nothing, inputs), wanted]),
+        rcond=None,
+    )[0]
+
+
+@pytest.mark.parametrize('case', ['engine ramp', 'load step'])
+def test_it_gives_the_least_squares_request_although_it_sees_nothing_ahead(case):
+    inputs = ramp_and_step()[case]
+    request, best = response(FILTER, inputs), least_squares_request(inputs)
+    scale = np.abs(best[:60]).max()
+    # The horizon of the least squares ends after 2 s, so their last part differs.
+    np.testing.assert_allclose(request[:60], best[:60], rtol=0.0, atol=1e-6 * scale)
+
+
+@pytest.mark.parametrize('case', ['engine ramp', 'load step'])
+def test_the_slip_returns_to_zero_although_the_torque_goes_on(case):
+    left = np.abs(slip(FILTER, ramp_and_step()[case]))
+    assert left[-20:].max() < 2e-3 * left.max()
+
+
+def test_the_static_law_leaves_a_slip_that_grows_with_the_ramp():
+    left = np.abs(slip(STATIC, ramp_and_step()['engine ramp']))
+    ours = np.abs(slip(FILTER, ramp_and_step()['engine ramp']))
+    assert left[-1] > 50.0 * ours.max()
+    assert np.all(np.diff(left[20:]) > 0.0)
+
+
+def test_the_request_has_the_sign_that_makes_p2_undo_p1():
+    assert np.all(FILTER.d > 0.0)
+    assert clutch_to_slip(DRIVELINE).gain < 0.0 < engine_to_slip(DRIVELINE).gain
+
+
+def test_for_constant_torques_the_clutch_gets_the_static_torque():
+    at_rest = FILTER.c @ np.linalg.solve(np.eye(len(FILTER.a)) - FILTER.a, FILTER.b) + FILTER.d
+    clutch = at_rest[0] * ACTUATOR.frequency_response(0.0).real
+    np.testing.assert_allclose(clutch, STATIC_GAINS, rtol=1e-10)
+
+
+@pytest.mark.parametrize('driveline', [DRIVELINE, WITHOUT_DRAGS, *CORNERS])
+def test_it_is_stable_and_forgets_within_a_second(driveline):
+    poles = np.linalg.eigvals(design_feedforward(driveline).a)
+    assert np.abs(poles).max() ** 100 < 0.01
+
+
+def test_the_torsional_mode_is_damped_in_it_and_not_in_an_exact_inverse():
+    def damping(model: StateSpace) -> float:
+        poles = poles_rad_s(model)
+        near = poles[(np.abs(poles) > 5.0) & (np.abs(poles) < 30.0) & (poles.imag > 0.0)]
+        return float((-near.real / np.abs(near)).min())
+
+    assert damping(FILTER) > 0.5
+    assert damping(EXACT) < 0.16
+
+
+def test_it_compensates_the_engine_torque_better_than_the_static_law_up_to_3_3_hz():
+    omega = 2.0 * np.pi * np.append(np.geomspace(0.05, 3.3, 50), 3.4)
+    ours = np.abs(engine_residual(FILTER, omega, DRIVELINE))
+    static = np.abs(engine_residual(STATIC, omega, DRIVELINE))
+    assert np.all(ours[:-1] < static[:-1])
+    assert ours[-1] > static[-1]
+    assert ours[omega < 2.0 * np.pi].max() < 0.03
+
+
+def test_it_compensates_the_load_up_to_a_third_of_a_hertz():
+    omega = 2.0 * np.pi * np.geomspace(0.05, 0.3, 20)
+    assert np.abs(load_residual(FILTER, omega, DRIVELINE)).max() < 0.05
+
+
+def test_without_a_filter_the_residual_is_one():
+    nothing = replace(STATIC, d=np.zeros((1, 2)))
+    omega = np.array([1.0, 10.0])
+    for residual in (engine_residual, load_residual):
+        np.testing.assert_array_equal(residual(nothing, omega, DRIVELINE), [1.0, 1.0])
+
+
+def test_a_run_that_starts_with_torque_is_not_taken_for_a_ramp():
+    constant = np.column_stack([np.full(5, 100.0), np.zeros(5)])
+    started = response(FILTER, constant, state_at_rest(FILTER, 100.0))[0]
+    ramping = response(FILTER, constant)[0]
+    assert started < STATIC_GAINS[0] * 100.0 < ramping
+
+
+def test_a_driveline_without_a_filter_is_refused():
+    with pytest.raises(
+        DdctError, match=r'no stable filter .*: check driveline\.\* in the scenario'
+    ):
+        design_feedforward(replace(DRIVELINE, halfshaft_damping=1e20))

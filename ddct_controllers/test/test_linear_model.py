@@ -1,0 +1,65 @@
+"""The linear model that a controller gives of itself is what its updates compute."""
+
+import numpy as np
+import pytest
+
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.units import rad_s_from_rpm
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+LINEAR = [
+    name
+    for name in controller_names()
+    if make_controller(name, SETTINGS).linear_model() is not None
+]
+
+
+def torque(controller: Controller, error_rpm: float) -> float:
+    measurement = Measurement(
+        step=0,
+        engine_speed=-rad_s_from_rpm(error_rpm),
+        shaft_speed=0.0,
+        wheel_speed=0.0,
+        vehicle_speed=0.0,
+        engine_torque=0.0,
+        slip_reference=[0.0] * (controller.preview_steps + 1),
+        slip_reference_rate=[0.0] * (controller.preview_steps + 1),
+    )
+    return controller.update(measurement).clutch_torque
+
+
+def test_the_printed_controllers_and_the_pi_are_linear():
+    assert {'pi', *(f'ls{i}' for i in range(1, 10)), 'hinf1', 'hinf2', 'hinf3'} <= set(LINEAR)
+
+
+@pytest.mark.parametrize('name', LINEAR)
+def test_it_gives_the_torques_that_the_controller_gives(name):
+    """A random error; within 1e-9 of the largest torque."""
+    controller = make_controller(name, SETTINGS)
+    model = controller.linear_model()
+    state, expected, found = np.zeros(len(model.a)), [], []
+    for error_rpm in np.random.default_rng(0).normal(size=300):
+        expected.append(model.c[0] @ state + model.d[0, 0] * error_rpm)
+        state = model.a @ state + model.b[:, 0] * error_rpm
+        found.append(torque(controller, error_rpm))
+    assert found == pytest.approx(expected, abs=1e-9 * max(map(abs, expected)))
+
+
+def test_that_of_the_pi_has_its_present_gains():
+    controller = make_controller('pi', SETTINGS)
+    controller.set_gain('proportional_gain', 0.5)
+    assert controller.linear_model().d[0, 0] == -0.5
+
+
+def test_a_controller_that_says_nothing_is_not_linear():
+    class Constant(Controller):
+        def reset(self):
+            pass
+
+        def update(self, measurement):
+            return Command(1.0)
+
+    assert Constant().linear_model() is None

@@ -1,0 +1,57 @@
+"""Fill the tables of a documentation page; what stands around them is kept."""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from ddct_plant.errors import DdctError
+
+Row = Sequence[str]
+
+
+class PageTable(Protocol):
+    """What stands in a table: one cell per header in every row."""
+
+    @property
+    def headers(self) -> Row:
+        """Titles of the columns."""
+
+    @property
+    def rows(self) -> Sequence[Row]:
+        """Cells from the top down."""
+
+
+def read_page(path: str) -> str:
+    """Return the text of the page that `--write-doc` names; raise DdctError without one."""
+    try:
+        return Path(path).read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        raise DdctError(f'--write-doc {path}: cannot be read ({error})') from error
+
+
+def fill_tables(page: str, program: str, tables: Mapping[str, PageTable]) -> str:
+    """
+    Return the page with every table in the place that its name marks.
+
+    A table stands between the lines `<!-- PROGRAM: NAME -->` and `<!-- end -->`. Raise DdctError
+    unless the page has each table once and no other of this program.
+    """
+    block = re.compile(rf'(<!-- {re.escape(program)}: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
+    names = [match[2] for match in block.finditer(page)]
+    if sorted(names) != sorted(tables):
+        raise DdctError(
+            f'--write-doc: the page must have these tables, each once: {", ".join(tables)}; '
+            f'it has: {", ".join(names) or "none"}'
+        )
+    return block.sub(lambda match: f'{match[1]}{_markdown(tables[match[2]])}\n{match[3]}', page)
+
+
+def _markdown(table: PageTable) -> str:
+    separator = ['---'] * len(table.headers)
+    return '\n'.join(_line(cells) for cells in (table.headers, separator, *table.rows))
+
+
+def _line(cells: Row) -> str:
+    escaped = (cell.replace('|', r'\|') for cell in cells)
+    return f'| {" | ".join(escaped)} |'

@@ -1,0 +1,47 @@
+"""Settings that contradict each other are refused; the start state fits the architecture."""
+
+import pytest
+
+from ddct_plant.errors import ParameterError
+from ddct_plant.initial import initial_state
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+THESIS = load_scenario('thesis')
+EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])
+
+
+def test_an_unknown_architecture_lists_all_four():
+    with pytest.raises(ParameterError, match='base, feedforward, feedforward_tanh, detailed'):
+        RunSettings(THESIS, architecture='open_loop')
+
+
+def test_a_tanh_that_ends_no_later_than_control_starts_is_refused():
+    with pytest.raises(ParameterError, match='reference_end_s is 0.6 s: it must be after'):
+        RunSettings(EARLY_END, architecture='feedforward_tanh')
+
+
+@pytest.mark.parametrize('architecture', ['base', 'feedforward', 'detailed'])
+def test_the_end_does_not_matter_to_a_ramp(architecture):
+    assert RunSettings(EARLY_END, architecture).reference_shape == 'ramp'
+
+
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+def test_the_shape_of_the_scenario_is_taken_or_refused(architecture):
+    scenario = load_scenario('thesis', ['reference.shape=polynomial'])
+    if architecture == 'feedforward_tanh':
+        with pytest.raises(ParameterError, match='feedforward_tanh has a tanh'):
+            RunSettings(scenario, architecture)
+    else:
+        assert RunSettings(scenario, architecture).reference_shape == 'polynomial'
+
+
+def test_the_clutch_starts_open_but_for_the_detailed_architecture():
+    scenario = load_scenario('thesis', ['engine.torque_n_m=[25.0, 308.0]'])
+    for architecture in ARCHITECTURES:
+        initial = initial_state(RunSettings(scenario, architecture, wear_gain=0.7))
+        if architecture == 'detailed':
+            assert initial.torque_request > 20.0
+            assert initial.clutch_torque == 0.7 * initial.torque_request
+        else:
+            assert (initial.torque_request, initial.clutch_torque) == (0.0, 0.0)

@@ -1,0 +1,76 @@
+"""How a slip reference runs from its value at control start to zero."""
+
+import math
+from abc import ABC, abstractmethod
+
+TANH_STEEPNESS = 3.0
+"""kappa of the tanh; its end slopes, kappa sech^2 kappa / tanh kappa, are 3 % of the mean."""
+
+
+class Descent(ABC):
+    """A function of time that starts at any value, reaches zero and stays there."""
+
+    @abstractmethod
+    def at(self, start: float, time_s: float) -> tuple[float, float]:
+        """
+        Return the value and its rate per second, `time_s` seconds after control start.
+
+        `start` is the value there; the unit of both is its unit.
+        """
+
+
+class CrfRamp(Descent):
+    """CRF's: a constant slope to zero, from either side (Section 1.4.1, Figures 1.11, 1.12)."""
+
+    def __init__(self, slope: float) -> None:
+        """Take the slope in rad/s^2, positive."""
+        self._slope = slope
+
+    def at(self, start: float, time_s: float) -> tuple[float, float]:
+        """Return sign(start) (|start| - slope t), and 0 from there on."""
+        size = abs(start) - self._slope * time_s
+        if size <= 0.0:
+            return 0.0, 0.0
+        return math.copysign(size, start), -math.copysign(self._slope, start)
+
+
+class _TimedDescent(Descent):
+    """A descent that takes a given time whatever its start: start f(x), x = t / duration."""
+
+    def __init__(self, duration_s: float) -> None:
+        """Take the time from control start to zero."""
+        self._duration_s = duration_s
+
+    def at(self, start: float, time_s: float) -> tuple[float, float]:
+        """Return start f(x) and its rate, and 0 from x = 1 on."""
+        if time_s >= self._duration_s:
+            return 0.0, 0.0
+        value, slope = self._shape(time_s / self._duration_s)
+        return start * value, start * slope / self._duration_s
+
+    @abstractmethod
+    def _shape(self, x: float) -> tuple[float, float]:
+        """Return f(x) and f'(x) for 0 <= x < 1; f(0) = 1, f(1) = 0."""
+
+
+class TanhDescent(_TimedDescent):
+    """
+    The thesis's new reference, smoother than the ramp and of selectable end (Section 1.6.3).
+
+    f(x) = [1 - tanh(kappa (2 x - 1)) / tanh(kappa)] / 2. The thesis prints a figure and no
+    formula; this one starts and ends exactly, nearly without a slope at both ends.
+    """
+
+    def _shape(self, x: float) -> tuple[float, float]:
+        argument, scale = TANH_STEEPNESS * (2.0 * x - 1.0), math.tanh(TANH_STEEPNESS)
+        return (
+            0.5 * (1.0 - math.tanh(argument) / scale),
+            -TANH_STEEPNESS / (scale * math.cosh(argument) ** 2),
+        )
+
+
+class PolynomialDescent(_TimedDescent):
+    """The cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends; not of the thesis."""
+
+    def _shape(self, x: float) -> tuple[float, float]:
+        return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)

@@ -1,0 +1,32 @@
+"""The slip reference that a run's scenario and architecture ask for."""
+
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.timebase import PERIOD_S, steps_in
+from ddct_reference.descent import CrfRamp, Descent, PolynomialDescent, TanhDescent
+from ddct_reference.nominal_slip import nominal_slip
+from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference
+
+
+def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
+    """
+    Build the reference of a run, which looks `preview_steps` periods ahead.
+
+    `detailed` follows the slip speed until control starts. The other architectures have a stored
+    function of time, that of the nominal detailed run.
+    """
+    scenario = settings.scenario
+    descent = _make_descent(settings)
+    if settings.detailed:
+        return FollowingReference(descent, scenario.control_start_step, preview_steps)
+    return StoredReference(descent, nominal_slip(scenario), preview_steps)
+
+
+def _make_descent(settings: RunSettings) -> Descent:
+    reference = settings.scenario.reference
+    if settings.reference_shape == 'ramp':
+        return CrfRamp(reference.slope_rad_s2)
+    shapes = {'tanh': TanhDescent, 'polynomial': PolynomialDescent}
+    end_step = steps_in('reference.reference_end_s', reference.reference_end_s)
+    return shapes[settings.reference_shape](
+        (end_step - settings.scenario.control_start_step) * PERIOD_S
+    )

@@ -1,0 +1,34 @@
+"""Slip speed before control starts of the nominal detailed run: a clutch without wear."""
+
+from ddct_plant.actuator import Actuator
+from ddct_plant.clutch import LinearClutch
+from ddct_plant.driveline import Driveline
+from ddct_plant.engine import Engine
+from ddct_plant.initial import initial_state
+from ddct_plant.load import RoadLoad
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario import Scenario
+from ddct_plant.static_torque import constant_slip_torque
+
+
+def nominal_slip(scenario: Scenario) -> list[float]:
+    """
+    Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
+
+    Until then feedback is off and only the static controller C_fOL acts, so no controller enters:
+    the values are those of any controller's detailed run at wear gain 1, to the last bit.
+    """
+    initial = initial_state(RunSettings(scenario, architecture='detailed'))
+    driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
+    engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
+    actuator, clutch = Actuator(initial.torque_request), LinearClutch()
+    now = driveline.outputs()
+    slips = [now.slip_speed]
+    for step in range(scenario.control_start_step):
+        engine_torque, load_torque = engine.torque(step), load.torque(now.vehicle_speed)
+        request = constant_slip_torque(scenario.driveline, engine_torque, load_torque)
+        transmitted = clutch.transmit(actuator.update(request))
+        driveline.step(engine_torque, load_torque, transmitted)
+        now = driveline.outputs()
+        slips.append(now.slip_speed)
+    return slips

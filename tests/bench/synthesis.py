@@ -1,0 +1,83 @@
+"""H-infinity synthesis for the printed weights: ours against SLICOT's, by slycot."""
+
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ddct_controllers.design.hinf_design import generalised_plant
+from ddct_controllers.design.hinf_plant import GeneralisedPlant
+from ddct_controllers.design.hinf_recipes import make_weights
+from ddct_controllers.design.hinf_synthesis import synthesise, verified_norm
+from ddct_plant.errors import ParameterError
+from ddct_plant.lti import StateSpace
+
+_ROUNDS = 5
+_TOLERANCE = 1e-4
+"""Relative width of the last interval, as in ours."""
+_SUBOPTIMAL = 4
+"""Job of sb10ad that makes one controller for a given level."""
+_FACTOR = 4.0
+
+
+def measure() -> dict[str, Any]:
+    """
+    Return best times in s and norms of both, and the ratio of the times.
+
+    Both bisect on the level and verify every controller by the norm of its closed loop. Without
+    slycot only ours is measured, and `skipped` says why.
+    """
+    plant = generalised_plant(make_weights('thesis'))
+    ours_s, found = _best_of(lambda: synthesise(plant, 1.0).gamma)
+    result: dict[str, Any] = {'ours_s': ours_s, 'ours_gamma': found}
+    try:
+        import slycot
+    except ImportError as error:
+        return result | {'skipped': f'slycot is not installed ({error})'}
+    theirs_s, theirs = _best_of(lambda: slycot_optimum(slycot, plant))
+    return result | {
+        'slycot_s': theirs_s,
+        'slycot_gamma': theirs,
+        'time_ratio': ours_s / theirs_s,
+        'gamma_ratio': found / theirs,
+    }
+
+
+def slycot_optimum(slycot: Any, plant: GeneralisedPlant) -> float:
+    """Return the least norm that a verified controller of sb10ad reaches."""
+    best = 1.0
+    while not math.isfinite(reached := _reached(slycot, plant, best)):
+        best *= _FACTOR
+    best, refused = reached, 0.5 * reached
+    while best > refused * (1.0 + _TOLERANCE):
+        middle = math.sqrt(best * refused)
+        reached = _reached(slycot, plant, middle)
+        if math.isfinite(reached):
+            best = min(best, reached)
+        else:
+            refused = middle
+    return best
+
+
+def _reached(slycot: Any, plant: GeneralisedPlant, level: float) -> float:
+    """Return the closed loop's norm with sb10ad's controller for a level, inf if above it."""
+    system = plant.system
+    sizes = (len(system.a), system.b.shape[1], len(system.c), 1, 1)
+    matrices = (system.a, system.b, system.c, system.d)
+    try:
+        found = slycot.sb10ad(*sizes, level, *matrices, job=_SUBOPTIMAL)
+        norm = verified_norm(plant, StateSpace(*found[1:5]))
+    except (slycot.exceptions.SlycotError, np.linalg.LinAlgError, ParameterError):
+        return math.inf
+    return norm if norm <= level * (1.0 + _TOLERANCE) else math.inf
+
+
+def _best_of(task: Callable[[], float]) -> tuple[float, float]:
+    times = []
+    for _ in range(_ROUNDS):
+        started = time.perf_counter()
+        value = task()
+        times.append(time.perf_counter() - started)
+    return min(times), value

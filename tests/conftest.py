@@ -1,0 +1,59 @@
+"""Isolate every test: its own ROS domain, and no process of it left behind."""
+
+import os
+import signal
+import uuid
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from support.processes import TEST_ID, Programs, processes_left
+
+from ddct_bringup.ros_domain import own_domain
+from ddct_bringup.run_plan import RunPlan
+
+if TYPE_CHECKING:
+    from support.in_process_graph import InProcessGraph
+
+
+@pytest.fixture(autouse=True)
+def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Reserve a ROS domain, and fail when a process that the test started is still there."""
+    monkeypatch.setenv(TEST_ID, uuid.uuid4().hex)
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    with own_domain():
+        yield
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+    left = processes_left()
+    for pid in left:
+        os.kill(pid, signal.SIGKILL)
+    assert not left, f'left behind: {left}'
+
+
+@pytest.fixture
+def programs(tmp_path: Path) -> Iterator[Programs]:
+    """Start programs; those of a failed test are killed."""
+    started = Programs(tmp_path / 'printed')
+    yield started
+    started.kill()
+
+
+@pytest.fixture
+def graph_of(tmp_path: Path) -> Iterator[Callable[[RunPlan], 'InProcessGraph']]:
+    """Return a function that prepares a graph in this process for a plan."""
+    # The other tests need no ROS.
+    from support.in_process_graph import InProcessGraph
+
+    graphs: list[InProcessGraph] = []
+
+    def make(plan: RunPlan) -> 'InProcessGraph':
+        graphs.append(InProcessGraph(plan, tmp_path / f'graph{len(graphs)}'))
+        return graphs[-1]
+
+    yield make
+    for graph in graphs:
+        graph.__exit__()

@@ -1,0 +1,172 @@
+"""A bad value on a topic ends the node that reads it, with the topic and the stamp."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from geometry_msgs.msg import TwistStamped, WrenchStamped
+from sensor_msgs.msg import JointState
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.runs import plan
+from support.tampering import Tamperer, tampered_remap
+from trajectory_msgs.msg import JointTrajectory
+
+Spoil = Callable[[Any], None]
+
+FROM_STEP = 30
+STAMP = '1300000000 ns'
+
+
+def _torque(value: float) -> Spoil:
+    def spoil(message: WrenchStamped) -> None:
+        message.wrench.torque.x = value
+
+    return spoil
+
+
+def _point(value: float) -> Spoil:
+    def spoil(message: JointTrajectory) -> None:
+        message.points[7].effort[0] = value
+
+    return spoil
+
+
+def _slip(message: TwistStamped) -> None:
+    message.twist.angular.x = math.nan
+
+
+def _vehicle_speed(message: TwistStamped) -> None:
+    message.twist.linear.x = -math.inf
+
+
+def _joint_speed(message: JointState) -> None:
+    message.velocity[1] = math.nan
+
+
+def _joint_order(message: JointState) -> None:
+    message.name = list(reversed(message.name))
+
+
+def _no_velocity(message: JointState) -> None:
+    message.velocity = []
+
+
+def _reference(message: JointTrajectory) -> None:
+    message.points[0].velocities[0] = math.nan
+
+
+def _no_reference(message: JointTrajectory) -> None:
+    message.points = []
+
+
+def _no_rate(message: JointTrajectory) -> None:
+    message.points[0].accelerations = []
+
+
+def _five_points(message: JointTrajectory) -> None:
+    message.points = message.points[:5]
+
+
+def _no_effort(message: JointTrajectory) -> None:
+    message.points[10].effort = []
+
+
+def _off_grid(message: Any) -> None:
+    message.header.stamp.nanosec += 1
+
+
+def _time_zero(message: Any) -> None:
+    message.header.stamp.sec = message.header.stamp.nanosec = 0
+
+
+def _skip(message: Any) -> None:
+    message.header.stamp.sec += 1
+
+
+TORQUE, TRAJECTORY, TWIST = WrenchStamped, JointTrajectory, TwistStamped
+CASES: dict[str, tuple[str, type, str, Spoil, list[str]]] = {
+    'engine torque nan': ('driveline', TORQUE, 'engine/torque', _torque(math.nan), ['nan']),
+    'load torque infinite': ('driveline', TORQUE, 'load/torque', _torque(math.inf), ['inf']),
+    'clutch torque nan': ('driveline', TRAJECTORY, 'clutch/torque', _point(math.nan), ['nan']),
+    'clutch torque short': ('driveline', TRAJECTORY, 'clutch/torque', _five_points, ['5 points']),
+    'clutch torque empty': ('driveline', TRAJECTORY, 'clutch/torque', _no_effort, ['effort']),
+    'actuator torque': ('clutch', TRAJECTORY, 'actuator/torque', _point(-math.inf), ['-inf']),
+    'request nan': ('actuator', TORQUE, 'clutch/torque_request', _torque(math.nan), ['nan']),
+    'speed for the load': ('load', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
+    'slip nan': ('reference', TWIST, 'clutch/slip', _slip, ['nan']),
+    'speed nan': ('controller', JointState, 'driveline/joint_states', _joint_speed, ['nan']),
+    'joint order': ('controller', JointState, 'driveline/joint_states', _joint_order, ['order']),
+    'no velocity': ('controller', JointState, 'driveline/joint_states', _no_velocity, ['0 vel']),
+    'speed for control': ('controller', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
+    'torque for control': ('controller', TORQUE, 'engine/torque', _torque(math.nan), ['nan']),
+    'reference nan': ('controller', TRAJECTORY, 'clutch/slip_reference', _reference, ['nan']),
+    'no rate': ('controller', TRAJECTORY, 'clutch/slip_reference', _no_rate, ['acceleration']),
+    'no preview': (
+        'controller',
+        TRAJECTORY,
+        'clutch/slip_reference',
+        _no_reference,
+        ['0 points', 'preview_steps:=0'],
+    ),
+}
+
+
+def _graph_with_tampering(
+    graph: InProcessGraph, reader: str, message_type: type, topic: str, spoil: Spoil
+) -> InProcessGraph:
+    graph.add(reader, cli_args=tampered_remap(topic))
+    graph.add_other(Tamperer(message_type, topic, spoil, FROM_STEP, context=graph.context))
+    graph.add_all()
+    return graph
+
+
+@pytest.mark.parametrize(
+    ('reader', 'message_type', 'topic', 'spoil', 'words'), CASES.values(), ids=CASES
+)
+def test_a_bad_value_ends_its_reader_with_topic_and_stamp(
+    graph_of: GraphOf, reader: str, message_type: type, topic: str, spoil: Spoil, words: list[str]
+) -> None:
+    graph = _graph_with_tampering(graph_of(plan()), reader, message_type, topic, spoil)
+    node, complaint = graph.first_failure()
+    assert node == reader
+    for word in (topic, STAMP, *words):
+        assert word in complaint
+    assert '\n' not in complaint
+
+
+@pytest.mark.parametrize(
+    ('spoil', 'words'),
+    [
+        (_off_grid, ['1300000001 ns', 'not on the grid']),
+        (_time_zero, ['stamp 0 ns', 'not on the grid']),
+        (_skip, ['step 130', 'step 30', 'missed a part of the run']),
+    ],
+    ids=['off the grid', 'time zero', 'skipped'],
+)
+def test_a_bad_stamp_ends_a_follower_with_its_topic(
+    graph_of: GraphOf, spoil: Spoil, words: list[str]
+) -> None:
+    graph = graph_of(plan())
+    _graph_with_tampering(graph, 'clutch', JointTrajectory, 'actuator/torque', spoil)
+    node, complaint = graph.first_failure()
+    assert node == 'clutch'
+    for word in ('actuator/torque', *words):
+        assert word in complaint
+
+
+def test_the_driveline_waits_in_vain_for_the_right_stamp(graph_of: GraphOf) -> None:
+    graph = graph_of(plan())
+    graph.parameters['driveline']['answer_timeout_s'] = 0.5
+    _graph_with_tampering(graph, 'driveline', WrenchStamped, 'load/torque', _off_grid)
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    assert complaint.startswith(f'no load/torque for stamp {STAMP} (step 30) within 0.5 s')
+
+
+def test_a_bad_stamp_ends_the_recorder_with_its_topic(graph_of: GraphOf) -> None:
+    graph = graph_of(plan())
+    _graph_with_tampering(graph, 'recorder', TwistStamped, 'clutch/slip', _off_grid)
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert complaint.startswith('clutch/slip: stamp 1300000001 ns is not on the grid')

@@ -1,0 +1,89 @@
+"""A node that is started by hand with a wrong parameter ends with one line and code 1."""
+
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.in_process_graph import GraphOf
+from support.processes import Program, Programs
+from support.runs import plan
+
+ENGINE, CONTROLLER = 'ddct_plant.engine_node', 'ddct_controllers.controller_node'
+CASES: dict[str, tuple[str, list[str], list[str]]] = {
+    'out of range': (ENGINE, ['-p', 'wear_gain:=-1.0'], ['wear_gain', '-1.0']),
+    'not a number': (ENGINE, ['-p', 'wear_gain:=abc'], ['wear_gain', 'abc']),
+    'whole number': (ENGINE, ['-p', 'wear_gain:=1'], ['wear_gain', 'DOUBLE']),
+    'nan': (ENGINE, ['-p', 'wear_gain:=.nan'], ['wear_gain', 'nan']),
+    'unknown scenario': (ENGINE, ['-p', 'scenario:=theses'], ["'theses'", 'thesis']),
+    'missing scenario file': (ENGINE, ['-p', 'scenario:=no/such.yaml'], ['no/such.yaml']),
+    'unknown architecture': (ENGINE, ['-p', 'architecture:=open'], ["'open'", 'detailed']),
+    'unknown mode': (ENGINE, ['-p', 'mode:=fast'], ["'fast'", 'lockstep']),
+    'negative seed': (ENGINE, ['-p', 'seed:=-1'], ['seed']),
+    'unknown controller': (CONTROLLER, ['-p', 'controller:=pid'], ["'pid'", 'ls8']),
+    'bad gain': (CONTROLLER, ['-p', 'gains.integral_gain:=-1.0'], ['integral_gain', '-1']),
+    'preview': (
+        'ddct_reference.reference_node',
+        ['-p', 'preview_steps:=-1'],
+        ['preview_steps', '-1'],
+    ),
+    'timeout': (
+        'ddct_plant.driveline_node',
+        ['-p', 'answer_timeout_s:=0.0'],
+        ['answer_timeout_s', '0.0'],
+    ),
+    'duration off the grid': (
+        'ddct_plant.driveline_node',
+        ['-p', 'duration:=0.705'],
+        ['duration is 0.705', 'multiple of 0.01'],
+    ),
+    'fail-safe': (
+        'ddct_plant.actuator_node',
+        ['-p', 'fail_safe_ramp_n_m_s:=0.0'],
+        ['fail_safe_ramp_n_m_s is 0'],
+    ),
+    'malformed': (ENGINE, ['-p', 'wear_gain'], ['wear_gain']),
+    'missing parameter file': (ENGINE, ['--params-file', 'no/such.yaml'], ['no/such.yaml']),
+}
+
+
+def test_every_wrong_parameter_is_named(programs: Programs) -> None:
+    started: dict[str, Program] = {
+        case: programs.start_module(module, '--ros-args', *arguments)
+        for case, (module, arguments, _) in CASES.items()
+    }
+    for case, program in started.items():
+        module, _, words = CASES[case]
+        node = module.split('.')[1].removesuffix('_node')
+        assert program.wait() == 1, case
+        assert_one_line(program.errors(), node, *words)
+
+
+def test_a_bad_domain_is_named(programs: Programs, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', 'abc')
+    program = programs.start_node(ENGINE, {})
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID')
+
+
+def test_a_recorder_that_cannot_write_its_bag_ends_with_the_reason(
+    graph_of: GraphOf, tmp_path: Path
+) -> None:
+    (tmp_path / 'file').write_text('mine', encoding='utf-8')
+    graph = graph_of(plan())
+    graph.add('recorder', {'out': str(tmp_path / 'file' / 'bag')})
+    graph.add_all()
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert str(tmp_path / 'file' / 'bag' / 'ls8_0.mcap') in complaint
+    assert 'cannot write the recording (Not a directory)' in complaint
+
+
+def test_a_recorder_does_not_write_over_a_bag(graph_of: GraphOf) -> None:
+    graph = graph_of(plan())
+    bag = graph.folder / 'ls8_0.mcap'
+    bag.write_bytes(b'an earlier recording')
+    graph.add_all()
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert f'{bag}: already there' in complaint
+    assert bag.read_bytes() == b'an earlier recording'

@@ -1,0 +1,65 @@
+"""A disk that fills up during a run: a reason, and nothing that could be taken for a result."""
+
+import os
+import resource
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import Programs, processes_left
+
+from ddct_bringup import score
+
+ROOM_KB = 200
+RUN = ('--controller', 'ls8', '--duration', '20')
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """Mount a disk with room for the first steps of a run."""
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    if os.geteuid() != 0:
+        pytest.skip('only root can mount a small disk')
+    mount = ['mount', '-t', 'tmpfs', '-o', f'size={ROOM_KB}k', 'tmpfs', str(disk)]
+    mounted = subprocess.run(mount, capture_output=True, text=True, check=False)
+    if mounted.returncode != 0:
+        pytest.skip(f'a small disk cannot be mounted here: {mounted.stderr.strip()}')
+    yield disk
+    subprocess.run(['umount', str(disk)], check=True)
+
+
+@pytest.mark.parametrize('layout', [[], ['--single-process'], ['--headless']])
+def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
+    programs: Programs,
+    small_disk: Path,
+    capfd: pytest.CaptureFixture[str],
+    layout: list[str],
+) -> None:
+    out = small_disk / 'runs'
+    bringup = programs.start_module('ddct_bringup.bringup', *RUN, *layout, '--out', str(out))
+    assert bringup.wait() == 1
+    assert not processes_left()
+    assert_one_line(bringup.errors(), 'bringup', 'No space left on device', 'ls8_0.mcap')
+    assert not (out / 'ls8').exists()
+    assert score.main([str(out / 'ls8.partial')]) == 1
+    assert 'unfinished' in capfd.readouterr().err
+
+
+def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
+    programs: Programs, tmp_path: Path
+) -> None:
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM_KB * 1024, ROOM_KB * 1024))
+
+    out = tmp_path / 'runs'
+    bringup = programs.start_module(
+        'ddct_bringup.bringup', *RUN, '--headless', '--out', str(out), preexec_fn=limit
+    )
+    assert bringup.wait() == 1
+    assert_one_line(bringup.errors(), 'bringup', 'File too large', 'ls8_0.mcap')
+    assert not (out / 'ls8').exists()

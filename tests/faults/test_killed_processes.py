@@ -1,0 +1,104 @@
+"""Killed and interrupted processes: a reason, no process left, nothing half taken for whole."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import START_S, Program, Programs, node_of, processes_left
+from support.runs import expected, plan
+from support.waiting import wait_until
+
+from ddct_bringup import score
+from ddct_bringup.bag_reader import read_bag
+
+ENDLESS = ('--controller', 'ls8', '--duration', '3600')
+
+
+def _running(programs: Programs, out: Path, *options: str) -> Program:
+    """Start an endless bringup and wait until its recorder has written some steps."""
+    bringup = programs.start_module('ddct_bringup.bringup', *ENDLESS, *options, '--out', str(out))
+    bag = out / 'ls8.partial' / 'ls8_0.mcap'
+
+    def under_way() -> bool:
+        grown = bag.exists() and bag.stat().st_size > 50_000
+        return grown or bringup.process.poll() is not None
+
+    wait_until(under_way, 'a bag that grows', START_S)
+    assert bringup.process.poll() is None, bringup.errors()
+    return bringup
+
+
+def _require_whole_until_its_end(bag: Path) -> int:
+    """Require that a bag can be read and holds the first steps of the run; return how many."""
+    trajectory = read_bag(bag).trajectory
+    steps = trajectory.steps
+    # The length of the run changes nothing before its end.
+    whole = expected(plan(duration_s=steps / 100))
+    assert trajectory.sha256() == whole.sha256()
+    return steps
+
+
+def test_a_killed_node_is_named_and_what_was_recorded_is_kept(
+    programs: Programs, tmp_path: Path
+) -> None:
+    bringup = _running(programs, tmp_path / 'runs')
+    os.kill(node_of('clutch_node'), signal.SIGKILL)
+    assert bringup.wait() == 1
+    assert not processes_left()
+    assert_one_line(bringup.errors(), 'bringup', 'node clutch was killed by SIGKILL')
+    assert not (tmp_path / 'runs' / 'ls8').exists()
+    assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
+
+
+def test_score_repair_rescues_what_a_killed_recorder_wrote(
+    programs: Programs, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    bringup = _running(programs, tmp_path / 'runs')
+    os.kill(node_of('recorder_node'), signal.SIGKILL)
+    assert bringup.wait() == 1
+    assert not processes_left()
+    assert_one_line(bringup.errors(), 'bringup', 'node recorder was killed by SIGKILL')
+    bag = tmp_path / 'runs' / 'ls8.partial'
+    assert score.main([str(bag)]) == 1
+    assert 'score --repair' in capfd.readouterr().err
+    assert score.main([str(bag), '--repair']) == 1, 'a run that ended early is not valid'
+    printed = capfd.readouterr()
+    assert 'rescued steps 0 to' in printed.err
+    assert 'ended early' in printed.out + printed.err
+    assert _require_whole_until_its_end(bag) > 20
+
+
+@pytest.mark.parametrize(
+    ('number', 'layout'),
+    [
+        (signal.SIGINT, []),
+        (signal.SIGINT, ['--single-process']),
+        (signal.SIGTERM, ['--single-process']),
+    ],
+    ids=['SIGINT to processes', 'SIGINT to a single process', 'SIGTERM'],
+)
+def test_an_interrupted_bringup_stops_its_nodes_and_keeps_what_was_recorded(
+    programs: Programs, tmp_path: Path, number: signal.Signals, layout: list[str]
+) -> None:
+    bringup = _running(programs, tmp_path / 'runs', *layout)
+    bringup.send(number)
+    assert bringup.wait(20.0) == 130
+    assert not processes_left()
+    assert_one_line(bringup.errors(), 'bringup', 'interrupted')
+    assert not bringup.output()
+    assert not (tmp_path / 'runs' / 'ls8').exists()
+    assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
+
+
+def test_the_nodes_of_a_killed_bringup_end_by_themselves(
+    programs: Programs, tmp_path: Path
+) -> None:
+    bringup = _running(programs, tmp_path / 'runs')
+    assert len(processes_left()) == 9
+    bringup.send(signal.SIGKILL)
+    bringup.wait()
+    wait_until(lambda: not processes_left(), 'no node left', 20.0)
+    assert not (tmp_path / 'runs' / 'ls8').exists()
+    assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20

@@ -1,0 +1,68 @@
+"""Nodes that do not belong together: other settings, a second publisher, an earlier graph."""
+
+from pathlib import Path
+
+import pytest
+from support.in_process_graph import GraphOf
+from support.runs import expected, plan, record
+
+from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.run_execution import execute
+from ddct_plant.errors import DdctError
+from ddct_plant.load_node import LoadNode
+
+
+@pytest.mark.parametrize(
+    ('name', 'changes', 'words'),
+    [
+        ('clutch', {'wear_gain': 0.5}, ['wear_gain 0.5', 'recorder with 1.0']),
+        ('load', {'scenario': 'thesis'}, ['scenario_digest']),
+        ('actuator', {'mode': 'realtime'}, ['mode realtime', 'recorder with lockstep']),
+        ('engine', {'seed': 7}, ['seed 7', 'recorder with 0']),
+    ],
+)
+def test_a_node_with_other_settings_is_named(
+    graph_of: GraphOf, name: str, changes: dict[str, object], words: list[str]
+) -> None:
+    graph = graph_of(plan())
+    graph.add(name, changes)
+    graph.add_all()
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    for word in (f'node {name} ', 'same settings', *words):
+        assert word in complaint
+
+
+def test_two_controllers_on_one_topic_are_noticed(graph_of: GraphOf) -> None:
+    graph = graph_of(plan('ls8'))
+    graph.add_all()
+    graph.add('controller', {'controller': 'pi'}, key='second')
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert 'two different messages for stamp 16' in complaint
+    assert 'ROS_DOMAIN_ID' in complaint
+
+
+def test_a_second_copy_of_a_follower_changes_no_bit(graph_of: GraphOf) -> None:
+    run = plan()
+    graph = graph_of(run)
+    graph.add_all()
+    graph.add('load', key='second')
+    graph.run()
+    assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+
+
+def test_a_failed_graph_in_one_process_leaves_nothing_for_the_next_to_hear(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fail(*_: object) -> None:
+        raise DdctError('no road')
+
+    (tmp_path / 'failed').mkdir()
+    with monkeypatch.context() as broken:
+        broken.setattr(LoadNode, 'answer', fail)
+        with pytest.raises(DdctError, match='node load: .*no road') as kept:
+            execute(plan(layout='single-process'), tmp_path / 'failed')
+    run = plan(layout='single-process', wear_gain=0.6)
+    assert record(run, tmp_path / 'next').trajectory.sha256() == expected(run).sha256()
+    assert kept.value, 'with the error, and all that it refers to, still there'

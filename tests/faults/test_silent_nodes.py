@@ -1,0 +1,109 @@
+"""A node that is missing, falls silent or comes late: the driveline names what it waits for."""
+
+import signal
+
+import pytest
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.processes import START_S, Programs
+from support.runs import plan
+
+from ddct_plant.driveline_node import DrivelineNode
+
+
+def _graph(graph: InProcessGraph, timeout_s: float = 1.0) -> InProcessGraph:
+    graph.parameters['driveline']['answer_timeout_s'] = timeout_s
+    return graph
+
+
+def _step(graph: InProcessGraph) -> int:
+    driveline = graph.nodes['driveline']
+    assert isinstance(driveline, DrivelineNode)
+    return driveline.owner.step
+
+
+@pytest.mark.parametrize(
+    ('absent', 'words'),
+    [
+        ('engine', 'no engine/torque and no clutch/torque and no recorder/ack'),
+        ('load', 'no load/torque and no recorder/ack'),
+        ('clutch', 'no clutch/torque and no recorder/ack'),
+        ('reference', 'no clutch/torque and no recorder/ack'),
+        ('controller', 'no clutch/torque and no recorder/ack'),
+        ('recorder', 'no recorder/ack'),
+    ],
+)
+def test_a_node_that_never_starts_leaves_its_topic_missing(
+    graph_of: GraphOf, absent: str, words: str
+) -> None:
+    graph = _graph(graph_of(plan()))
+    graph.add_all(without=[absent])
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    assert complaint.startswith(f'{words} for stamp 1000000000 ns (step 0) within 1 s: ')
+
+
+def test_a_node_that_falls_silent_ends_the_run_at_its_step(graph_of: GraphOf) -> None:
+    graph = _graph(graph_of(plan()))
+    graph.add_all()
+    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    graph.remove('load')
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    step = _step(graph)
+    assert 20 <= step < 30
+    assert f'no load/torque and no recorder/ack for stamp {10**9 + step * 10**7} ns' in complaint
+
+
+def test_a_process_that_hangs_ends_the_run_at_its_step(
+    graph_of: GraphOf, programs: Programs
+) -> None:
+    graph = _graph(graph_of(plan(duration_s=600.0)))
+    clutch = programs.start_node('ddct_plant.clutch_node', graph.parameters['*'])
+    graph.wait_for_publisher('clutch/torque', START_S)
+    graph.add('driveline', {'require_recorder': False})
+    graph.add_all(without=['clutch', 'recorder'])
+    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    clutch.send(signal.SIGSTOP)
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    assert complaint.startswith(f'no clutch/torque for stamp {10**9 + _step(graph) * 10**7} ns')
+    assert 'within 1 s' in complaint
+
+
+@pytest.mark.parametrize('late', ['clutch', 'controller'])
+def test_a_follower_that_is_started_in_the_middle_ends_with_the_reason(
+    graph_of: GraphOf, late: str
+) -> None:
+    graph = _graph(graph_of(plan()), timeout_s=20.0)
+    graph.add_all()
+    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    graph.remove(late)
+    graph.add(late)
+    node, complaint = graph.first_failure()
+    assert node == late
+    assert f'step {_step(graph)} came where step 0 was due' in complaint
+    assert 'start the graph again' in complaint
+
+
+def test_a_recorder_that_is_started_in_the_middle_says_so(graph_of: GraphOf) -> None:
+    graph = _graph(graph_of(plan(duration_s=600.0)))
+    graph.add('driveline', {'require_recorder': False})
+    graph.add_all(without=['recorder'])
+    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    graph.add_all()
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert 'came where step 0 was due' in complaint
+    assert 'require_recorder' in complaint
+    assert not list(graph.folder.glob('*.mcap'))
+
+
+def test_real_time_gives_up_on_a_torque_that_stays_away(graph_of: GraphOf) -> None:
+    graph = _graph(graph_of(plan(mode='realtime', duration_s=600.0)))
+    graph.add_all()
+    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    graph.remove('load')
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    assert complaint.startswith('no load/torque since stamp 1')
+    assert '1.01 s ago' in complaint

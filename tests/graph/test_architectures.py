@@ -1,0 +1,25 @@
+"""Every architecture is one loop: both graph layouts and headless agree to the last bit."""
+
+from pathlib import Path
+
+import pytest
+from support.runs import bag_bytes, expected, record
+
+from ddct_bringup.run_plan import LAYOUTS, RunPlan
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
+
+
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
+    tmp_path: Path, architecture: str
+) -> None:
+    bags = []
+    for layout in LAYOUTS:
+        run = RunPlan(RunSettings(SCENARIO, architecture, wear_gain=0.9), 'hinf2', layout)
+        recording = record(run, tmp_path / layout)
+        assert recording.trajectory.sha256() == expected(run).sha256(), layout
+        bags.append(bag_bytes(tmp_path / layout))
+    assert bags[0] == bags[1] == bags[2]

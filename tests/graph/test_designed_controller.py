@@ -1,0 +1,28 @@
+"""A controller in a file is found by the nodes of the graph, and leaves the headless run's bag."""
+
+from pathlib import Path
+
+import pytest
+from support.runs import bag_bytes, expected, plan, record
+
+from ddct_bringup.run_plan import LAYOUTS
+from ddct_controllers.designed import DesignedController
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+
+
+def test_a_relative_file_gives_the_same_bytes_in_every_layout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = DesignedController('mine', PRINTED_CONTROLLERS['ls7']).to_yaml()
+    Path('any_name.yaml').write_text(text, encoding='utf-8')
+    bags = []
+    for layout in LAYOUTS:
+        run = plan('any_name.yaml', layout)
+        recording = record(run, tmp_path / layout)
+        assert recording.trajectory.sha256() == expected(run).sha256(), layout
+        assert recording.facts.controller == 'mine'
+        assert recording.run_info['controller']['controller'] == 'mine'
+        bags.append(bag_bytes(tmp_path / layout))
+    assert all(bag == bags[0] for bag in bags)
+    assert not any(b'any_name' in content for content in bags[0].values())

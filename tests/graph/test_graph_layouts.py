@@ -1,0 +1,50 @@
+"""One run, three layouts: separate processes, a single process and headless leave one bag."""
+
+from pathlib import Path
+
+import pytest
+from support.runs import bag_bytes, expected, plan, record
+
+from ddct_bringup.run_plan import LAYOUTS
+
+
+@pytest.mark.parametrize(
+    ('controller', 'wear_gain', 'changes', 'layouts'),
+    [
+        ('ls8', 1.0, (), (*LAYOUTS, 'processes')),
+        ('pi', 0.7, ('load.slope_rad=0.05',), LAYOUTS),
+    ],
+    ids=['repeated', 'worn clutch uphill'],
+)
+def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
+    tmp_path: Path,
+    controller: str,
+    wear_gain: float,
+    changes: tuple[str, ...],
+    layouts: tuple[str, ...],
+) -> None:
+    bags = []
+    for number, layout in enumerate(layouts):
+        run = plan(controller, layout, wear_gain=wear_gain, changes=changes)
+        folder = tmp_path / str(number)
+        recording = record(run, folder)
+        assert recording.trajectory.sha256() == expected(run).sha256(), layout
+        bags.append(bag_bytes(folder))
+    assert all(bag == bags[0] for bag in bags)
+
+
+def test_a_repeated_run_in_one_process_leaves_the_same_bytes(tmp_path: Path) -> None:
+    run = plan('pi', 'single-process', duration_s=3.0)
+    bags = []
+    for number in range(3):
+        record(run, tmp_path / str(number))
+        bags.append(bag_bytes(tmp_path / str(number)))
+    assert bags[0] == bags[1] == bags[2]
+
+
+def test_the_hash_tells_one_last_bit_apart() -> None:
+    run = plan()
+    first, second = expected(run), expected(run)
+    assert first.sha256() == second.sha256()
+    second.clutch_torque[50, 5] *= 1.0 + 2.0**-52
+    assert first.sha256() != second.sha256()

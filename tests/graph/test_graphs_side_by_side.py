@@ -1,0 +1,38 @@
+"""Graphs on one machine do not mix, and a namespace changes nothing."""
+
+import os
+from pathlib import Path
+
+from support.in_process_graph import GraphOf
+from support.processes import Programs
+from support.runs import bag_bytes, expected, plan
+
+from ddct_bringup.bag_reader import read_bag
+
+
+def test_two_bringups_at_once_do_not_hear_each_other(programs: Programs, tmp_path: Path) -> None:
+    environment = {name: value for name, value in os.environ.items() if name != 'ROS_DOMAIN_ID'}
+    out = tmp_path / 'runs'
+    started = [
+        programs.start_module(
+            'ddct_bringup.bringup',
+            *('--controller', controller, '--duration', '5.0', '--single-process'),
+            *('--out', str(out)),
+            env=environment,
+        )
+        for controller in ('ls8', 'pi')
+    ]
+    for controller, program in zip(('ls8', 'pi'), started, strict=True):
+        assert program.wait() == 0, program.errors()
+        trajectory = read_bag(out / controller).trajectory
+        assert trajectory.sha256() == expected(plan(controller, duration_s=5.0)).sha256()
+
+
+def test_a_graph_in_a_namespace_leaves_the_same_bytes(graph_of: GraphOf) -> None:
+    bags = []
+    for namespace in ('', '/car7/powertrain'):
+        graph = graph_of(plan())
+        graph.add_all(namespace=namespace)
+        graph.run()
+        bags.append(bag_bytes(graph.folder))
+    assert bags[0] == bags[1]

@@ -1,0 +1,101 @@
+"""Lost, doubled and late messages change nothing in lock-step."""
+
+import importlib
+import json
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.processes import node_of
+from support.relay import Relay, lossy_remaps
+from support.runs import expected, plan, record
+from support.waiting import wait_until
+
+from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.graph_nodes import GRAPH_NODES
+from ddct_bringup.topics import TOPICS
+
+INPUTS = {
+    'engine': ['driveline/joint_states'],
+    'load': ['vehicle/twist'],
+    'clutch': ['actuator/torque'],
+    'actuator': ['clutch/torque_request'],
+    'reference': ['clutch/slip'],
+    'controller': [
+        'driveline/joint_states',
+        'vehicle/twist',
+        'engine/torque',
+        'clutch/slip_reference',
+    ],
+    'driveline': ['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'],
+    'recorder': [
+        topic.name
+        for topic in TOPICS
+        if topic.every_tick and not topic.two_input_only and topic.name != 'recorder/ack'
+    ],
+}
+"""Every message of the loop on its way to a node."""
+
+
+def _type_of(topic: str) -> type:
+    package, kind, name = next(spec.type for spec in TOPICS if spec.name == topic).split('/')
+    return getattr(importlib.import_module(f'{package}.{kind}'), name)
+
+
+def _add_lossy(graph: InProcessGraph, lost: float, doubled: float) -> list[Relay]:
+    relays = []
+    for spec in GRAPH_NODES:
+        topics = INPUTS[spec.name]
+        graph.add(spec.name, cli_args=lossy_remaps(spec.name, topics))
+        for topic in topics:
+            relays.append(
+                Relay(
+                    spec.name,
+                    topic,
+                    _type_of(topic),
+                    lost=lost,
+                    doubled=doubled,
+                    seed=1,
+                    context=graph.context,
+                )
+            )
+            graph.add_other(relays[-1])
+    return relays
+
+
+def _stop_for_half_a_second(module: str, bag: Path) -> None:
+    """Stop a node once the first 20 kB of the run are in its bag."""
+    file = bag / 'ls8_0.mcap'
+    wait_until(lambda: file.exists() and file.stat().st_size > 20_000, 'a bag that grows')
+    node = node_of(module)
+    os.kill(node, signal.SIGSTOP)
+    time.sleep(0.5)
+    os.kill(node, signal.SIGCONT)
+
+
+def test_one_percent_lost_and_doubled_messages_change_no_bit(graph_of: GraphOf) -> None:
+    run = plan()
+    graph = graph_of(run)
+    relays = _add_lossy(graph, lost=0.01, doubled=0.01)
+    graph.run(within_s=60.0)
+    assert sum(relay.lost for relay in relays) >= 10
+    assert sum(relay.doubled for relay in relays) >= 10
+    assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+    timing = json.loads((graph.folder / 'timing.json').read_text())
+    assert timing['resends'] >= 10
+
+
+def test_a_node_stopped_for_half_a_second_changes_no_bit(tmp_path: Path) -> None:
+    run = plan(duration_s=10.0)
+    bag = tmp_path / 'bag'
+    stopper = threading.Thread(target=_stop_for_half_a_second, args=('clutch_node', bag))
+    stopper.start()
+    recording = record(run, bag)
+    stopper.join()
+    assert recording.trajectory.sha256() == expected(run).sha256()
+    timing = json.loads((bag / 'timing.json').read_text())
+    assert timing['resends'] >= 3, 'the node was not stopped in the middle of the run'
+    assert timing['steps'] == 1000

@@ -1,0 +1,72 @@
+"""Nodes started by hand, one program each, without bringup: any order gives the same run."""
+
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+from support.observer import Observing
+from support.processes import START_S, Program, Programs
+from support.runs import bag_bytes, expected, plan, record
+from support.waiting import wait_until
+
+from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.graph_nodes import GRAPH_NODES
+
+RUN = plan(layout='headless', duration_s=3.0)
+"""What nodes run that are only told to use `ls8`."""
+MODULES = {spec.name: spec.module for spec in GRAPH_NODES}
+
+
+def _start(programs: Programs, names: Sequence[str], bag: Path | None) -> dict[str, Program]:
+    """Start nodes with the defaults of bringup, a controller and a recorder if `bag` is given."""
+    own: dict[str, dict[str, object]] = {
+        'controller': {'controller': 'ls8'},
+        'driveline': {'require_recorder': bag is not None},
+        'recorder': {'out': bag, 'name': 'ls8'},
+    }
+    return {name: programs.start_node(MODULES[name], own.get(name, {})) for name in names}
+
+
+def _finish(nodes: dict[str, Program]) -> None:
+    """Wait for the driveline, then stop the others, the recorder last; all must end with 0."""
+    assert nodes['driveline'].wait() == 0, nodes['driveline'].errors()
+    for name in sorted(nodes, key=lambda name: name == 'recorder'):
+        if name != 'driveline':
+            nodes[name].stop()
+
+
+def test_nodes_in_random_order_leave_the_bag_that_bringup_leaves(
+    programs: Programs, tmp_path: Path
+) -> None:
+    names = list(MODULES)
+    random.Random(1).shuffle(names)
+    _finish(_start(programs, names, tmp_path / 'by_hand'))
+    record(RUN, tmp_path / 'by_bringup')
+    assert bag_bytes(tmp_path / 'by_hand') == bag_bytes(tmp_path / 'by_bringup')
+
+
+def test_a_driveline_that_starts_long_before_the_others_waits_for_them(
+    programs: Programs, tmp_path: Path
+) -> None:
+    bag = tmp_path / 'bag'
+    with Observing() as observing:
+        nodes = _start(programs, ['driveline'], bag)
+        ticks = observing.observer.joints
+        wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)
+    others = [name for name in MODULES if name not in ('driveline', 'recorder')]
+    nodes |= _start(programs, [*others, 'recorder'], bag)
+    _finish(nodes)
+    assert read_bag(bag).trajectory.sha256() == expected(RUN).sha256()
+
+
+def test_nodes_without_a_recorder_run_the_same_trajectory(programs: Programs) -> None:
+    names = [name for name in MODULES if name != 'recorder']
+    random.Random(2).shuffle(names)
+    with Observing() as observing:
+        nodes = _start(programs, names, None)
+        driveline = nodes['driveline'].process
+        wait_until(lambda: observing.listen() and driveline.poll() is not None, 'the end', START_S)
+        observing.listen()
+        _finish(nodes)
+        observing.observer.require_same(expected(RUN))
+        assert len(observing.observer.joints) > 50

@@ -1,0 +1,92 @@
+"""Real time: the clutch opens by itself, at the stated rate, when the controller falls silent."""
+
+import signal
+from typing import Any
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import WrenchStamped
+from rclpy.node import Node
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.processes import START_S, Programs
+from support.runs import plan
+from trajectory_msgs.msg import JointTrajectory
+
+from ddct_plant.fail_safe import FailSafeSettings
+from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.timebase import PERIOD_S, step_of_stamp
+
+FAIL_SAFE = FailSafeSettings()
+SILENT_AT_STEP = 80
+SETTLING_STEPS = 10
+"""The delay of one period and about four time constants of G_a (Section 1.4.2)."""
+
+
+class _Listener(Node):
+    """Keeps the requests and the actuator's torques by step."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__('listener', **options)
+        self.requests: dict[int, float] = {}
+        self.torques: dict[int, float] = {}
+        self.create_subscription(
+            WrenchStamped, 'clutch/torque_request', self._on_request, RECORDER_QOS
+        )
+        self.create_subscription(JointTrajectory, 'actuator/torque', self._on_torque, RECORDER_QOS)
+
+    def _on_request(self, message: WrenchStamped) -> None:
+        self.requests[step_of_stamp(stamp_ns(message))] = torque_of(message)
+
+    def _on_torque(self, message: JointTrajectory) -> None:
+        self.torques[step_of_stamp(stamp_ns(message))] = torque_points_of(message)[0]
+
+
+@pytest.mark.parametrize(
+    'signals',
+    [[signal.SIGKILL], [signal.SIGSTOP, signal.SIGCONT]],
+    ids=['killed', 'stopped and continued'],
+)
+def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
+    graph_of: GraphOf, programs: Programs, signals: list[signal.Signals]
+) -> None:
+    run = plan(mode='realtime', duration_s=1.8)
+    heard = _run_until_silent(graph_of(run), programs, signals)
+    engaged = _first_step_after_the_gap(heard, run.steps)
+    last_request = heard.requests[max(step for step in heard.requests if step < engaged - 5)]
+    assert last_request > 200.0, 'the clutch was open before the controller fell silent'
+    ramp_steps = round(last_request / FAIL_SAFE.fail_safe_ramp_n_m_s / PERIOD_S)
+    torque = np.array([heard.torques[step] for step in range(engaged, run.steps + 1)])
+    rate_n_m_s = -np.diff(torque) / PERIOD_S
+    on_the_ramp = rate_n_m_s[SETTLING_STEPS:ramp_steps]
+    assert on_the_ramp == pytest.approx(FAIL_SAFE.fail_safe_ramp_n_m_s, rel=0.03)
+    assert rate_n_m_s.max() < 1.03 * FAIL_SAFE.fail_safe_ramp_n_m_s
+    assert np.abs(torque[ramp_steps + SETTLING_STEPS :]).max() < 0.01 * last_request
+
+
+def _run_until_silent(
+    graph: InProcessGraph, programs: Programs, signals: list[signal.Signals]
+) -> _Listener:
+    """Run with the controller in a process of its own, which gets the signals at step 80."""
+    shared = graph.parameters['*'] | graph.parameters['controller']
+    controller = programs.start_node('ddct_controllers.controller_node', shared)
+    heard = _Listener(context=graph.context)
+    graph.add_other(heard)
+    graph.add_all(without=['controller'])
+    goals = [SILENT_AT_STEP + 20 * number for number in range(len(signals))]
+    for goal, number in zip(goals, signals, strict=True):
+        graph.spin_until(lambda step=goal: step in heard.torques, f'step {goal}', START_S)
+        controller.send(number)
+    graph.run()
+    return heard
+
+
+def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:
+    """Return the first step with a torque after the request was held for its timeout."""
+    answered = [step in heard.torques for step in range(steps + 1)]
+    held = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
+    for step in range(SILENT_AT_STEP, steps):
+        if answered[step] and not any(answered[step - held : step]):
+            assert answered[step - held - 1], f'held for longer than {held} steps'
+            return step
+    raise AssertionError(f'the fail-safe did not engage: {answered}')

@@ -1,0 +1,122 @@
+"""A controller of another package works everywhere by its name alone; a broken one is named."""
+
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import Programs
+from support.runs import bag_bytes, expected, plan, record
+from support.third_party import EXAMPLE, example_entry_points, install
+
+from ddct_bringup import bringup
+from ddct_controllers.registry import make_controller
+from ddct_plant.errors import DdctError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SUPPORT = Path(__file__).parent.parent
+
+
+@pytest.fixture
+def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    install(monkeypatch, tmp_path / 'site', EXAMPLE, example_entry_points())
+
+
+@pytest.fixture
+def broken(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising')
+    names = (*answers, 'no_controller', 'nothing')
+    targets = {name: f'support.broken_controllers:make_{name}' for name in names}
+    targets['absent'] = 'no_such_package.controllers:make'
+    install(monkeypatch, tmp_path / 'site', SUPPORT, targets)
+
+
+@pytest.mark.usefixtures('example')
+def test_the_example_controller_runs_in_every_layout_with_the_same_bytes(tmp_path: Path) -> None:
+    changes = ('controllers.dead_zone.dead_zone_rpm=2.0',)
+    bags = []
+    for layout in ('processes', 'single-process', 'headless'):
+        run = plan('dead_zone', layout, changes=changes)
+        trajectory = record(run, tmp_path / layout).trajectory
+        assert trajectory.sha256() == expected(run).sha256()
+        assert trajectory.slip_reference.shape[1] == 2, 'its preview is one step'
+        assert dict(trajectory.status[-1])['in_dead_zone'] in ('true', 'false')
+        bags.append(bag_bytes(tmp_path / layout))
+    assert bags[0] == bags[1] == bags[2]
+
+
+@pytest.mark.usefixtures('example')
+def test_bringup_lists_and_runs_the_example_controller(programs: Programs, tmp_path: Path) -> None:
+    listing = programs.start_module('ddct_bringup.bringup', '--list')
+    run = programs.start_module(
+        'ddct_bringup.bringup',
+        *('--controller', 'dead_zone', '--headless', '--out', str(tmp_path / 'runs')),
+    )
+    assert listing.wait() == 0, listing.errors()
+    controllers = listing.output().splitlines()[0]
+    assert controllers.startswith('controllers:')
+    assert 'dead_zone' in controllers
+    assert run.wait() == 0, run.errors()
+    assert (tmp_path / 'runs' / 'dead_zone' / 'dead_zone_0.mcap').is_file()
+
+
+@pytest.mark.usefixtures('example')
+def test_a_gain_that_the_example_does_not_take_is_named(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    arguments = ['--controller', 'dead_zone', '--set', 'controllers.dead_zone.speed=1']
+    assert bringup.main([*arguments, '--headless', '--out', str(tmp_path / 'runs')]) == 1
+    assert_one_line(capfd.readouterr().err, 'bringup', 'controllers.dead_zone.speed')
+    assert not (tmp_path / 'runs').exists()
+
+
+@pytest.mark.usefixtures('broken')
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('absent', ["'absent'", 'no_such_package', 'cannot be loaded']),
+        ('no_controller', ["'no_controller'", 'returned dict']),
+        ('nothing', ["'nothing'", 'KeyError']),
+    ],
+)
+def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str]) -> None:
+    with pytest.raises(DdctError) as failure:
+        make_controller(name, RunSettings(load_scenario('thesis')))
+    for word in words:
+        assert word in str(failure.value)
+
+
+@pytest.mark.usefixtures('broken')
+@pytest.mark.parametrize('layout', ['--headless', '--single-process'])
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('not_a_number', 'torque at step 60 is nan'),
+        ('infinite', 'torque at step 60 is inf'),
+        ('bare_number', 'float'),
+        ('text', "'12.5'"),
+    ],
+)
+def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, layout: str, name: str, words: str
+) -> None:
+    out = tmp_path / 'runs'
+    assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
+    assert_one_line(capfd.readouterr().err, 'bringup', 'controller', words)
+    assert not (out / name).exists()
+
+
+@pytest.mark.usefixtures('broken')
+def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_log(
+    programs: Programs, tmp_path: Path
+) -> None:
+    out = tmp_path / 'runs'
+    run = programs.start_module(
+        'ddct_bringup.bringup', *('--controller', 'raising', '--out', str(out))
+    )
+    assert run.wait() == 1
+    assert_one_line(run.errors(), 'bringup', 'node controller', 'float division by zero')
+    log = out / 'raising.partial' / 'work' / 'controller.log'
+    assert str(log) in run.errors()
+    assert 'Traceback' in log.read_text(encoding='utf-8')
+    assert not (out / 'raising').exists()

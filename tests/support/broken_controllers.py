@@ -1,0 +1,56 @@
+"""Controllers of third parties that do everything wrong."""
+
+import math
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+
+
+class _Broken(Controller):
+    def __init__(self, answer: object, good_until_step: float = 0) -> None:
+        self._answer = answer
+        self._good_until_step = good_until_step
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, measurement: Measurement) -> Command:
+        if measurement.step < self._good_until_step:
+            return Command(0.0)
+        if isinstance(self._answer, Exception):
+            raise self._answer
+        return self._answer  # type: ignore[return-value]
+
+
+def make_not_a_number(context: ControllerContext) -> Controller:
+    """Return a controller that commands NaN from the step on that the scenario sets."""
+    return _Broken(Command(math.nan), context.gains.get('good_until_step', 0))
+
+
+def make_infinite(context: ControllerContext) -> Controller:
+    """Return a controller that commands an infinite torque."""
+    return _Broken(Command(math.inf))
+
+
+def make_bare_number(context: ControllerContext) -> Controller:
+    """Return a controller that returns a number instead of a Command."""
+    return _Broken(12.5)
+
+
+def make_text(context: ControllerContext) -> Controller:
+    """Return a controller whose torque is text."""
+    return _Broken(Command('12.5'))  # type: ignore[arg-type]
+
+
+def make_raising(context: ControllerContext) -> Controller:
+    """Return a controller that divides by zero."""
+    return _Broken(ZeroDivisionError('float division by zero'))
+
+
+def make_no_controller(context: ControllerContext) -> object:
+    """Return something that is no controller."""
+    return {'gain': 1.0}
+
+
+def make_nothing(context: ControllerContext) -> Controller:
+    """Fail to build a controller."""
+    raise KeyError('gain')

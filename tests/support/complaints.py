@@ -1,0 +1,18 @@
+"""What an error message for a user must be like."""
+
+import re
+
+
+def assert_one_line(errors: str, program: str, *needles: str) -> None:
+    """
+    Require one line `<program>: <text>` that holds every needle, and no traceback.
+
+    What ROS itself logs (`[ERROR] [...]`) does not count.
+    """
+    lines = [
+        line for line in errors.splitlines() if line.strip() and not re.match(r'\[\w+\] \[', line)
+    ]
+    assert len(lines) == 1, errors
+    assert lines[0].startswith(f'{program}: '), errors
+    for needle in needles:
+        assert needle in lines[0], f'{needle!r} is not in: {lines[0]}'

@@ -1,0 +1,143 @@
+"""The graph's nodes inside the test's process, where a test can leave out, replace or add some."""
+
+import importlib
+import time
+from collections.abc import Callable, Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from rclpy.clock import Clock, ClockType
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+
+from ddct_bringup.graph_nodes import GRAPH_NODES
+from ddct_bringup.run_plan import RunPlan
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.spin import finish_node, make_executor
+
+LOOK_S = 0.001
+"""How often the graph is looked at while it spins."""
+
+
+def node_class(name: str) -> Callable[..., GraphNode]:
+    """Return the class of the node with this name."""
+    spec = next(spec for spec in GRAPH_NODES if spec.name == name)
+    return getattr(importlib.import_module(spec.module), spec.class_name)
+
+
+class InProcessGraph:
+    """Nodes of one run on one executor; as a context manager it destroys them."""
+
+    def __init__(self, plan: RunPlan, folder: Path) -> None:
+        """Prepare for the bag of `plan` in `folder`; `add` and `add_all` build the nodes."""
+        folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self.parameters = plan.node_parameters(folder, folder)
+        self.nodes: dict[str, GraphNode] = {}
+        self.context = Context()
+        rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
+        self._watch = Node('watch', context=self.context)
+        self._others = [self._watch]
+        self._executor = make_executor(self.context)
+        self._executor.add_node(self._watch)
+
+    def __enter__(self) -> 'InProcessGraph':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._executor.shutdown()
+        for node in [*self.nodes.values(), *self._others]:
+            node.destroy_node()
+        self.context.try_shutdown()
+
+    def add_all(self, *, without: Collection[str] = (), **options: Any) -> None:
+        """Add every node of the graph that is not there yet and not in `without`."""
+        for spec in GRAPH_NODES:
+            if spec.name not in self.nodes and spec.name not in without:
+                self.add(spec.name, **options)
+
+    def add(
+        self,
+        name: str,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        key: str = '',
+        **options: Any,
+    ) -> GraphNode:
+        """Add the node `name` with the run's parameters and `changes`, kept under `key`."""
+        values = {**self.parameters['*'], **self.parameters.get(name, {}), **(changes or {})}
+        overrides = [Parameter(parameter, value=value) for parameter, value in values.items()]
+        node = node_class(name)(context=self.context, parameter_overrides=overrides, **options)
+        self.nodes[key or name] = node
+        self._executor.add_node(node)
+        return node
+
+    def add_other(self, node: Node) -> None:
+        """Add a node that is no part of the product, built with our `context`."""
+        self._others.append(node)
+        self._executor.add_node(node)
+
+    def remove(self, name: str) -> None:
+        """Take a node away in the middle of the run."""
+        node = self.nodes.pop(name)
+        node.finish()
+        self._executor.remove_node(node)
+        node.destroy_node()
+
+    def wait_for_publisher(self, topic: str, within_s: float) -> None:
+        """Spin until somebody, perhaps in another process, publishes `topic`."""
+        self.spin_until(lambda: bool(self._watch.count_publishers(topic)), topic, within_s)
+
+    def spin_until(self, condition: Callable[[], bool], what: str, within_s: float = 30) -> None:
+        """Spin until `condition()` holds; fail when it does not in time or a node failed."""
+        self._spin_until(lambda: condition() or bool(self.failures()), what, within_s)
+        assert not self.failures(), self.failures()
+
+    def run(self, within_s: float = 30) -> None:
+        """Spin until the driveline has done its work, then let every node flush, recorder last."""
+        driveline = self.nodes['driveline']
+        self.spin_until(driveline.done.done, 'the end of the run', within_s)
+        self.finish()
+
+    def finish(self) -> None:
+        """Let every node flush what it holds, the recorder last."""
+        for name in sorted(self.nodes, key=lambda name: name == 'recorder'):
+            finish_node(self._executor, self.nodes[name])
+        assert not self.failures(), self.failures()
+
+    def first_failure(self, within_s: float = 30) -> tuple[str, str]:
+        """Spin until a node fails and return which one and its words."""
+        self._spin_until(lambda: bool(self.failures()), 'a node that fails', within_s)
+        return next(iter(self.failures().items()))
+
+    def failures(self) -> dict[str, str]:
+        """Return the words of every node that has ended with an error."""
+        errors = {
+            name: node.done.result() for name, node in self.nodes.items() if node.done.done()
+        }
+        return {name: str(error) for name, error in errors.items() if isinstance(error, DdctError)}
+
+    def _spin_until(self, condition: Callable[[], bool], what: str, within_s: float) -> None:
+        # A timer looks, because a busy EventsExecutor does not look at its timeout.
+        met: Future = Future()
+        deadline = time.monotonic() + within_s
+
+        def look() -> None:
+            if not met.done() and (condition() or time.monotonic() > deadline):
+                met.set_result(None)
+
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        timer = self._watch.create_timer(LOOK_S, look, clock=steady)
+        while not met.done():
+            self._executor.spin_until_future_complete(met, within_s)
+        self._watch.destroy_timer(timer)
+        assert condition(), f'{what}: not within {within_s:g} s'
+
+
+GraphOf = Callable[[RunPlan], InProcessGraph]
+"""What the fixture `graph_of` gives: a function that prepares the graph of a plan."""

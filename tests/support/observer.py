@@ -1,0 +1,73 @@
+"""A listener that is no part of the graph, to see what a run without a recorder does."""
+
+from typing import Any
+
+import numpy as np
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+from ddct_bringup.trajectory import Trajectory
+from ddct_plant.graph.message_values import stamp_ns, torque_points_of
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.spin import make_executor
+from ddct_plant.timebase import step_of_stamp
+
+
+class Observer(Node):
+    """Keeps what it hears of `driveline/joint_states` and `clutch/torque`, by step."""
+
+    def __init__(self, **options: Any) -> None:
+        """Subscribe; nothing in the graph waits for this node."""
+        super().__init__('observer', **options)
+        self.joints: dict[int, JointState] = {}
+        self.clutch_torque: dict[int, list[float]] = {}
+        self.create_subscription(
+            JointState, 'driveline/joint_states', self._on_joints, RECORDER_QOS
+        )
+        self.create_subscription(JointTrajectory, 'clutch/torque', self._on_torque, RECORDER_QOS)
+
+    def _on_joints(self, message: JointState) -> None:
+        self.joints[step_of_stamp(stamp_ns(message))] = message
+
+    def _on_torque(self, message: JointTrajectory) -> None:
+        self.clutch_torque[step_of_stamp(stamp_ns(message))] = torque_points_of(message)
+
+    def require_same(self, trajectory: Trajectory) -> None:
+        """Require the end of the run, and each tick that was heard, to the last bit."""
+        assert trajectory.steps in self.joints, sorted(self.joints)[-3:]
+        for step, joints in self.joints.items():
+            assert np.array_equal(joints.position, trajectory.joint_position[step]), step
+            assert np.array_equal(joints.velocity, trajectory.joint_speed[step]), step
+            assert np.array_equal(joints.effort, trajectory.joint_effort[step]), step
+        for step, torques in self.clutch_torque.items():
+            assert np.array_equal(torques, trajectory.clutch_torque[step]), step
+
+
+class Observing:
+    """An observer in a context of its own; as a context manager it ends with the block."""
+
+    def __init__(self) -> None:
+        """Join the domain of the test."""
+        self._context = Context()
+        rclpy.init(args=[], context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self.observer = Observer(context=self._context)
+        self._executor = make_executor(self._context)
+        self._executor.add_node(self.observer)
+
+    def __enter__(self) -> 'Observing':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._executor.shutdown()
+        self.observer.destroy_node()
+        self._context.try_shutdown()
+
+    def listen(self) -> bool:
+        """Take in what has come; True, so that it fits into a condition to wait for."""
+        self._executor.spin_until_future_complete(Future(), 0.02)
+        return True

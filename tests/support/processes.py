@@ -1,0 +1,129 @@
+"""Programs as processes of their own, and a look at what is left of them (Linux /proc)."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from support.waiting import wait_until
+
+TEST_ID = 'DDCT_TEST_ID'
+"""Environment variable that marks every process which a test starts, directly or not."""
+
+START_S = 60.0
+"""How long a node or program may take to start or to end on a loaded machine."""
+
+
+@dataclass
+class Program:
+    """A running program and the files that hold what it prints."""
+
+    process: subprocess.Popen[bytes]
+    stdout: Path
+    stderr: Path
+
+    def send(self, number: signal.Signals) -> None:
+        """Send it a signal."""
+        self.process.send_signal(number)
+
+    def wait(self, within_s: float = START_S) -> int:
+        """Wait for its end and return the exit code, which is -n after signal n."""
+        return self.process.wait(within_s)
+
+    def stop(self) -> None:
+        """Stop it as Ctrl-C in its terminal would and require that it ends with code 0."""
+        os.killpg(self.process.pid, signal.SIGINT)
+        code = self.wait()
+        assert code == 0, f'{self.process.args}: code {code} after SIGINT: {self.errors()}'
+
+    def output(self) -> str:
+        """Return its standard output so far."""
+        return self.stdout.read_text(encoding='utf-8')
+
+    def errors(self) -> str:
+        """Return its standard error so far."""
+        return self.stderr.read_text(encoding='utf-8')
+
+
+class Programs:
+    """Starts programs and kills at the end what a failed test has left running."""
+
+    def __init__(self, logs: Path) -> None:
+        """Write what they print into `logs`."""
+        self._logs = logs
+        self._started: list[Program] = []
+
+    def start(self, command: Sequence[str], **options: Any) -> Program:
+        """Start a command; `options` are those of Popen."""
+        self._logs.mkdir(exist_ok=True)
+        stem = self._logs / str(len(self._started))
+        out, err = stem.with_suffix('.out'), stem.with_suffix('.err')
+        with out.open('wb') as stdout, err.open('wb') as stderr:
+            process = subprocess.Popen(
+                list(command),
+                stdin=subprocess.DEVNULL,
+                stdout=stdout,
+                stderr=stderr,
+                start_new_session=True,
+                **options,
+            )
+        program = Program(process, out, err)
+        self._started.append(program)
+        return program
+
+    def start_module(self, module: str, *arguments: str, **options: Any) -> Program:
+        """Start `python -m module` with the Python that runs the tests."""
+        return self.start([sys.executable, '-m', module, *arguments], **options)
+
+    def start_node(self, module: str, parameters: Mapping[str, object], **options: Any) -> Program:
+        """Start a node by hand, with these ROS parameters."""
+        return self.start_module(module, *ros_arguments(parameters), **options)
+
+    def kill(self) -> None:
+        """Kill what still runs and reap everything."""
+        for program in self._started:
+            if program.process.poll() is None:
+                program.send(signal.SIGKILL)
+            program.wait()
+
+
+def ros_arguments(parameters: Mapping[str, object]) -> list[str]:
+    """Return the command-line arguments that set ROS parameters."""
+    arguments = ['--ros-args']
+    for name, value in parameters.items():
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+        arguments += ['-p', f'{name}:={text}']
+    return arguments
+
+
+def processes_left() -> dict[int, str]:
+    """Return the command line by id of every other process that this test has started."""
+    mark = f'{TEST_ID}={os.environ[TEST_ID]}'.encode()
+    left = {}
+    for folder in Path('/proc').iterdir():
+        if not folder.name.isdigit() or int(folder.name) == os.getpid():
+            continue
+        # A process may end, or belong to somebody else, while we look.
+        with contextlib.suppress(OSError):
+            if mark in (folder / 'environ').read_bytes().split(b'\0'):
+                command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode()
+                left[int(folder.name)] = command.strip()
+    return left
+
+
+def node_of(module: str) -> int:
+    """Return the process id of the node of this test that runs `module`, once it is there."""
+    found: list[int] = []
+
+    def look() -> bool:
+        found[:] = [pid for pid, command in processes_left().items() if module in command]
+        return bool(found)
+
+    wait_until(look, f'a process of {module}', START_S)
+    assert len(found) == 1, f'{module} runs {len(found)} times'
+    return found[0]

@@ -1,0 +1,47 @@
+"""Planned runs, short ones, and what they leave."""
+
+from pathlib import Path
+
+from ddct_bringup.bag_reader import Recording, read_bag
+from ddct_bringup.headless import run_headless
+from ddct_bringup.run_execution import execute
+from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.trajectory import Trajectory
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SHORT_S = 1.0
+"""Long enough for 40 steps under control, which starts at 0.6 s."""
+
+
+def plan(
+    controller: str = 'ls8',
+    layout: str = 'processes',
+    *,
+    duration_s: float = SHORT_S,
+    wear_gain: float = 1.0,
+    mode: str = 'lockstep',
+    changes: tuple[str, ...] = (),
+) -> RunPlan:
+    """Return a short run of the thesis's scenario."""
+    scenario = load_scenario('thesis', [f'duration_s={duration_s}', *changes])
+    return RunPlan(RunSettings(scenario, wear_gain=wear_gain, mode=mode), controller, layout)
+
+
+def record(run: RunPlan, folder: Path) -> Recording:
+    """Carry out a run into a new folder and return what its bag holds."""
+    folder.mkdir(parents=True)
+    execute(run, folder)
+    return read_bag(folder)
+
+
+def expected(run: RunPlan) -> Trajectory:
+    """Return the trajectory that the run must have, from the headless loop."""
+    return run_headless(run.settings, run.controller)
+
+
+def bag_bytes(folder: Path) -> dict[str, bytes]:
+    """Return the deterministic files of a bag folder by name."""
+    files = [*folder.glob('*.mcap'), *folder.glob('metadata.yaml')]
+    assert len(files) == 2, sorted(folder.iterdir())
+    return {file.name: file.read_bytes() for file in files}

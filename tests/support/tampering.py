@@ -1,0 +1,39 @@
+"""A node that hands one topic on to one reader and, from one step on, spoils what it carries."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.node import Node
+
+from ddct_plant.graph.message_values import stamp_ns
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.timebase import step_of_stamp
+
+
+def tampered_remap(topic: str) -> list[str]:
+    """Return the ROS arguments by which a node hears `topic` only from a `Tamperer`."""
+    return ['--ros-args', '-r', f'{topic}:=tampered/{topic}']
+
+
+class Tamperer(Node):
+    """Hands `topic` on, and calls `spoil` on each of its messages from `from_step` on."""
+
+    def __init__(
+        self,
+        message_type: type,
+        topic: str,
+        spoil: Callable[[Any], None],
+        from_step: int,
+        **options: Any,
+    ) -> None:
+        """Spoil what the reader with `tampered_remap(topic)` hears."""
+        super().__init__('tamperer', **options)
+        self._spoil = spoil
+        self._from_step = from_step
+        self._publisher = self.create_publisher(message_type, f'tampered/{topic}', RECORDER_QOS)
+        self.create_subscription(message_type, topic, self._hand_on, RECORDER_QOS)
+
+    def _hand_on(self, message: Any) -> None:
+        if step_of_stamp(stamp_ns(message)) >= self._from_step:
+            self._spoil(message)
+        self._publisher.publish(message)

@@ -1,0 +1,12 @@
+"""Wait for something with a deadline."""
+
+import time
+from collections.abc import Callable
+
+
+def wait_until(condition: Callable[[], bool], what: str, within_s: float = 30.0) -> None:
+    """Wait until `condition()` holds; fail, saying what did not happen, when it never does."""
+    deadline = time.monotonic() + within_s
+    while not condition():
+        assert time.monotonic() < deadline, f'{what}: not within {within_s:g} s'
+        time.sleep(0.005)
