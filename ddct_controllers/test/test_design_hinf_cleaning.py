@@ -79,3 +79,4 @@ def test_factors_read_as_the_thesis_prints_them():
     assert factor_text(0.0) == 's'
     assert factor_text(89.52) == '(s + 89.52)'
     assert factor_text((-1.915, 0.948), 'z') == '(z^2 - 1.915 z + 0.948)'
+    assert factor_text(-0.99993, 'z', 5) == '(z - 0.99993)'

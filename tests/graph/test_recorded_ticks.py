@@ -2,6 +2,7 @@
 
 from collections import Counter, defaultdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 from mcap.reader import make_reader
@@ -14,9 +15,9 @@ STEPS = 300
 STAMPS = [1_000_000_000 + step * 10_000_000 for step in range(STEPS + 1)]
 
 
-def _stamp(message: object) -> int:
+def _stamp(message: Any) -> int:
     header = getattr(message, 'header', message)
-    time = getattr(header, 'stamp', None) or message.clock  # type: ignore[attr-defined]
+    time = getattr(header, 'stamp', None) or message.clock
     return time.sec * 1_000_000_000 + time.nanosec
 
 

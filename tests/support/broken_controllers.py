@@ -1,12 +1,13 @@
 """Controllers of third parties that do everything wrong."""
 
 import math
+from typing import Any
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 
 
 class _Broken(Controller):
-    def __init__(self, answer: object, good_until_step: float = 0) -> None:
+    def __init__(self, answer: Any, good_until_step: float = 0) -> None:
         self._answer = answer
         self._good_until_step = good_until_step
 
@@ -18,7 +19,7 @@ class _Broken(Controller):
             return Command(0.0)
         if isinstance(self._answer, Exception):
             raise self._answer
-        return self._answer  # type: ignore[return-value]
+        return self._answer
 
 
 def make_not_a_number(context: ControllerContext) -> Controller:
@@ -38,7 +39,8 @@ def make_bare_number(context: ControllerContext) -> Controller:
 
 def make_text(context: ControllerContext) -> Controller:
     """Return a controller whose torque is text."""
-    return _Broken(Command('12.5'))  # type: ignore[arg-type]
+    torque: Any = '12.5'
+    return _Broken(Command(torque))
 
 
 def make_raising(context: ControllerContext) -> Controller:

@@ -85,7 +85,7 @@ def _with_integrator(
     steps.append(
         CleaningStep(
             'poles at -epsilon: one becomes s, one goes with the slowest zero',
-            f'{factor_text(slowest)} over {" ".join(map(factor_text, left))}',
+            f'(s + {slowest:.3g}) over (s + {offset:.3g})^2',
         )
     )
     numerator.remove(slowest)
@@ -125,11 +125,12 @@ def _rate(factor: Factor) -> float:
     return math.sqrt(abs(factor[1])) if isinstance(factor, tuple) else abs(factor)
 
 
-def factor_text(factor: Factor, variable: str = 's') -> str:
-    """Return a factor as the thesis prints it."""
-    if isinstance(factor, tuple):
-        first, second = (f'{"-" if x < 0.0 else "+"} {abs(x):.5g}' for x in factor)
-        return f'({variable}^2 {first} {variable} {second})'
+def factor_text(factor: Factor, variable: str = 's', digits: int = 4) -> str:
+    """Return a factor as the thesis prints it, which is with 4 digits."""
     if factor == 0.0:
         return variable
-    return f'({variable} {"-" if factor < 0.0 else "+"} {abs(factor):.5g})'
+    numbers = factor if isinstance(factor, tuple) else (factor,)
+    signed = [f'{"-" if x < 0.0 else "+"} {abs(x):.{digits}g}' for x in numbers]
+    if len(signed) == 1:
+        return f'({variable} {signed[0]})'
+    return f'({variable}^2 {signed[0]} {variable} {signed[1]})'

@@ -138,7 +138,7 @@ def _controller_table(records: Sequence[Record]) -> GateTable:
             (
                 record['name'],
                 form,
-                f'{record[key]["gain"]:.6g}',
+                f'{record[key]["gain"]:.4g}',
                 _product(record[key]['numerator'], form[-2]),
                 _product(record[key]['denominator'], form[-2]),
             )
@@ -188,7 +188,9 @@ def _loop_cells(loop: Record) -> tuple[str, ...]:
 
 
 def _product(factors: Sequence[Factor], variable: str) -> str:
-    return ' '.join(factor_text(factor, variable) for factor in factors)
+    """Return factors; with 4 digits in z a slow pole would read as an integrator."""
+    digits = 5 if variable == 'z' else 4
+    return ' '.join(factor_text(factor, variable, digits) for factor in factors)
 
 
 def _text(value: float | None, form: str) -> str:
