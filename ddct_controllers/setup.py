@@ -17,7 +17,7 @@ setup(
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
     install_requires=['setuptools'],
-    extras_require={'test': ['pytest']},
+    extras_require={'test': ['pytest'], 'lmi': ['clarabel']},
     zip_safe=False,
     maintainer='DDCT team',
     maintainer_email='maintainers@ddct.invalid',

@@ -56,4 +56,4 @@ def graph_of(tmp_path: Path) -> Iterator[Callable[[RunPlan], 'InProcessGraph']]:
 
     yield make
     for graph in graphs:
-        graph.__exit__()
+        graph.close()

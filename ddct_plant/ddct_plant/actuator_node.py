@@ -72,13 +72,15 @@ class ActuatorNode(FollowerNode):
             self.get_logger().error(
                 f'no clutch/torque_request before stamp {stamp} ns: opening the clutch'
             )
-        self._catch_up(step)
+        self._catch_up(step, ramping=was_engaged)
         self._held_request = self._fail_safe.next_torque()
         for publisher, torque in self._advance(stamp, self._held_request):
             publisher.publish(torque)
 
-    def _catch_up(self, step: int) -> None:
+    def _catch_up(self, step: int, *, ramping: bool = False) -> None:
         for _ in range(self._next_step, step):
+            if ramping:
+                self._held_request = self._fail_safe.next_torque()
             self._actuator.update(self._held_request)
         self._next_step = step
 

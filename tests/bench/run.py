@@ -2,7 +2,7 @@
 `make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
-times do not. Also measured: the headless loop and each controller's update.
+times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis.
 """
 
 import argparse
@@ -13,8 +13,10 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from bare_chain import WIRING
+from synthesis import measure as measure_synthesis
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.ros_domain import own_domain
@@ -50,9 +52,23 @@ def main() -> int:
             f'headless {name}: {step_us:.1f} us per step ({PERIOD_US / step_us:.0f}x real time), '
             f'of which its update {update_us:.1f} us'
         )
+    synthesis = measure_synthesis()
+    _print_synthesis(synthesis)
     if options.json:
-        write_json(options.json, {**results, 'headless_us': headless})
+        figures = {**results, 'headless_us': headless, 'synthesis': synthesis}
+        write_json(options.json, figures)
     return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1
+
+
+def _print_synthesis(figures: dict[str, Any]) -> None:
+    print(f'H-infinity synthesis: {figures["ours_s"]:.3f} s, gamma {figures["ours_gamma"]:.4f}')
+    if 'skipped' in figures:
+        print(f'  not compared: {figures["skipped"]}')
+        return
+    print(
+        f'  slycot: {figures["slycot_s"]:.3f} s, gamma {figures["slycot_gamma"]:.4f}; '
+        f'ours takes {figures["time_ratio"]:.2f} of its time'
+    )
 
 
 def _measure(layout: str, settings: RunSettings, rounds: int) -> dict[str, object]:

@@ -1,6 +1,7 @@
 """Real time: the clutch opens by itself, at the stated rate, when the controller falls silent."""
 
 import signal
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,18 @@ from support.processes import START_S, Programs
 from support.runs import plan
 from trajectory_msgs.msg import JointTrajectory
 
+from ddct_bringup.run_plan import RunPlan
+from ddct_plant.driveline_node import DrivelineNode
 from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.tick_owner import RealtimeOwner
 from ddct_plant.timebase import PERIOD_S, step_of_stamp
 
 FAIL_SAFE = FailSafeSettings()
 SILENT_AT_STEP = 80
+STALL_S = 0.03
+"""A driveline that is later than this publishes ticks in bursts."""
 SETTLING_STEPS = 10
 """The delay of one period and about four time constants of G_a (Section 1.4.2)."""
 
@@ -34,6 +40,10 @@ class _Listener(Node):
             WrenchStamped, 'clutch/torque_request', self._on_request, RECORDER_QOS
         )
         self.create_subscription(JointTrajectory, 'actuator/torque', self._on_torque, RECORDER_QOS)
+
+    def has_torque(self, step: int) -> bool:
+        """Say whether the actuator has answered this step."""
+        return step in self.torques
 
     def _on_request(self, message: WrenchStamped) -> None:
         self.requests[step_of_stamp(stamp_ns(message))] = torque_of(message)
@@ -51,7 +61,7 @@ def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
     graph_of: GraphOf, programs: Programs, signals: list[signal.Signals]
 ) -> None:
     run = plan(mode='realtime', duration_s=1.8)
-    heard = _run_until_silent(graph_of(run), programs, signals)
+    heard = _run_without_a_stall(graph_of, run, programs, signals)
     engaged = _first_step_after_the_gap(heard, run.steps)
     last_request = heard.requests[max(step for step in heard.requests if step < engaged - 5)]
     assert last_request > 200.0, 'the clutch was open before the controller fell silent'
@@ -64,6 +74,22 @@ def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
     assert np.abs(torque[ramp_steps + SETTLING_STEPS :]).max() < 0.01 * last_request
 
 
+def _run_without_a_stall(
+    graph_of: GraphOf, run: RunPlan, programs: Programs, signals: list[signal.Signals]
+) -> _Listener:
+    """Repeat a run in which a busy machine was too late for real time, at most twice."""
+    for _ in range(3):
+        with graph_of(run) as graph:
+            heard = _run_until_silent(graph, programs, signals)
+            driveline = graph.nodes['driveline']
+            assert isinstance(driveline, DrivelineNode)
+            assert isinstance(driveline.owner, RealtimeOwner)
+            until_silent = all(map(heard.has_torque, range(SILENT_AT_STEP)))
+            if until_silent and driveline.owner.worst_lateness_s < STALL_S:
+                return heard
+    raise AssertionError('this machine is too busy for real time')
+
+
 def _run_until_silent(
     graph: InProcessGraph, programs: Programs, signals: list[signal.Signals]
 ) -> _Listener:
@@ -73,20 +99,21 @@ def _run_until_silent(
     heard = _Listener(context=graph.context)
     graph.add_other(heard)
     graph.add_all(without=['controller'])
-    goals = [SILENT_AT_STEP + 20 * number for number in range(len(signals))]
-    for goal, number in zip(goals, signals, strict=True):
-        graph.spin_until(lambda step=goal: step in heard.torques, f'step {goal}', START_S)
-        controller.send(number)
+    for number, sent in enumerate(signals):
+        step = SILENT_AT_STEP + 20 * number
+        graph.spin_until(partial(heard.has_torque, step), f'step {step}', START_S)
+        controller.send(sent)
     graph.run()
+    controller.send(signal.SIGKILL)
     return heard
 
 
 def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:
     """Return the first step with a torque after the request was held for its timeout."""
-    answered = [step in heard.torques for step in range(steps + 1)]
     held = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
     for step in range(SILENT_AT_STEP, steps):
-        if answered[step] and not any(answered[step - held : step]):
-            assert answered[step - held - 1], f'held for longer than {held} steps'
+        answered = any(heard.has_torque(earlier) for earlier in range(step - held, step))
+        if heard.has_torque(step) and not answered:
+            assert heard.has_torque(step - held - 1), f'held for longer than {held} steps'
             return step
-    raise AssertionError(f'the fail-safe did not engage: {answered}')
+    raise AssertionError(f'the fail-safe did not engage: {sorted(heard.torques)}')

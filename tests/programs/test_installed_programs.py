@@ -29,7 +29,7 @@ def installed(package: str, program: str) -> str:
 
 def _run_graph(programs: Programs, commands: dict[str, list[str]], folder: Path) -> None:
     """Run the nodes that `commands` start, recorder included, until the driveline has ended."""
-    own = {
+    own: dict[str, dict[str, object]] = {
         'controller': {'controller': 'ls8'},
         'driveline': {'require_recorder': True},
         'recorder': {'out': folder, 'name': 'ls8'},

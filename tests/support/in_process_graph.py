@@ -50,6 +50,12 @@ class InProcessGraph:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Destroy every node, once."""
+        if not self.context.ok():
+            return
         self._executor.shutdown()
         for node in [*self.nodes.values(), *self._others]:
             node.destroy_node()

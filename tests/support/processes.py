@@ -39,7 +39,7 @@ class Program:
         """Stop it as Ctrl-C in its terminal would and require that it ends with code 0."""
         os.killpg(self.process.pid, signal.SIGINT)
         code = self.wait()
-        assert code == 0, f'{self.process.args}: code {code} after SIGINT: {self.errors()}'
+        assert code == 0, f'{self.process.args!r}: code {code} after SIGINT: {self.errors()}'
 
     def output(self) -> str:
         """Return its standard output so far."""
