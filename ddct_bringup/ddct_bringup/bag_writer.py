@@ -8,7 +8,7 @@ from ddct_bringup.bag_metadata import offered_qos
 from ddct_bringup.cdr import CdrNormaliser
 from ddct_bringup.mcap_file import Channel, McapFile
 from ddct_bringup.message_definitions import load_definition
-from ddct_bringup.topics import TopicSpec, resolved_name
+from ddct_bringup.topics import TopicSpec
 from ddct_plant.errors import DdctError
 
 
@@ -46,8 +46,10 @@ class BagWriter:
             for topic, definition in zip(topics, definitions, strict=True)
         ]
         self._topics = {
-            channel.topic: (index, CdrNormaliser(definition))
-            for index, (channel, definition) in enumerate(zip(channels, definitions, strict=True))
+            name: (index, normaliser)
+            for index, topic in enumerate(topics)
+            for normaliser in [CdrNormaliser(definitions[index])]
+            for name in (topic.name, topic.resolved_name)
         }
         self.path = bag_file(folder, name)
         self._file = McapFile(self.path, channels, custom_data)
@@ -60,7 +62,7 @@ class BagWriter:
         a write that fails.
         """
         try:
-            index, normaliser = self._topics[resolved_name(topic)]
+            index, normaliser = self._topics[topic]
         except KeyError:
             raise DdctError(f'{self.path}: the bag was opened without a topic {topic}') from None
         try:

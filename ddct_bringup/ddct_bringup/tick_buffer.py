@@ -56,6 +56,8 @@ class TickBuffer:
             self._require_same(topic, tick[topic], cdr, step)
             return []
         tick[topic] = cdr
+        if self.wait_for_all and len(tick) < len(self.topics):
+            return []
         return self._ready(step - GIVE_UP_AFTER_STEPS)
 
     def drain(self) -> list[tuple[int, Tick]]:
