@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 
 from ddct_controllers.design.hinf_controllers import SYNTHESISED, synthesised_controller
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
+from ddct_controllers.entry_points import load_entry_point
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.linear import LinearController
 from ddct_controllers.pi import make_pi
@@ -89,13 +90,7 @@ def _third_party_factory(name: str) -> Factory:
 
 
 def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
-    try:
-        factory = point.load()
-    except Exception as error:
-        raise DdctError(
-            f'controller {point.name!r}: its entry point {point.value} cannot be loaded '
-            f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
-        ) from error
+    factory = load_entry_point(point, 'controller')
 
     def make(context: ControllerContext) -> Controller:
         try:

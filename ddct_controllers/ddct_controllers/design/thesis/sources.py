@@ -7,7 +7,8 @@ from ddct_controllers.design.thesis.h_infinity_values import h_infinity_values
 from ddct_controllers.design.thesis.loop_shaping_values import loop_shaping_values
 from ddct_controllers.design.thesis.plant_values import plant_values
 from ddct_controllers.design.thesis.thesis_number import Value
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_controllers.entry_points import load_entry_point
+from ddct_plant.errors import ParameterError
 
 ENTRY_POINT_GROUP = 'ddct.thesis_numbers'
 """Packages that build on this one add `name = module:function` here, a Source."""
@@ -25,7 +26,10 @@ OWN_SOURCES: Mapping[str, Source] = {
 def all_sources() -> dict[str, Source]:
     """Return every source by name, ours first; raise DdctError for one that cannot be loaded."""
     points = importlib.metadata.entry_points(group=ENTRY_POINT_GROUP)
-    return {**OWN_SOURCES, **{point.name: _loaded(point) for point in points}}
+    return {
+        **OWN_SOURCES,
+        **{point.name: load_entry_point(point, 'thesis numbers') for point in points},
+    }
 
 
 def compute(
@@ -49,13 +53,3 @@ def _require_new(name: str, found: Iterable[str], values: Mapping[str, Value | N
     twice = sorted(values.keys() & set(found))
     if twice:
         raise ParameterError(f'thesis numbers of {name}: computed already: {", ".join(twice)}')
-
-
-def _loaded(point: importlib.metadata.EntryPoint) -> Source:
-    try:
-        return point.load()
-    except Exception as error:
-        raise DdctError(
-            f'thesis numbers {point.name!r}: the entry point {point.value} cannot be loaded '
-            f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
-        ) from error

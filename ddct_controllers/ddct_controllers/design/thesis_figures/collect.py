@@ -1,11 +1,13 @@
 """Which figures of the thesis can be drawn here, and why the others are not."""
 
 import importlib.metadata
+from collections.abc import Iterable
 
 from ddct_controllers.design.thesis_figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_controllers.design.thesis_figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
 from ddct_controllers.design.thesis_figures.specification_figures import SPECIFICATION_FIGURES
 from ddct_controllers.design.thesis_figures.thesis_figure import ThesisFigure, figure_order
+from ddct_controllers.entry_points import load_entry_point
 from ddct_plant.errors import DdctError
 
 ENTRY_POINT_GROUP = 'ddct.thesis_figures'
@@ -50,13 +52,9 @@ def figures_not_drawn(drawn: set[str]) -> dict[str, str]:
 
 
 def _loaded(point: importlib.metadata.EntryPoint) -> tuple[ThesisFigure, ...]:
-    try:
-        figures = tuple(point.load())
-    except Exception as error:
-        raise DdctError(
-            f'figures {point.name!r}: their entry point {point.value} cannot be loaded '
-            f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
-        ) from error
-    if not all(isinstance(figure, ThesisFigure) for figure in figures):
+    figures = load_entry_point(point, 'figures')
+    if not isinstance(figures, Iterable) or not all(
+        isinstance(figure, ThesisFigure) for figure in figures
+    ):
         raise DdctError(f'figures {point.name!r}: {point.value} must be a tuple of ThesisFigure')
-    return figures
+    return tuple(figures)
