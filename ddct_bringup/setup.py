@@ -32,11 +32,11 @@ setup(
             'score = ddct_bringup.score:main',
         ],
         'ddct.thesis_numbers': [
-            'closed_loop = ddct_bringup.thesis_values:closed_loop_values',
+            'closed_loop = ddct_bringup.thesis.values:closed_loop_values',
         ],
         'ddct.thesis_figures': [
-            'runs = ddct_bringup.thesis_run_figures:FIGURES',
-            'scenario = ddct_bringup.thesis_scenario_figures:FIGURES',
+            'runs = ddct_bringup.thesis.run_figures:FIGURES',
+            'scenario = ddct_bringup.thesis.scenario_figures:FIGURES',
         ],
     },
 )

@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from ddct_bringup.output_folder import StagedFolder, mark_folder
-from ddct_bringup.progress import run_with_progress
-from ddct_bringup.run_options import add_run_options, print_choices, settings_of
-from ddct_bringup.run_plan import RunPlan
-from ddct_bringup.scoring import score_bag
+from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.progress import run_with_progress
+from ddct_bringup.scores.scoring import score_bag
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError, ParameterError
 

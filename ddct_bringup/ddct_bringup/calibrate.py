@@ -5,15 +5,15 @@ import os
 import sys
 from pathlib import Path
 
-from ddct_bringup.calibration_files import fill_page, scenario_text
-from ddct_bringup.calibration_record import (
+from ddct_bringup.calibration.files import fill_page, scenario_text
+from ddct_bringup.calibration.record import (
     RETURN_TOLERANCE,
     Record,
     calibrate,
     check_frozen,
     outside_tolerance,
 )
-from ddct_bringup.calibration_tables import CalibrationTable, all_tables, check_tables
+from ddct_bringup.calibration.tables import CalibrationTable, all_tables, check_tables
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text

@@ -4,13 +4,13 @@ import argparse
 import sys
 from pathlib import Path
 
-from ddct_bringup.comparison_table import print_comparison
-from ddct_bringup.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
-from ddct_bringup.output_folder import StagedFolder, mark_folder
-from ddct_bringup.progress import run_with_progress
-from ddct_bringup.run_options import add_run_options, print_choices, settings_of
-from ddct_bringup.run_plan import RunPlan
-from ddct_bringup.scoring import Entry, score_bag, scores_document, unreadable_entry
+from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.progress import run_with_progress
+from ddct_bringup.scores.comparison_table import print_comparison
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
+from ddct_bringup.scores.scoring import Entry, score_bag, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError, ParameterError

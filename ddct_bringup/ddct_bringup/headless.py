@@ -11,9 +11,9 @@ import time
 
 import numpy as np
 
-from ddct_bringup.closed_loop import ClosedLoop
-from ddct_bringup.run_timing import RunTiming
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.closed_loop import ClosedLoop
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.run_settings import RunSettings

@@ -11,14 +11,14 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Header
 
-from ddct_bringup.bag_writer import BagWriter
-from ddct_bringup.cdr import CdrNormaliser
-from ddct_bringup.graph_nodes import NODE_NAMES
-from ddct_bringup.message_definitions import load_definition
-from ddct_bringup.run_record import custom_data
-from ddct_bringup.run_timing import RunTiming
-from ddct_bringup.tick_buffer import Tick, TickBuffer
-from ddct_bringup.topics import TOPICS, TopicSpec, recorded_topics
+from ddct_bringup.bag.cdr import CdrNormaliser
+from ddct_bringup.bag.message_definitions import load_definition
+from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
+from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
+from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.run.graph_nodes import NODE_NAMES
+from ddct_bringup.run.record import custom_data
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.message_values import status_name_of, status_pairs_of
 from ddct_plant.graph.messages import ack_message

@@ -10,10 +10,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import track
 
-from ddct_bringup.bag_reader import read_bag
-from ddct_bringup.comfort import VDV_WEIGHTING
-from ddct_bringup.repair import repair_bag
-from ddct_bringup.scoring import (
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.scores.comfort import VDV_WEIGHTING
+from ddct_bringup.scores.scoring import (
     Entry,
     bag_name,
     find_bags,
@@ -22,8 +22,8 @@ from ddct_bringup.scoring import (
     scores_document,
     unreadable_entry,
 )
-from ddct_bringup.signals_csv import signals_csv
-from ddct_bringup.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
+from ddct_bringup.scores.signals_csv import signals_csv
+from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text

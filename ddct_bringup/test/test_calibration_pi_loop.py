@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from ddct_bringup.calibration.pi_loop import pi_growth_rate
 from ddct_bringup.headless import run_headless
-from ddct_bringup.pi_loop import pi_growth_rate
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario import Scenario
 from ddct_plant.scenario_file import load_scenario

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.calibration import Problem, row_figures
-from ddct_bringup.calibration_files import fill_page, scenario_text
-from ddct_bringup.calibration_record import NAMES, outside_tolerance, residual_rows
-from ddct_bringup.calibration_search import rounded
-from ddct_bringup.pi_loop import pi_growth_rate
+from ddct_bringup.calibration.files import fill_page, scenario_text
+from ddct_bringup.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.calibration.problem import Problem, row_figures
+from ddct_bringup.calibration.record import NAMES, outside_tolerance, residual_rows
+from ddct_bringup.calibration.search import rounded
 from ddct_plant.errors import DdctError
 from ddct_plant.scenario_file import load_scenario
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from ddct_bringup import thesis_run_figures, thesis_scenario_figures
 from ddct_bringup.headless import run_headless
-from ddct_bringup.metrics import compute_metrics
-from ddct_bringup.thesis_runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.scores.metrics import compute_metrics
+from ddct_bringup.thesis import run_figures as thesis_run_figures
+from ddct_bringup.thesis import scenario_figures as thesis_scenario_figures
+from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
 from ddct_controllers.design.thesis_figures.collect import (
     ENTRY_POINT_GROUP,
     OWN_FIGURES,

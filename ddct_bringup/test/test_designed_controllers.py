@@ -4,11 +4,11 @@ import json
 
 import pytest
 
-from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.compare import main as compare
 from ddct_bringup.headless import run_headless
-from ddct_bringup.run_execution import execute
-from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.run_settings import RunSettings

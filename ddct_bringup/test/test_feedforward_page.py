@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
-from ddct_bringup.metrics import Metrics, compute_metrics
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers import feedforward
 from ddct_controllers.design.feedforward_design import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_controllers.design.feedforward_residual import engine_residual, load_residual

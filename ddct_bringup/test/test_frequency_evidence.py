@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ddct_bringup import compare
-from ddct_bringup.frequency_evidence import FREQUENCY_FILE
 from ddct_bringup.headless import run_headless
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
 from ddct_controllers.design.loops import sampled_loop
 from ddct_controllers.design.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ddct_bringup.headless import run_headless
-from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller

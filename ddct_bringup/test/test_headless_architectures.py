@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
-from ddct_bringup.trajectory import Trajectory
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from ddct_bringup.metrics import Metrics, compute_metrics
-from ddct_bringup.run_timing import RunTiming
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.scores.metrics import Metrics, compute_metrics
 
 STEPS = 300
 TIME = np.arange(STEPS + 1) / 100.0

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from ddct_bringup.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_plant.errors import DdctError
 
 FACTS = RunFacts(

@@ -4,8 +4,8 @@ import io
 
 import pytest
 
-from ddct_bringup.scoring import METRIC_NAMES
-from ddct_bringup.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
+from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
 
 
 def run(controller='pi', *, valid=True, reason='', **metrics):

@@ -2,8 +2,8 @@
 
 import pytest
 
-from ddct_bringup.ticks import check_ticks, complete_ticks, tick_topics
-from ddct_bringup.topics import PLANT_TOPICS, TOPICS, recorded_topics, resolved_name
+from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
+from ddct_bringup.bag.topics import PLANT_TOPICS, TOPICS, recorded_topics, resolved_name
 from ddct_plant.errors import DdctError
 from ddct_plant.timebase import stamp_of_step
 

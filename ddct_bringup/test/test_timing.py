@@ -2,8 +2,8 @@
 
 import pytest
 
-from ddct_bringup.run_timing import RunTiming
-from ddct_bringup.timing import read_timing
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.timing_file import read_timing
 from ddct_plant.errors import DdctError
 
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ddct_bringup.bag_reader import mcap_of
-from ddct_bringup.bag_records import read_records
-from ddct_bringup.bag_writer import BagWriter
-from ddct_bringup.run_facts import RunFacts
-from ddct_bringup.topics import TOPICS
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.bag.reader import mcap_of
+from ddct_bringup.bag.records import read_records
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.topics import TOPICS
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.bag.writer import BagWriter
 
 RUN_INFO = {'load': [('version', '1.0')], 'engine': [('version', '1.0'), ('seed', '0')]}
 
@@ -68,7 +68,7 @@ class Bags:
     def write(self, trajectory, name='pi', folder=None, engine_torque_request=None, **changes):
         """Write a run as the recorder would, and return the bag's folder."""
         pytest.importorskip('rclpy', reason='rclpy serialises the messages')
-        from ddct_bringup.trajectory_bag import write_trajectory
+        from ddct_bringup.bag.trajectory_bag import write_trajectory
 
         bag = self.folder / (folder or name)
         custom_data = facts(trajectory.steps, controller=name, **changes).to_custom_data()

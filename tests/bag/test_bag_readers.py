@@ -6,8 +6,8 @@ import yaml
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from ddct_bringup.bag_reader import mcap_of, read_bag
-from ddct_bringup.topics import recorded_topics
+from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.bag.topics import recorded_topics
 
 rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
 rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')

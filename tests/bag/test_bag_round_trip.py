@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from ddct_bringup.bag_reader import mcap_of, read_bag
-from ddct_bringup.bag_records import read_records
-from ddct_bringup.bag_writer import BagWriter
-from ddct_bringup.topics import TopicSpec, recorded_topics
+from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.bag.records import read_records
+from ddct_bringup.bag.topics import TopicSpec, recorded_topics
+from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.errors import DdctError
 from ddct_plant.timebase import START_NS, stamp_of_step
 

@@ -6,7 +6,7 @@ import pytest
 import yaml
 from mcap.writer import Writer
 
-from ddct_bringup.bag_reader import mcap_of, read_bag
+from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_plant.errors import DdctError
 from ddct_plant.timebase import stamp_of_step
 

@@ -11,7 +11,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from ddct_bringup.bag_reader import mcap_of
+from ddct_bringup.bag.reader import mcap_of
 
 SCRIPTS = Path(__file__).parent / 'npm'
 UNREACHABLE = {

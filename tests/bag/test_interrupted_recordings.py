@@ -10,8 +10,8 @@ import textwrap
 
 import pytest
 
-from ddct_bringup.bag_reader import mcap_of, read_bag
-from ddct_bringup.repair import REPAIRED_KEY, repair_bag
+from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
 from ddct_plant.errors import DdctError
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
@@ -20,9 +20,9 @@ TICKS_PER_CHUNK = 64 * 1024 // 2000
 COPY_BAG = """
     import resource, sys
     from pathlib import Path
-    from ddct_bringup.bag_records import read_records
-    from ddct_bringup.bag_writer import BagWriter
-    from ddct_bringup.topics import TOPICS
+    from ddct_bringup.bag.records import read_records
+    from ddct_bringup.bag.writer import BagWriter
+    from ddct_bringup.bag.topics import TOPICS
     from ddct_plant.errors import DdctError
 
     source, folder = map(Path, sys.argv[1:3])

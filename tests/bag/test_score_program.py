@@ -11,8 +11,8 @@ import sys
 
 import pytest
 
-from ddct_bringup.bag_reader import mcap_of
-from ddct_bringup.run_timing import RunTiming
+from ddct_bringup.bag.reader import mcap_of
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.score import main
 
 ENTRY_KEYS = [

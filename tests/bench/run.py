@@ -19,10 +19,10 @@ from bare_chain import WIRING
 from synthesis import measure as measure_synthesis
 
 from ddct_bringup.headless import run_headless
-from ddct_bringup.ros_domain import own_domain
-from ddct_bringup.run_execution import execute
-from ddct_bringup.run_plan import RunPlan
-from ddct_bringup.run_timing import TIMING_FILE, RunTiming
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.ros_domain import own_domain
+from ddct_bringup.run.run_timing import TIMING_FILE, RunTiming
 from ddct_controllers.registry import controller_names
 from ddct_plant.output_file import write_json
 from ddct_plant.run_settings import RunSettings

@@ -11,7 +11,7 @@ from support.runs import expected, plan
 from support.waiting import wait_until
 
 from ddct_bringup import score
-from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.bag.reader import read_bag
 
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')
 

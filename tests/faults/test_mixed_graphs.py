@@ -6,8 +6,8 @@ import pytest
 from support.in_process_graph import GraphOf
 from support.runs import expected, plan, record
 
-from ddct_bringup.bag_reader import read_bag
-from ddct_bringup.run_execution import execute
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.run.execution import execute
 from ddct_plant.errors import DdctError
 from ddct_plant.load_node import LoadNode
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from support.runs import bag_bytes, expected, record
 
-from ddct_bringup.run_plan import LAYOUTS, RunPlan
+from ddct_bringup.run.plan import LAYOUTS, RunPlan
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings
 from ddct_plant.scenario_file import load_scenario
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from support.runs import bag_bytes, expected, plan, record
 
-from ddct_bringup.run_plan import LAYOUTS
+from ddct_bringup.run.plan import LAYOUTS
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from support.in_process_graph import GraphOf
 from support.processes import Programs
 from support.runs import bag_bytes, expected, plan
 
-from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.bag.reader import read_bag
 
 
 def test_two_bringups_at_once_do_not_hear_each_other(programs: Programs, tmp_path: Path) -> None:

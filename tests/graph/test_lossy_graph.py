@@ -14,9 +14,9 @@ from support.relay import Relay, lossy_remaps
 from support.runs import expected, plan, record
 from support.waiting import wait_until
 
-from ddct_bringup.bag_reader import read_bag
-from ddct_bringup.graph_nodes import GRAPH_NODES
-from ddct_bringup.topics import TOPICS
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.topics import TOPICS
+from ddct_bringup.run.graph_nodes import GRAPH_NODES
 
 INPUTS = {
     'engine': ['driveline/joint_states'],

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from support.runs import expected, plan, record
 
-from ddct_bringup.bag_reader import Recording
-from ddct_bringup.run_plan import RunPlan
-from ddct_bringup.scoring import score_recording
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scoring import score_recording
 
 NEAR = 0.1
 """How near the slip speed stays to that of lock-step if a few steps are missed, of its peak."""

@@ -13,7 +13,7 @@ from support.processes import START_S, Programs
 from support.runs import plan
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_bringup.run_plan import RunPlan
+from ddct_bringup.run.plan import RunPlan
 from ddct_plant.driveline_node import DrivelineNode
 from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of

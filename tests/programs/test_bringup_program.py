@@ -7,7 +7,7 @@ import pytest
 from support.processes import Programs
 
 from ddct_bringup import bringup
-from ddct_bringup.bag_reader import read_bag
+from ddct_bringup.bag.reader import read_bag
 
 
 def test_a_run_leaves_one_bag_with_its_timing_and_nothing_else(

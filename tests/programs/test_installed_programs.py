@@ -7,7 +7,7 @@ import pytest
 from support.processes import Program, Programs, ros_arguments
 from support.runs import bag_bytes, plan, record
 
-from ddct_bringup.graph_nodes import GRAPH_NODES
+from ddct_bringup.run.graph_nodes import GRAPH_NODES
 
 PROGRAMS = [
     *((spec.package, spec.name) for spec in GRAPH_NODES),

@@ -11,7 +11,7 @@ from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.graph.message_values import stamp_ns, torque_points_of
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.spin import make_executor

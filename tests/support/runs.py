@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from ddct_bringup.bag_reader import Recording, read_bag
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
-from ddct_bringup.run_execution import execute
-from ddct_bringup.run_plan import RunPlan
-from ddct_bringup.trajectory import Trajectory
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 

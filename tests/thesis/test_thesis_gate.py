@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from support.third_party import install
 
-from ddct_bringup.thesis_table import THESIS_TABLE
-from ddct_bringup.thesis_values import closed_loop_values
+from ddct_bringup.thesis.table import THESIS_TABLE
+from ddct_bringup.thesis.values import closed_loop_values
 from ddct_controllers import design_program
 from ddct_controllers.design.thesis.gate import GateRow, judge
 from ddct_controllers.design.thesis.gate_tables import page_tables

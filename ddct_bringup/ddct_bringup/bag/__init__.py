@@ -1,0 +1,1 @@
+"""Recordings: writing, reading, checking and repairing bags."""

@@ -1,0 +1,162 @@
+"""Read a recorded bag back into a trajectory and what else it says; needs no ROS."""
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap_ros2.decoder import DecoderFactory
+
+from ddct_bringup.bag.records import BagRecords, mcap_of, read_records
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.signals import ENGINE_REQUEST, SIGNALS, Signal
+from ddct_bringup.bag.ticks import check_ticks
+from ddct_bringup.bag.topics import TOPICS, resolved_name
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.message_values import stamp_ns, status_name_of, status_pairs_of
+from ddct_plant.timebase import stamp_of_step
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What a whole bag holds."""
+
+    path: Path
+    """The MCAP file."""
+    trajectory: Trajectory
+    facts: RunFacts
+    custom_data: dict[str, str]
+    run_info: dict[str, dict[str, str]]
+    """Per node name its parameters and version."""
+    counts: dict[str, int]
+    """Messages per resolved topic name."""
+    missed: dict[str, int]
+    """Per reply topic, at how many stamps the last reply had to be held; real time only."""
+    engine_torque_request: np.ndarray | None
+    """(N+1,) N m, or None with one-input controllers."""
+
+
+def read_bag(path: Path) -> Recording:
+    """
+    Read a bag folder or its .mcap file.
+
+    Raise DdctError for a missing, unfinished, damaged or foreign bag, and for a message that is
+    missing, doubled or cannot be decoded. A run that ended early, or that holds non-finite values,
+    is no error here.
+    """
+    records = read_records(mcap_of(path))
+    try:
+        return recording_of(records)
+    except DdctError as error:
+        raise DdctError(f'{records.path}: {error}') from error
+
+
+def recording_of(records: BagRecords) -> Recording:
+    """Decode the records of a bag; raise the errors of `read_bag`, without the file's name."""
+    facts = _facts(records)
+    messages = _decode(records)
+    stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
+    last = check_ticks(stamps, lockstep=facts.lockstep)
+    columns: dict[str, tuple[Any, ...]] = {}
+    missed: dict[str, int] = {}
+    two_input = resolved_name(ENGINE_REQUEST.topic) in messages
+    for signal in (*SIGNALS, ENGINE_REQUEST) if two_input else SIGNALS:
+        rows, held = _rows(signal, messages, last)
+        columns.update(zip(signal.fields, zip(*rows, strict=True), strict=True))
+        if held:
+            missed[signal.topic] = held
+    status = columns.pop('status')
+    arrays = {name: _array(name, column) for name, column in columns.items()}
+    request = arrays.pop('engine_torque_request', None)
+    info = messages.get(resolved_name('run_info'), [])
+    return Recording(
+        path=records.path,
+        trajectory=Trajectory(status=tuple(status), **arrays),
+        facts=facts,
+        custom_data=records.custom_data,
+        run_info={status_name_of(each): dict(status_pairs_of(each)) for _, each in info},
+        counts={topic: len(each) for topic, each in messages.items()},
+        missed=missed,
+        engine_torque_request=request,
+    )
+
+
+def _facts(records: BagRecords) -> RunFacts:
+    topics = {channel.topic for channel in records.channels.values()}
+    joint_states = resolved_name('driveline/joint_states')
+    if joint_states not in topics:
+        raise DdctError(f'no topic {joint_states}: not a recording of this project')
+    return RunFacts.from_custom_data(records.custom_data)
+
+
+def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
+    """Return per topic of ours its (stamp in ns, message), in the order of the file."""
+    decoders = _decoders(records)
+    messages: dict[str, list[tuple[int, Any]]] = defaultdict(list)
+    for topic, log_time, data in records.messages:
+        if (decode := decoders.get(topic)) is None:
+            continue
+        try:
+            message = decode(data)
+            stamp = stamp_ns(message)
+        except Exception as error:  # the decoder has no common base of its errors
+            raise DdctError(f'{topic} at {log_time} ns cannot be decoded ({error})') from error
+        if stamp != log_time:
+            raise DdctError(f'{topic} at {log_time} ns carries the stamp {stamp} ns')
+        messages[topic].append((stamp, message))
+    return dict(messages)
+
+
+def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
+    """Return a decoder for each topic of ours; raise DdctError for one of another type."""
+    factory = DecoderFactory()
+    ours = {topic.resolved_name: topic.type for topic in TOPICS}
+    decoders = {}
+    for channel in records.channels.values():
+        if (type_name := ours.get(channel.topic)) is None:
+            continue
+        schema = records.schemas.get(channel.schema_id)
+        try:
+            decoder = factory.decoder_for(channel.message_encoding, schema)
+        except Exception as error:  # the decoder has no common base of its errors
+            raise DdctError(f'{channel.topic}: unusable message definition ({error})') from error
+        if schema is None or schema.name != type_name or decoder is None:
+            raise DdctError(f'{channel.topic} does not carry CDR messages of type {type_name}')
+        decoders[channel.topic] = decoder
+    return decoders
+
+
+def _rows(
+    signal: Signal, messages: dict[str, list[tuple[int, Any]]], last: int
+) -> tuple[list[tuple[Any, ...]], int]:
+    """
+    Return the values at t_0..t_N, and at how many of these stamps there was no message.
+
+    There the last message before counts; before the first message, the first one.
+    """
+    topic = resolved_name(signal.topic)
+    held_messages = dict(messages.get(topic, ()))
+    if not held_messages:
+        raise DdctError(f'no message on {topic}')
+    try:
+        values = {stamp: signal.values(message) for stamp, message in held_messages.items()}
+    except (LookupError, AttributeError) as error:
+        raise DdctError(f'{topic}: a message lacks a value ({error})') from error
+    row = values[min(values)]
+    rows, held = [], 0
+    for step in range(last + 1):
+        found = values.get(stamp_of_step(step))
+        held += found is None
+        row = row if found is None else found
+        rows.append(row)
+    return rows, held
+
+
+def _array(name: str, column: Any) -> np.ndarray:
+    try:
+        return np.array(column, dtype=float)
+    except ValueError as error:
+        raise DdctError(f'{name} does not have the same size at every stamp') from error

@@ -1,0 +1,131 @@
+"""Rescue what an interrupted or damaged recording holds."""
+
+import tempfile
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+from ddct_bringup.bag.mcap_file import METADATA_FILE, Channel, McapFile, write_metadata
+from ddct_bringup.bag.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.reader import recording_of
+from ddct_bringup.bag.records import BagRecords, mcap_of, read_records, salvage_records
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.ticks import complete_ticks, tick_topics
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import stamp_of_step, time_of_step
+
+REPAIRED_KEY = 'repaired'
+"""Custom data of a repaired bag has this key, with 'true'."""
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What was done to one recording."""
+
+    path: Path
+    """The MCAP file, whole now."""
+    original: Path | None
+    """Where the damaged file is kept; None when the bag was whole before."""
+    last_step: int
+    """Step of the last complete tick, kept with all before it."""
+    dropped: int
+    """Readable messages after that tick, left out."""
+
+    def __str__(self) -> str:
+        kept = f'steps 0 to {self.last_step} ({time_of_step(self.last_step):g} s)'
+        if self.original is None:
+            return f'{self.path}: whole, with {kept}'
+        return (
+            f'{self.path}: rescued {kept}, left out {self.dropped} messages after them; '
+            f'the damaged file is {self.original.name}'
+        )
+
+
+def repair_bag(path: Path) -> Repair:
+    """
+    Make a whole bag of an unfinished or damaged one, a bag folder or its .mcap file.
+
+    The new file holds every tick up to the first incomplete one. It is written and read back
+    before it takes the place of the damaged file, which is kept beside it. A whole file that only
+    lacks its `metadata.yaml` gets that. Raise DdctError when nothing can be rescued.
+    """
+    mcap = mcap_of(path)
+    try:
+        records = read_records(mcap)
+        last_step = recording_of(records).trajectory.steps
+    except DdctError:
+        return _rewrite(mcap)
+    if not (mcap.parent / METADATA_FILE).exists():
+        write_metadata(mcap.parent, records.information)
+    return Repair(mcap, None, last_step, 0)
+
+
+def _rewrite(mcap: Path) -> Repair:
+    records = salvage_records(mcap)
+    try:
+        kept, last_step = _whole_ticks(records)
+        with _scratch_folder(mcap) as scratch:
+            new = Path(scratch) / mcap.name
+            _write(new, records, kept)
+            recording_of(read_records(new))
+            original = _swap(new, mcap)
+    except DdctError as error:
+        raise DdctError(f'{mcap}: cannot be repaired: {error}') from error
+    return Repair(mcap, original, last_step, len(records.messages) - len(kept))
+
+
+def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes]]) -> None:
+    """Write messages with the channels of the damaged file, so that nothing else is needed."""
+    channels = [
+        Channel(
+            channel.topic,
+            records.schemas[channel.schema_id].name,
+            records.schemas[channel.schema_id].data.decode(),
+            channel.metadata[HASH_KEY],
+            channel.metadata[QOS_KEY],
+        )
+        for channel in records.channels.values()
+    ]
+    index = {channel.topic: i for i, channel in enumerate(channels)}
+    file = McapFile(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'})
+    for topic, stamp, data in messages:
+        file.write(index[topic], stamp, data)
+    file.finish()
+
+
+def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int]:
+    """Return the messages up to the last complete tick, and its step."""
+    facts = RunFacts.from_custom_data(records.custom_data)
+    stamps: dict[str, list[int]] = defaultdict(list)
+    for topic, stamp, _ in records.messages:
+        stamps[topic].append(stamp)
+    recorded = [channel.topic for channel in records.channels.values()]
+    count = complete_ticks(stamps, tick_topics(recorded, lockstep=facts.lockstep))
+    if not count:
+        raise DdctError('it holds no complete tick')
+    last_ns = stamp_of_step(count - 1)
+    return [message for message in records.messages if message[1] <= last_ns], count - 1
+
+
+def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':
+    """Return a folder on the same file system, so that moving out of it cannot fail half-way."""
+    try:
+        return tempfile.TemporaryDirectory(prefix='.repair-', dir=mcap.parent)
+    except OSError as error:
+        raise DdctError(f'{mcap.parent}: cannot write there: {error.strerror}') from error
+
+
+def _swap(new: Path, mcap: Path) -> Path:
+    """Put the new bag where the damaged one is, and return where that is kept."""
+    original = mcap.with_name(f'{mcap.name}.damaged')
+    number = 1
+    while original.exists():
+        number += 1
+        original = mcap.with_name(f'{mcap.name}.damaged{number}')
+    try:
+        mcap.rename(original)
+        new.rename(mcap)
+        (new.parent / METADATA_FILE).replace(mcap.parent / METADATA_FILE)
+    except OSError as error:
+        raise DdctError(f'{error.filename}: {error.strerror}') from error
+    return original

@@ -1,0 +1,1 @@
+"""One run: its plan, the graph or the headless loop that carries it out, and its folder."""

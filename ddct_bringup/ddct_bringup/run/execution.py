@@ -1,0 +1,77 @@
+"""Carry out one planned run in its layout and leave its bag in a folder."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.run.node_processes import NodeProcesses
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.record import custom_data, run_info_of
+from ddct_bringup.run.ros_domain import own_domain
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_controllers.registry import make_controller
+from ddct_plant.errors import DdctError
+
+WORK_FOLDER = 'work'
+"""Scenario, parameters and logs of a run; kept only when it fails."""
+
+
+def execute(plan: RunPlan, folder: Path, stopped: Callable[[], bool] = lambda: False) -> None:
+    """
+    Run `plan` and write its bag and `timing.json` into the existing `folder`.
+
+    Raise DdctError with the reason when the run does not end well, KeyboardInterrupt when
+    `stopped()` becomes true; what was recorded until then stays in the folder.
+    """
+    if plan.layout == 'headless':
+        _execute_headless(plan, folder)
+        return
+    work = folder / WORK_FOLDER
+    try:
+        work.mkdir()
+        with own_domain():
+            if plan.layout == 'processes':
+                _execute_processes(plan, folder, work, stopped)
+            else:
+                _execute_single_process(plan, folder, work, stopped)
+        shutil.rmtree(work)
+    except OSError as error:
+        raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
+
+
+def _execute_processes(
+    plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
+) -> None:
+    with NodeProcesses(work, plan.write_parameter_file(folder, work)) as processes:
+        processes.start(GRAPH_NODES)
+        try:
+            processes.wait_for('driveline', stopped)
+        finally:
+            # The recorder goes last: it must hear what the others flush when they stop.
+            processes.stop(lambda name: name != 'recorder')
+            processes.stop(lambda name: name == 'recorder')
+        processes.require_clean_end()
+
+
+def _execute_single_process(
+    plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
+) -> None:
+    # The graph needs ROS installed and sourced; a headless run does not.
+    from ddct_bringup.run.single_process import run_single_process
+
+    parameters = plan.node_parameters(folder, work)
+    run_single_process(parameters, stopped)
+
+
+def _execute_headless(plan: RunPlan, folder: Path) -> None:
+    from ddct_bringup.bag.trajectory_bag import write_trajectory
+
+    controller = make_controller(plan.controller, plan.settings)
+    timing = RunTiming()
+    trajectory = run_headless(plan.settings, controller, timing)
+    run_info = run_info_of(plan.settings, plan.name, controller, plan.steps)
+    data = custom_data(plan.settings, plan.name, plan.steps)
+    write_trajectory(trajectory, folder, plan.name, data, run_info)
+    timing.write(folder)

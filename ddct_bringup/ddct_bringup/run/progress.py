@@ -1,0 +1,23 @@
+"""Run a plan with signs of life on standard error."""
+
+import sys
+import time
+from pathlib import Path
+
+from rich.console import Console
+
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
+from ddct_plant.graph.spin import stop_signals
+
+
+def run_with_progress(plan: RunPlan, folder: Path, label: str = '') -> None:
+    """Carry out `plan` into `folder`, saying what runs and how fast it went."""
+    scenario = plan.settings.scenario
+    what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
+    stops = stop_signals()
+    started = time.monotonic()
+    with Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
+        execute(plan, folder, lambda: bool(stops))
+    elapsed = time.monotonic() - started
+    print(f'{what} in {elapsed:.1f} s ({plan.layout})', file=sys.stderr, flush=True)

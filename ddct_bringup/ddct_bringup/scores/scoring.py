@@ -1,0 +1,137 @@
+"""Score bags: from a recording to its entry in `scores.json`."""
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.records import mcap_of, salvage_records
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.scores.metrics import Metrics, compute_metrics
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import time_of_step
+
+Entry = dict[str, Any]
+"""One run of `scores.json`: bag, controller, ..., valid, reason, metrics."""
+
+METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
+_FACT_NAMES = (
+    'controller',
+    'architecture',
+    'scenario',
+    'clutch',
+    'wear_gain',
+    'mode',
+    'seed',
+)
+
+
+def score_bag(path: Path, *, relative_to: Path | None = None) -> Entry:
+    """
+    Read and score a bag folder or .mcap file, with the `timing.json` beside it if there is one.
+
+    "bag" is the path, relative to the folder `relative_to` if it lies in it. Raise DdctError when
+    the bag cannot be read.
+    """
+    return score_recording(read_bag(path), bag_name(path, relative_to))
+
+
+def score_recording(recording: Recording, bag: str) -> Entry:
+    """Return the entry of a recording that was read before; raise DdctError for bad timing."""
+    facts = recording.facts
+    metrics = compute_metrics(
+        recording.trajectory,
+        control_start_s=facts.control_start_s,
+        score_window_s=facts.score_window_s,
+        timing=read_timing(recording.path.parent),
+    )
+    reason = why_invalid(recording.trajectory, facts.steps)
+    return {
+        'bag': bag,
+        **{name: getattr(facts, name) for name in _FACT_NAMES},
+        'valid': not reason,
+        'reason': reason,
+        'metrics': metrics.as_dict(),
+    }
+
+
+def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None = None) -> Entry:
+    """Return the entry of a bag that could not be read: invalid, with the facts it still tells."""
+    try:
+        facts: RunFacts | None = RunFacts.from_custom_data(
+            salvage_records(mcap_of(path)).custom_data
+        )
+    except DdctError:
+        facts = None
+    return {
+        'bag': bag_name(path, relative_to),
+        **{name: getattr(facts, name, None) for name in _FACT_NAMES},
+        'valid': False,
+        'reason': str(error),
+        'metrics': dict.fromkeys(METRIC_NAMES),
+    }
+
+
+def why_invalid(trajectory: Trajectory, steps: int) -> str:
+    """Return why a run that should have `steps` periods does not count; empty if it does."""
+    reasons = []
+    if trajectory.steps < steps:
+        reasons.append(f'ended early: {trajectory.steps} of {steps} steps')
+    for field in dataclasses.fields(trajectory):
+        values = getattr(trajectory, field.name)
+        if not isinstance(values, np.ndarray) or np.isfinite(values).all():
+            continue
+        rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        first = time_of_step(int(np.flatnonzero(~rows)[0]))
+        reasons.append(f'non-finite value in {field.name} at {first:g} s')
+    return '; '.join(reasons)
+
+
+def bag_name(path: Path, relative_to: Path | None) -> str:
+    """Return the path as scores name it, with forward slashes."""
+    if relative_to is not None and path.is_relative_to(relative_to):
+        return path.relative_to(relative_to).as_posix()
+    return path.as_posix()
+
+
+def find_bags(path: Path) -> list[Path]:
+    """
+    Return the bags in a folder and below it, or the one that `path` is, in alphabetical order.
+
+    A folder with one .mcap file is a bag; of several, each file is one. Hidden files and folders
+    do not count. Raise DdctError without any.
+    """
+    if not path.is_dir():
+        if not path.exists():
+            raise DdctError(f'{path}: no such file or folder')
+        return [path]
+    files = [
+        file
+        for file in sorted(path.rglob('*.mcap'))
+        if not any(part.startswith('.') for part in file.relative_to(path).parts)
+    ]
+    if not files:
+        raise DdctError(f'{path}: no .mcap file in this folder or below it: give a bag')
+    folders = [file.parent for file in files]
+    return [
+        folder if folders.count(folder) == 1 else file
+        for file, folder in zip(files, folders, strict=True)
+    ]
+
+
+def scores_document(runs: Sequence[Entry]) -> dict[str, list[Entry]]:
+    """Return the content of `scores.json`."""
+    return {'runs': list(runs)}
+
+
+def flat(runs: Iterable[Entry]) -> list[dict[str, Any]]:
+    """Return the entries with their metrics as keys of their own, for tables of text."""
+    return [
+        {**{key: value for key, value in run.items() if key != 'metrics'}, **run['metrics']}
+        for run in runs
+    ]

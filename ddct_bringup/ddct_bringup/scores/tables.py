@@ -1,0 +1,83 @@
+"""Tables of scored runs for the terminal; plain text where the output is no terminal."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TextIO
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ddct_bringup.scores.scoring import Entry
+
+UNDEFINED = '-'
+_PIPED_WIDTH = 200
+"""Columns of a table that goes to a file or pipe, where nothing needs to fit a screen."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table of runs."""
+
+    heading: str
+    """A newline parts the name from the unit."""
+    text: Callable[[Entry], str]
+    number: bool = True
+    """Whether to align it to the right."""
+
+
+def fact(name: str, heading: str) -> Column:
+    """Return the column of a run's fact, such as its controller."""
+    return Column(heading, lambda run: _text(run[name], '{}'), number=False)
+
+
+def metric(name: str, heading: str, form: str) -> Column:
+    """Return the column of a metric, written in the format `form`, such as '{:.3f}'."""
+    return Column(heading, lambda run: _text(run['metrics'][name], form))
+
+
+BAG = fact('bag', 'bag')
+CONTROLLER = fact('controller', 'controller')
+WEAR = Column('wear', lambda run: _text(run['wear_gain'], '{:g}'))
+ENGAGEMENT_TIME = metric('engagement_time_s', 't_a\ns', '{:.3f}')
+TORSION_STD = metric('torsion_speed_std_rpm', 'std w_sr\nrpm', '{:.3f}')
+ACCELERATION_STD = metric('acceleration_std_m_s2', 'std A_x\nm/s^2', '{:.3f}')
+FINAL_SLIP = metric('slip_final_rpm', 'final\nw_d rpm', '{:.2f}')
+SLIP_RMSE = metric('slip_rmse_rpm', 'slip\nRMSE rpm', '{:.2f}')
+PEAK_JERK = metric('peak_jerk_m_s3', 'jerk\nm/s^3', '{:.2f}')
+VALID = Column('valid', lambda run: 'yes' if run['valid'] else 'NO', number=False)
+
+COLUMNS = (
+    ENGAGEMENT_TIME,
+    TORSION_STD,
+    ACCELERATION_STD,
+    FINAL_SLIP,
+    SLIP_RMSE,
+    PEAK_JERK,
+    VALID,
+)
+"""What every table of runs shows, after the columns that tell the runs apart."""
+
+
+def print_runs(
+    runs: Sequence[Entry], columns: Sequence[Column], stream: TextIO, title: str | None = None
+) -> None:
+    """Print one row per run, then the reason of each invalid one."""
+    table = Table(title=title, box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+    for column in columns:
+        table.add_column(column.heading, justify='right' if column.number else 'left')
+    for run in runs:
+        table.add_row(*(Text(column.text(run)) for column in columns))
+    console = Console(
+        file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
+    )
+    console.print(table)
+    for run in runs:
+        if not run['valid']:
+            reason = f'{run["bag"]}: not valid: {run["reason"]}'
+            console.print(Text(reason, 'bold'), soft_wrap=True)
+
+
+def _text(value: Any, form: str) -> str:
+    return UNDEFINED if value is None else form.format(value)

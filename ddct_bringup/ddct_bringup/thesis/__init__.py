@@ -1,0 +1,1 @@
+"""Numbers and figures of the thesis that need a closed loop."""

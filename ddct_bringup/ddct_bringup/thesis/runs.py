@@ -1,0 +1,17 @@
+"""Closed-loop runs of the thesis's scenario, each simulated once however many figures show it."""
+
+from functools import cache
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.headless import run_headless
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+THESIS_SCENARIO = load_scenario('thesis')
+
+
+@cache
+def thesis_run(controller: str, architecture: str, wear_gain: float) -> Trajectory:
+    """Return the headless run of a controller of the registry."""
+    settings = RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain)
+    return run_headless(settings, controller)
