@@ -41,5 +41,9 @@ def run_headless(
         timing.update_times_us.append(loop.update_time_us)
     timing.steps = settings.scenario.steps
     timing.wall_time_s = time.perf_counter() - started
-    columns = {name: np.array([row[name] for row in rows]) for name in rows[0] if name != 'status'}
+    columns = {
+        name: np.array([row[name] for row in rows])
+        for name, first in rows[0].items()
+        if name != 'status' and first is not None
+    }
     return Trajectory(**columns, status=tuple(row['status'] for row in rows))

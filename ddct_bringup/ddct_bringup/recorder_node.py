@@ -59,7 +59,10 @@ class RecorderNode(GraphNode):
         self._expected_nodes = set(
             declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
         )
-        topics = recorded_topics(lockstep=self.settings.lockstep)
+        self._two_input = declare(
+            self, 'two_input', False, 'Record engine/torque_request of a two-input controller'
+        )
+        topics = recorded_topics(lockstep=self.settings.lockstep, two_input=self._two_input)
         self._tick_topics = [topic.name for topic in topics if topic.every_tick]
         self._topics = topics
         self._buffer = TickBuffer(
@@ -91,7 +94,7 @@ class RecorderNode(GraphNode):
 
     def _subscribe_all(self) -> None:
         for topic in TOPICS:
-            if topic.name == ACK or topic.two_input_only:
+            if topic.name == ACK or (topic.two_input_only and not self._two_input):
                 continue
             qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
             self.create_subscription(
@@ -116,12 +119,18 @@ class RecorderNode(GraphNode):
     def _on_run_info(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
         node, pairs = status_name_of(message), dict(status_pairs_of(message))
+        two_input = str(self._two_input).lower()
         for key, ours in run_info_pairs(self.settings):
             if pairs.get(key, ours) != ours:
                 raise DdctError(
                     f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
                     'start every node with the same settings'
                 )
+        if pairs.get('two_input', two_input) != two_input:
+            raise DdctError(
+                f'node {node} runs with two_input {pairs["two_input"]} and the recorder with '
+                f'{two_input}: start engine and recorder with the two_input of the controller'
+            )
         self._run_info[node] = (cdr, pairs)
         self._write_ticks([])
 

@@ -24,6 +24,8 @@ class TorqueRequest:
     """Sum of both parts in N m; the actuator cuts it off below zero."""
     status: Status
     """Pairs for `controller/status`: both parts, saturation, then the controller's own."""
+    engine_torque: float | None = None
+    """C_m asked of the engine in N m; None when the controller does not command it."""
 
 
 class OpenLoop(Protocol):
@@ -77,13 +79,14 @@ class Architecture:
         """Return the request for the period that starts at the measurement's step."""
         load_torque = self._load.torque(measurement.vehicle_speed)
         open_loop = self._open_loop.update(measurement.engine_torque, load_torque)
+        measurement = replace(measurement, load_torque=load_torque, open_loop_torque=open_loop)
         if measurement.step >= self._start_step:
             feedback = 'on'
-            command = _checked(self._controller.update(measurement), measurement.step)
+            command = self._checked(self._controller.update(measurement), measurement.step)
         else:
             feedback = 'held in reset'
-            self._controller.reset()
-            command = _FEEDBACK_OFF
+            self._controller.hold(measurement)
+            command = self._feedback_off(measurement)
         torque = open_loop + command.clutch_torque
         return TorqueRequest(
             torque,
@@ -94,22 +97,39 @@ class Architecture:
                 ('saturated', 'true' if torque < 0.0 else 'false'),
                 *command.status,
             ),
+            command.engine_torque,
         )
 
+    def _feedback_off(self, measurement: Measurement) -> Command:
+        """Return no torque of the controller's own; the engine then follows the driver."""
+        if self._controller.commands_engine:
+            return Command(0.0, engine_torque=measurement.engine_torque)
+        return _FEEDBACK_OFF
 
-def _checked(command: object, step: int) -> Command:
-    """Return the command with a plain float as torque; raise DdctError for any other answer."""
-    if not isinstance(command, Command):
-        raise DdctError(
-            f"the controller's answer at step {step} is of type {type(command).__name__}: "
-            'return a ddct_controllers.interface.Command'
-        )
-    torque: object = command.clutch_torque
-    source = f"the controller's torque at step {step}"
-    if not isinstance(torque, Real):
-        raise DdctError(f'{source} is {torque!r}: give a number in N m')
-    number = require_finite(source, float(torque))
-    return replace(command, clutch_torque=number)
+    def _checked(self, command: object, step: int) -> Command:
+        """Return the command with plain floats; raise DdctError for any other answer."""
+        if not isinstance(command, Command):
+            raise DdctError(
+                f"the controller's answer at step {step} is of type {type(command).__name__}: "
+                'return a ddct_controllers.interface.Command'
+            )
+        clutch = _torque(f"the controller's torque at step {step}", command.clutch_torque)
+        engine = command.engine_torque
+        if self._controller.commands_engine:
+            engine = _torque(f"the controller's engine torque at step {step}", engine)
+        elif engine is not None:
+            raise DdctError(
+                f'the controller gave an engine torque at step {step}: set its commands_engine'
+            )
+        return Command(clutch, command.status, engine)
+
+
+def _torque(source: str, torque: object) -> float:
+    if type(torque) is not float:
+        if not isinstance(torque, Real):
+            raise DdctError(f'{source} is {torque!r}: give a number in N m')
+        torque = float(torque)
+    return require_finite(source, torque)
 
 
 def make_architecture(settings: RunSettings, controller: Controller) -> Architecture:

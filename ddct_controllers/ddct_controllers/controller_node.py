@@ -36,7 +36,9 @@ class ControllerNode(FollowerNode):
     """
     Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
 
-    A controller's gains are parameters `gains.<name>`, which may be changed while it runs.
+    A controller with two inputs also answers with `engine/torque_request`, and takes the driver's
+    demand in place of `engine/torque`. Gains are parameters `gains.<name>`, which may be changed
+    while it runs.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -46,6 +48,14 @@ class ControllerNode(FollowerNode):
         self._controller = make_controller(name, self.settings)
         self._architecture = make_architecture(self.settings, self._controller)
         self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
+        if self._controller.commands_engine:
+            self._engine_request = self.create_publisher(
+                WrenchStamped, 'engine/torque_request', LOOP_QOS
+            )
+            self._engine_request_message = WrenchStamped()
+            self._engine_topic = 'engine/torque_demand'
+        else:
+            self._engine_topic = 'engine/torque'
         self._status = self.create_publisher(DiagnosticArray, 'controller/status', LOOP_QOS)
         self._timing = self.create_publisher(DiagnosticArray, 'controller/timing', LOOP_QOS)
         self._request_message = WrenchStamped()
@@ -56,7 +66,7 @@ class ControllerNode(FollowerNode):
             [
                 (JointState, 'driveline/joint_states'),
                 (TwistStamped, 'vehicle/twist'),
-                (WrenchStamped, 'engine/torque'),
+                (WrenchStamped, self._engine_topic),
                 (JointTrajectory, 'clutch/slip_reference'),
             ]
         )
@@ -67,13 +77,19 @@ class ControllerNode(FollowerNode):
         started = time.perf_counter()
         request = self._architecture.update(measurement)
         self._note_update_time(step, 1e6 * (time.perf_counter() - started))
-        return (
+        reply = (
             (
                 self._request,
                 torque_message(stamp_ns, request.torque, reuse=self._request_message),
             ),
             (self._status, status_message(stamp_ns, self.get_name(), request.status)),
         )
+        if request.engine_torque is None:
+            return reply
+        engine_request = torque_message(
+            stamp_ns, request.engine_torque, reuse=self._engine_request_message
+        )
+        return ((self._engine_request, engine_request), *reply)
 
     def close(self) -> None:
         """Publish the update times that no batch has carried yet."""
@@ -82,7 +98,7 @@ class ControllerNode(FollowerNode):
 
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
         joints, twist = 'driveline/joint_states', 'vehicle/twist'
-        torque, reference = 'engine/torque', 'clutch/slip_reference'
+        torque, reference = self._engine_topic, 'clutch/slip_reference'
         engine, shaft, wheel = read_joint_speeds(joints, inputs[joints])
         speeds, rates = read_slip_reference(
             reference, inputs[reference], self._controller.preview_steps

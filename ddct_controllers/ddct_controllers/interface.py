@@ -30,11 +30,15 @@ class Measurement:
     vehicle_speed: float
     """V_x in m/s."""
     engine_torque: float
-    """C_m in N m, known for the coming period."""
+    """C_m in N m over the coming period; the driver's demand if the controller commands C_m."""
     slip_reference: Sequence[float]
     """(P + 1,) rad/s; entry i is i x 10 ms ahead, P the controller's `preview_steps`."""
     slip_reference_rate: Sequence[float]
     """(P + 1,) rad/s^2."""
+    load_torque: float = 0.0
+    """C_load in N m computed from V_x and the slope; the architecture fills it in."""
+    open_loop_torque: float = 0.0
+    """What the architecture adds to the controller's clutch torque, in N m; it fills it in."""
 
     @property
     def slip_speed(self) -> float:
@@ -58,17 +62,21 @@ class Command:
     clutch_torque: float
     """Closed-loop part of the clutch torque request in N m."""
     status: Status = ()
+    engine_torque: float | None = None
+    """C_m asked of the engine in N m, given by controllers that command it and by no other."""
 
 
 class Controller(ABC):
     """
     A swappable closed-loop controller, called once every 10 ms.
 
-    While its architecture holds feedback off, `reset` is called in place of `update`.
+    While its architecture holds feedback off, `hold` is called in place of `update`.
     """
 
     preview_steps: int = 0
     """How many steps beyond the present one the controller wants the reference for."""
+    commands_engine: bool = False
+    """Whether it has a second input, C_m; it then receives the driver's demand for it."""
 
     @abstractmethod
     def reset(self) -> None:
@@ -77,6 +85,14 @@ class Controller(ABC):
     @abstractmethod
     def update(self, measurement: Measurement) -> Command:
         """Advance by one period and return the command that holds over it."""
+
+    def hold(self, measurement: Measurement) -> None:
+        """
+        Pass a period in which feedback is held off and only the open-loop torque acts.
+
+        Here the controller is reset. One with an observer lets it follow the plant instead.
+        """
+        self.reset()
 
     def linear_model(self) -> StateSpace | None:
         """

@@ -1,11 +1,12 @@
-"""Engine: a torque that follows the driver's demand, a fixed profile over time (Section 1.4.3)."""
+"""Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_plant.checks import require_number
 from ddct_plant.errors import ParameterError
-from ddct_plant.timebase import time_of_step
+from ddct_plant.timebase import PERIOD_S, time_of_step
 
 
 @dataclass(frozen=True)
@@ -40,15 +41,62 @@ def _require_points(name: str, values: Sequence[float], at_least: float | None) 
         require_number(f'{name}[{index}]', value, at_least=at_least)
 
 
+@dataclass(frozen=True)
+class EngineAuthority:
+    """
+    How far and how fast a controller may move the engine away from the driver's demand.
+
+    It shapes the deviation from the demand, so an engine without requests delivers the demand. As
+    it stands the engine follows any request at once, as the thesis assumes (Section 4.3).
+    """
+
+    deviation_n_m: float = 1000.0
+    """Largest deviation from the demand, either way."""
+    slew_n_m_s: float = 1e6
+    """Largest rate of the deviation."""
+    lag_s: float = 0.0
+    """Time constant of the first-order lag with which the deviation comes about; 0 is none."""
+    minimum_torque_n_m: float = 0.0
+    """Lowest torque delivered."""
+    maximum_torque_n_m: float = 1000.0
+    """Highest torque delivered."""
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        for name in ('deviation_n_m', 'slew_n_m_s', 'lag_s'):
+            require_number(
+                f'engine_authority.{name}', getattr(self, name), at_least=0.0, at_most=1e6
+            )
+        for name in ('minimum_torque_n_m', 'maximum_torque_n_m'):
+            require_number(
+                f'engine_authority.{name}', getattr(self, name), at_least=-1e4, at_most=1e4
+            )
+        if self.minimum_torque_n_m >= self.maximum_torque_n_m:
+            raise ParameterError(
+                f'engine_authority.minimum_torque_n_m is {self.minimum_torque_n_m:g} N m: it must '
+                f'be below maximum_torque_n_m, {self.maximum_torque_n_m:g} N m'
+            )
+
+    @property
+    def lag_share(self) -> float:
+        """Share of a held deviation that comes about within one period."""
+        return 1.0 - math.exp(-PERIOD_S / self.lag_s) if self.lag_s > 0.0 else 1.0
+
+
 class Engine:
     """
-    The thesis's engine: it delivers the demanded torque C_m at once (Section 1.4.3).
+    An engine whose torque C_m is held over the 10 ms period that starts at its stamp.
 
-    Torque is held over the 10 ms period that starts at its stamp.
+    The thesis's engine delivers the demanded torque at once (Section 1.4.3). A controller with two
+    inputs may ask for another torque (Section 4.3), within the engine's authority.
     """
 
-    def __init__(self, profile: TorqueProfile) -> None:
+    def __init__(self, profile: TorqueProfile, authority: EngineAuthority | None = None) -> None:
+        """Start on the demand; without `authority` it follows any request at once."""
         self._profile = profile
+        self._authority = authority or EngineAuthority()
+        self._asked = 0.0
+        self._deviation = 0.0
 
     def demand(self, step: int) -> float:
         """Return the driver's torque demand in N m at step `step`."""
@@ -62,6 +110,23 @@ class Engine:
                 return torques[index - 1] + share * (torques[index] - torques[index - 1])
         return torques[-1]
 
-    def torque(self, step: int) -> float:
-        """Return the torque C_m in N m delivered over the period of step `step`."""
-        return self.demand(step)
+    def torque(self, step: int, request: float | None = None) -> float:
+        """
+        Return the torque C_m in N m delivered over the period of step `step`.
+
+        It is the demand, or what comes about of `request` in N m; with requests it is called once
+        per step, in order. The deviation is limited, then its rate, then it passes the lag.
+        """
+        demand = self.demand(step)
+        if request is None:
+            return demand
+        limits = self._authority
+        asked = _limited(request - demand, limits.deviation_n_m)
+        self._asked += _limited(asked - self._asked, limits.slew_n_m_s * PERIOD_S)
+        self._deviation += limits.lag_share * (self._asked - self._deviation)
+        torque = demand + self._deviation
+        return min(max(torque, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
+
+
+def _limited(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)

@@ -6,38 +6,86 @@ from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
 from ddct_plant.engine import Engine
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.arrivals import read_torque
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import torque_message
+from ddct_plant.graph.messages import stamp_ns, torque_message
 from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.timebase import PERIOD_S, step_of_stamp
+
+JOINT_STATES = 'driveline/joint_states'
+REQUEST = 'engine/torque_request'
+REQUEST_TIMEOUT_S = 0.05
+"""Real time only: how long a missing request is waited for before the driver has his way."""
 
 
 class EngineNode(FollowerNode):
-    """Answer `driveline/joint_states` with `engine/torque_demand` and `engine/torque`."""
+    """
+    Answer `driveline/joint_states` with `engine/torque_demand` and `engine/torque`.
+
+    With `two_input` the demand is answered at once, and `engine/torque` once the controller's
+    `engine/torque_request` of that stamp is here. In real time, when requests stop, the engine
+    goes back to the demand as fast as its authority lets it.
+    """
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the engine of the run's scenario."""
         super().__init__('engine', **kwargs)
-        self._engine = Engine(self.settings.scenario.engine)
+        self._two_input = declare(
+            self, 'two_input', False, 'Wait for engine/torque_request of a two-input controller'
+        )
+        scenario = self.settings.scenario
+        self._engine = Engine(scenario.engine, scenario.engine_authority)
+        self._last_request_step = 0
         self._demand = self.create_publisher(WrenchStamped, 'engine/torque_demand', LOOP_QOS)
         self._torque = self.create_publisher(WrenchStamped, 'engine/torque', LOOP_QOS)
         self._demand_message = WrenchStamped()
         self._torque_message = WrenchStamped()
-        self.publish_run_info()
-        self.follow([(JointState, 'driveline/joint_states')])
+        self.publish_run_info({'two_input': str(self._two_input).lower()})
+        if self._two_input:
+            self.create_subscription(
+                JointState, JOINT_STATES, self.guarded(self._publish_demand), LOOP_QOS
+            )
+            self.follow([(JointState, JOINT_STATES), (WrenchStamped, REQUEST)])
+        else:
+            self.create_subscription(
+                WrenchStamped, REQUEST, self.guarded(self._refuse_request), LOOP_QOS
+            )
+            self.follow([(JointState, JOINT_STATES)])
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return the demand at t_k and the torque over the period of step k."""
+        """Return the torque over the period of step k, and the demand if it is not out yet."""
+        if self._two_input:
+            self._last_request_step = step
+            request = read_torque(REQUEST, inputs[REQUEST])
+            return (self._delivered(stamp_ns, self._engine.torque(step, request)),)
         return (
-            (
-                self._torque,
-                torque_message(stamp_ns, self._engine.torque(step), reuse=self._torque_message),
-            ),
-            (
-                self._demand,
-                torque_message(stamp_ns, self._engine.demand(step), reuse=self._demand_message),
-            ),
+            self._delivered(stamp_ns, self._engine.torque(step)),
+            (self._demand, self._demand_at(step, stamp_ns)),
         )
+
+    def _publish_demand(self, message: JointState) -> None:
+        stamp = stamp_ns(message)
+        step = step_of_stamp(stamp)
+        self._demand.publish(self._demand_at(step, stamp))
+        silent_s = (step - self._last_request_step) * PERIOD_S
+        if not self.settings.lockstep and silent_s > REQUEST_TIMEOUT_S:
+            torque = self._engine.torque(step, self._engine.demand(step))
+            self._torque.publish(self._delivered(stamp, torque)[1])
+
+    def _refuse_request(self, _message: WrenchStamped) -> None:
+        raise DdctError(
+            f'{REQUEST} arrived, but this engine follows the demand alone: start it with '
+            'two_input:=true, or choose a controller with one input'
+        )
+
+    def _delivered(self, stamp: int, torque: float) -> tuple[Any, WrenchStamped]:
+        return self._torque, torque_message(stamp, torque, reuse=self._torque_message)
+
+    def _demand_at(self, step: int, stamp: int) -> WrenchStamped:
+        return torque_message(stamp, self._engine.demand(step), reuse=self._demand_message)
 
 
 def main() -> int:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ddct_plant.checks import require_choice, require_number
-from ddct_plant.engine import TorqueProfile
+from ddct_plant.engine import EngineAuthority, TorqueProfile
 from ddct_plant.errors import ParameterError
 from ddct_plant.load import LoadParameters
 from ddct_plant.parameters import DrivelineParameters
@@ -64,6 +64,7 @@ class Scenario:
     score_window_s: tuple[float, float]
     """First and last time of the samples that standard deviations are taken over."""
     engine: TorqueProfile
+    engine_authority: EngineAuthority = EngineAuthority()
     initial: InitialSpeeds = InitialSpeeds()
     reference: ReferenceParameters = ReferenceParameters()
     load: LoadParameters = LoadParameters()

@@ -15,7 +15,7 @@ import yaml
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.scenario import Scenario
 
-_PARTS = ('engine', 'initial', 'reference', 'load', 'vehicle', 'driveline')
+_PARTS = ('engine', 'engine_authority', 'initial', 'reference', 'load', 'vehicle', 'driveline')
 
 
 def scenario_names() -> list[str]:

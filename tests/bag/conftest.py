@@ -50,7 +50,7 @@ def random_trajectory(steps, preview_steps=2):
     arrays = {
         field.name: random.normal(0.0, 100.0, (steps + 1, *widths.get(field.name, ())))
         for field in dataclasses.fields(Trajectory)
-        if field.name != 'status'
+        if field.name not in ('status', 'engine_torque_request')
     }
     status = tuple(
         (('part_n_m', repr(float(value))), ('saturated', 'true' if value < 0.0 else 'false'))
@@ -65,7 +65,7 @@ class Bags:
     def __init__(self, folder: Path):
         self.folder = folder
 
-    def write(self, trajectory, name='pi', folder=None, engine_torque_request=None, **changes):
+    def write(self, trajectory, name='pi', folder=None, **changes):
         """Write a run as the recorder would, and return the bag's folder."""
         pytest.importorskip('rclpy', reason='rclpy serialises the messages')
         from ddct_bringup.bag.trajectory_bag import write_trajectory
@@ -78,7 +78,6 @@ class Bags:
             name,
             custom_data,
             RUN_INFO,
-            engine_torque_request=engine_torque_request,
         )
         return bag
 

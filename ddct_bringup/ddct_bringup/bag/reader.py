@@ -35,8 +35,6 @@ class Recording:
     """Messages per resolved topic name."""
     missed: dict[str, int]
     """Per reply topic, at how many stamps the last reply had to be held; real time only."""
-    engine_torque_request: np.ndarray | None
-    """(N+1,) N m, or None with one-input controllers."""
 
 
 def read_bag(path: Path) -> Recording:
@@ -70,7 +68,6 @@ def recording_of(records: BagRecords) -> Recording:
             missed[signal.topic] = held
     status = columns.pop('status')
     arrays = {name: _array(name, column) for name, column in columns.items()}
-    request = arrays.pop('engine_torque_request', None)
     info = messages.get(resolved_name('run_info'), [])
     return Recording(
         path=records.path,
@@ -80,7 +77,6 @@ def recording_of(records: BagRecords) -> Recording:
         run_info={status_name_of(each): dict(status_pairs_of(each)) for _, each in info},
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
-        engine_torque_request=request,
     )
 
 

@@ -47,6 +47,8 @@ class Trajectory:
     """(N+1, 11) N m, as `actuator_torque`, after wear."""
     status: tuple[tuple[tuple[str, str], ...], ...]
     """Per step the (key, value) pairs of `controller/status`."""
+    engine_torque_request: np.ndarray | None = None
+    """(N+1,) N m asked of the engine; None with a controller that does not command it."""
 
     @property
     def steps(self) -> int:
@@ -63,6 +65,8 @@ class Trajectory:
         digest = hashlib.sha256()
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
+            if value is None:
+                continue
             digest.update(field.name.encode())
             if isinstance(value, np.ndarray):
                 digest.update(repr(value.shape).encode())

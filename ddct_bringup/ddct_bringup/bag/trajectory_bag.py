@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rclpy.serialization import serialize_message
 
 from ddct_bringup.bag.topics import recorded_topics
@@ -26,31 +25,26 @@ def write_trajectory(
     name: str,
     custom_data: Mapping[str, str],
     run_info: RunInfo,
-    *,
-    engine_torque_request: np.ndarray | None = None,
 ) -> Path:
     """
     Write `<folder>/<name>_0.mcap` and `metadata.yaml`, and return the path of the former.
 
-    `engine_torque_request` is (N+1,) N m, of two-input controllers only. Raise DdctError when the
-    bag cannot be written.
+    Raise DdctError when the bag cannot be written.
     """
-    two_input = engine_torque_request is not None
+    two_input = trajectory.engine_torque_request is not None
     topics = recorded_topics(lockstep=True, two_input=two_input)
     with BagWriter(folder, name, topics, custom_data) as bag:
         for node, pairs in sorted(run_info.items()):
             message = messages.status_message(START_NS, node, pairs)
             bag.write('run_info', START_NS, serialize_message(message))
         order = [topic.name for topic in topics if topic.every_tick]
-        for stamp, tick in _ticks(trajectory, engine_torque_request):
+        for stamp, tick in _ticks(trajectory):
             for topic in order:
                 bag.write(topic, stamp, serialize_message(tick[topic]))
     return bag.path
 
 
-def _ticks(
-    trajectory: Trajectory, engine_torque_request: np.ndarray | None
-) -> Iterator[tuple[int, dict[str, Any]]]:
+def _ticks(trajectory: Trajectory) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the stamp in ns and the message of every topic, tick by tick."""
     actuator, clutch = messages.TorquePointsMessage(), messages.TorquePointsMessage()
     reference = messages.SlipReferenceMessage(trajectory.slip_reference.shape[1] - 1)
@@ -81,8 +75,8 @@ def _ticks(
             'clutch/torque': clutch.fill(stamp, trajectory.clutch_torque[k]),
             'recorder/ack': messages.ack_message(stamp),
         }
-        if engine_torque_request is not None:
+        if trajectory.engine_torque_request is not None:
             tick['engine/torque_request'] = messages.torque_message(
-                stamp, engine_torque_request[k]
+                stamp, trajectory.engine_torque_request[k]
             )
         yield stamp, tick

@@ -23,7 +23,7 @@ class ClosedLoop:
         scenario = settings.scenario
         initial = initial_state(settings)
         self._driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
-        self._engine = Engine(scenario.engine)
+        self._engine = Engine(scenario.engine, scenario.engine_authority)
         self._load = RoadLoad(scenario.load, scenario.vehicle)
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
@@ -35,13 +35,16 @@ class ClosedLoop:
     def reply(self, step: int) -> dict[str, Any]:
         """Return every signal of step k by its name in `Trajectory`; advances all but time."""
         now = self._driveline.outputs()
-        engine_torque = self._engine.torque(step)
+        demand = self._engine.demand(step)
+        # A controller that commands the engine is told the demand, any other what is delivered;
+        # both are the same number until there is a request.
         speeds, rates = self._reference.update(step, now.slip_speed)
-        measurement = _measurement(step, now, engine_torque, speeds, rates)
+        measurement = _measurement(step, now, demand, speeds, rates)
         started = time.perf_counter()
         request = self._architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         actuator_torque = self._actuator.update(request.torque)
+        engine_torque = self._engine.torque(step, request.engine_torque)
         return {
             'joint_position': now.positions,
             'joint_speed': now.speeds,
@@ -49,7 +52,7 @@ class ClosedLoop:
             'slip_speed': now.slip_speed,
             'vehicle_speed': now.vehicle_speed,
             'vehicle_accel': now.vehicle_accel,
-            'torque_demand': self._engine.demand(step),
+            'torque_demand': demand,
             'engine_torque': engine_torque,
             'load_torque': self._load.torque(now.vehicle_speed),
             'slip_reference': speeds,
@@ -58,6 +61,7 @@ class ClosedLoop:
             'actuator_torque': actuator_torque,
             'clutch_torque': self._clutch.transmit(actuator_torque),
             'status': request.status,
+            'engine_torque_request': request.engine_torque,
         }
 
     def advance(self, reply: dict[str, Any]) -> None:

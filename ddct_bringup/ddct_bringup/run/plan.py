@@ -54,6 +54,7 @@ class RunPlan:
         scenario_file = work / f'{self.settings.scenario.name}.yaml'
         scenario_file.write_text(scenario_to_yaml(self.settings.scenario), encoding='utf-8')
         controller = make_controller(self.controller, self.settings)
+        two_input = controller.commands_engine
         return {
             '*': {
                 'scenario': str(scenario_file),
@@ -63,7 +64,8 @@ class RunPlan:
                 'mode': self.settings.mode,
                 'seed': self.settings.seed,
             },
-            'recorder': {'out': str(folder), 'name': self.name},
+            'recorder': {'out': str(folder), 'name': self.name, 'two_input': two_input},
+            'engine': {'two_input': two_input},
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},

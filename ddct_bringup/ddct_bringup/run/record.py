@@ -42,7 +42,7 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
 def run_info_of(settings: RunSettings, name: str, controller: Controller, steps: int) -> RunInfo:
     """Return what the nodes of a graph with these settings say on `run_info`."""
     extra: dict[str, dict[str, str]] = {
-        'engine': {},
+        'engine': {'two_input': str(controller.commands_engine).lower()},
         'load': {},
         'clutch': {},
         'driveline': {'steps': str(steps)},

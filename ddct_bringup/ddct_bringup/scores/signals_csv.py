@@ -13,8 +13,8 @@ from ddct_plant.graph.message_values import JOINTS
 def signals_csv(recording: Recording) -> str:
     """Return the text; of previews and torques within the period the value at the tick."""
     columns = _columns(recording.trajectory)
-    if recording.engine_torque_request is not None:
-        columns['engine_torque_request_n_m'] = recording.engine_torque_request
+    if recording.trajectory.engine_torque_request is not None:
+        columns['engine_torque_request_n_m'] = recording.trajectory.engine_torque_request
     text = io.StringIO()
     writer = csv.writer(text, lineterminator='\n')
     writer.writerow(columns)
