@@ -31,6 +31,10 @@ setup(
             'recorder = ddct_bringup.recorder_node:main',
             'score = ddct_bringup.score:main',
         ],
+        'ddct.mpc_studies': [
+            'clutch_torque_limit = ddct_bringup.studies.clutch_torque_limit:clutch_torque_limit',
+            'readings = ddct_bringup.studies.readings:readings',
+        ],
         'ddct.thesis_numbers': [
             'closed_loop = ddct_bringup.thesis.values:closed_loop_values',
         ],

@@ -7,6 +7,7 @@ from ddct_controllers.design import (
     hinf_command,
     loop_shaping_command,
     margins_command,
+    mpc_command,
     thesis_command,
 )
 from ddct_plant.cli import run_program
@@ -16,6 +17,7 @@ PROGRAM = 'design'
 _COMMANDS = (
     loop_shaping_command,
     hinf_command,
+    mpc_command,
     margins_command,
     thesis_command,
     figures_command,
@@ -26,6 +28,7 @@ examples:
   design loop-shaping                                 Chapter 2, step by step
   design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
   design h-infinity                                   Chapter 3, step by step
+  design mpc                                          Chapter 4: studies of the MPCs
   design margins --controller all                     the sampled loop with hold and delay
   design thesis                                       every printed number beside ours
   design figures --out figures                        the thesis's figures, drawn again

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ddct_plant.errors import ParameterError
 from ddct_plant.lti import StateSpace
@@ -117,5 +118,5 @@ class ControllerContext:
     """What a controller's factory is built from."""
 
     settings: RunSettings
-    gains: Mapping[str, float]
-    """The scenario's `controllers.<name>` section; the factory checks its keys."""
+    gains: Mapping[str, Any]
+    """The scenario's `controllers.<name>` section, gains and options; the factory checks it."""

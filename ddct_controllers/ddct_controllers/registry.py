@@ -8,6 +8,7 @@ from ddct_controllers.designed import DesignedController, is_designed_file, load
 from ddct_controllers.entry_points import load_entry_point
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.linear import LinearController
+from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
 from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.errors import DdctError, ParameterError
@@ -60,7 +61,7 @@ def _load_designed(file: str) -> DesignedController:
 def _own_factories() -> Mapping[str, Factory]:
     printed = {name: _linear_factory(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
     synthesised = {name: _synthesised_factory(name) for name in SYNTHESISED}
-    return {'pi': make_pi, **printed, **synthesised}
+    return {'pi': make_pi, **printed, **synthesised, **PREDICTIVE}
 
 
 def _synthesised_factory(name: str) -> Factory:

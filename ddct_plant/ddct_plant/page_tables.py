@@ -30,6 +30,11 @@ def read_page(path: str) -> str:
         raise DdctError(f'--write-doc {path}: cannot be read ({error})') from error
 
 
+def marked_tables(page: str, program: str) -> list[str]:
+    """Return the names of the tables that the page marks for a program, in its order."""
+    return [match[2] for match in _block(program).finditer(page)]
+
+
 def fill_tables(page: str, program: str, tables: Mapping[str, PageTable]) -> str:
     """
     Return the page with every table in the place that its name marks.
@@ -37,14 +42,19 @@ def fill_tables(page: str, program: str, tables: Mapping[str, PageTable]) -> str
     A table stands between the lines `<!-- PROGRAM: NAME -->` and `<!-- end -->`. Raise DdctError
     unless the page has each table once and no other of this program.
     """
-    block = re.compile(rf'(<!-- {re.escape(program)}: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
-    names = [match[2] for match in block.finditer(page)]
+    names = marked_tables(page, program)
     if sorted(names) != sorted(tables):
         raise DdctError(
             f'--write-doc: the page must have these tables, each once: {", ".join(tables)}; '
             f'it has: {", ".join(names) or "none"}'
         )
-    return block.sub(lambda match: f'{match[1]}{_markdown(tables[match[2]])}\n{match[3]}', page)
+    return _block(program).sub(
+        lambda match: f'{match[1]}{_markdown(tables[match[2]])}\n{match[3]}', page
+    )
+
+
+def _block(program: str) -> re.Pattern[str]:
+    return re.compile(rf'(<!-- {re.escape(program)}: (\w+) -->\n).*?(<!-- end -->)', re.DOTALL)
 
 
 def _markdown(table: PageTable) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from ddct_plant.checks import require_choice, require_number
 from ddct_plant.engine import EngineAuthority, TorqueProfile
@@ -70,8 +71,8 @@ class Scenario:
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
-    controllers: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """Gains by controller name, checked by the controller that takes them."""
+    controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Gains and options by controller name, checked by the controller that takes them."""
 
     def __post_init__(self) -> None:
         """Check the times; raise ParameterError that names a bad one."""

@@ -143,7 +143,7 @@ def _frozen(value: Any, field_type: Any, name: str) -> Any:
     return value
 
 
-def _gains(content: Any) -> dict[str, dict[str, float]]:
+def _gains(content: Any) -> dict[str, dict[str, Any]]:
     if not isinstance(content, Mapping) or not all(
         isinstance(gains, Mapping) for gains in content.values()
     ):

@@ -2,7 +2,8 @@
 `make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
-times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis.
+times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis,
+and the quadratic programs of predictive control.
 """
 
 import argparse
@@ -16,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from bare_chain import WIRING
+from qp import measure as measure_qp
+from qp import print_table as print_qp
 from synthesis import measure as measure_synthesis
 
 from ddct_bringup.headless import run_headless
@@ -54,8 +57,15 @@ def main() -> int:
         )
     synthesis = measure_synthesis()
     _print_synthesis(synthesis)
+    programs = measure_qp()
+    print_qp(programs)
     if options.json:
-        figures = {**results, 'headless_us': headless, 'synthesis': synthesis}
+        figures = {
+            **results,
+            'headless_us': headless,
+            'synthesis': synthesis,
+            'quadratic_programs': programs,
+        }
         write_json(options.json, figures)
     return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1
 

@@ -1,0 +1,1 @@
+"""Tables of closed-loop runs that show what decides how the predictive controllers fare."""

@@ -1,0 +1,1 @@
+"""Model predictive controllers of the clutch."""

@@ -1,0 +1,158 @@
+"""Condense a prediction over the horizon into a quadratic program in the input moves alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    REQUEST,
+    TransmissionModel,
+)
+from ddct_plant.timebase import PERIOD_S
+
+DECIDED = (REQUEST, ENGINE_TORQUE)
+"""Inputs that a controller may decide, in their order; it knows the others."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """
+    Outputs over the horizon, y_i, i = 1..p, stacked period by period, p outputs long.
+
+    y = from_moves @ z + from_known @ v, with z the moves of the inputs, m after m, and v the state
+    x_k, the inputs before the first move, and the known inputs, constant over the horizon.
+    """
+
+    from_moves: np.ndarray
+    """(p outputs, m inputs)."""
+    from_known: np.ndarray
+    """(p outputs, n + inputs + known inputs)."""
+
+
+def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
+    """Return how the weighted outputs follow from moves, state and inputs."""
+    inputs = len(settings.inputs)
+    decided = list(DECIDED[:inputs])
+    known = [column for column in (ENGINE_TORQUE, LOAD_TORQUE) if column not in decided]
+    rows = [terms.output for terms in settings.outputs]
+    c, d = model.c[rows], model.d[rows]
+    states = np.eye(len(model.a))
+    held = np.zeros((len(model.a), 3))
+    responses, free = [], []
+    for _ in range(settings.prediction_steps):
+        held = model.a @ held + model.b
+        states = model.a @ states
+        responses.append(c @ held + d)
+        free.append(np.hstack([c @ states, responses[-1][:, decided + known]]))
+    steps = np.array([response[:, decided] for response in responses])
+    feedthrough = d[:, decided]
+    return Prediction(_moves(steps, feedthrough, settings.control_steps), np.vstack(free))
+
+
+def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np.ndarray:
+    """
+    Return the response to a move at each of the first `control_steps` periods.
+
+    `steps` (p, outputs, inputs) is that to a unit step from period 0 on, at periods 1..p.
+    """
+    horizon, outputs, inputs = steps.shape
+    moves = np.zeros((horizon, outputs, control_steps, inputs))
+    for j in range(control_steps):
+        moves[j:, :, j, :] = steps[: horizon - j]
+        if j > 0:
+            moves[j - 1, :, j, :] = feedthrough
+    return moves.reshape(horizon * outputs, control_steps * inputs)
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedProgram:
+    """
+    The program whose solution z are the moves; what changes from step to step is linear.
+
+    With v as in `Prediction`: f = gradient @ (v, the inputs' targets, the outputs' references
+    period by period), and the bounds are `lower` and `upper` less shift @ (v, jump), where jump is
+    what the inputs change by before the first move, because the open loop does.
+    """
+
+    structure: QpStructure
+    gradient: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    shift: np.ndarray
+
+
+def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
+    """Return the program; raise ParameterError when the weights leave it singular."""
+    prediction = predict(model, settings)
+    hessian, gradient = _cost(model, settings, prediction)
+    hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
+    rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
+    is_soft = np.arange(len(rows)) >= len(hard[0])
+    weight = settings.soft_limit_weight if is_soft.any() else None
+    return CondensedProgram(
+        QpStructure(hessian, rows, is_soft, weight), gradient, lower, upper, shift
+    )
+
+
+def _cost(
+    model: TransmissionModel, settings: MpcSettings, prediction: Prediction
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return H and the gradient matrix; levels = levels before + cumulated moves."""
+    moves, inputs = settings.control_steps, len(settings.inputs)
+    weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
+    penalty = np.tile([terms.move_weight**2 for terms in settings.inputs], moves)
+    pull = np.tile([terms.target_weight**2 for terms in settings.inputs], moves)
+    levels, repeated = _levels(moves, inputs), np.tile(np.eye(inputs), (moves, 1))
+    weighted, pulled = prediction.from_moves.T * weights, levels.T * pull
+    hessian = weighted @ prediction.from_moves + np.diag(penalty) + pulled @ levels
+    from_known = weighted @ prediction.from_known
+    states = len(model.a)
+    from_known[:, states : states + inputs] += pulled @ repeated
+    return (hessian + hessian.T) / 2.0, np.hstack([from_known, -pulled @ repeated, -weighted])
+
+
+_Rows = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""Constraint rows, their lower and upper bounds, and what (v, jump) shifts the bounds by."""
+
+
+def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
+    """Return rows for the inputs' levels and rates, only where they are limited."""
+    moves, inputs, states = settings.control_steps, len(settings.inputs), len(model.a)
+    known = 2 - (inputs - 1)
+    lowest, highest, rate = np.array(
+        [(terms.lowest, terms.highest, terms.rate_n_m_s) for terms in settings.inputs]
+    ).T
+    before = np.zeros((moves * inputs, states + inputs + known + inputs))
+    before[:, states : states + inputs] = np.tile(np.eye(inputs), (moves, 1))
+    jump = np.zeros_like(before)
+    jump[:inputs, -inputs:] = np.eye(inputs)
+    change = np.tile(rate * PERIOD_S, moves)
+    rows = np.vstack([_levels(moves, inputs), np.eye(moves * inputs)])
+    lower = np.concatenate([np.tile(lowest, moves), -change])
+    upper = np.concatenate([np.tile(highest, moves), change])
+    limited = np.isfinite(lower) | np.isfinite(upper)
+    return rows[limited], lower[limited], upper[limited], np.vstack([before, jump])[limited]
+
+
+def _output_rows(settings: MpcSettings, prediction: Prediction) -> _Rows:
+    """Return rows for the outputs that have a soft limit."""
+    limits = [(terms.lowest, terms.highest) for terms in settings.outputs]
+    lower, upper = np.tile(np.array(limits).T, settings.prediction_steps)
+    limited = np.isfinite(lower) | np.isfinite(upper)
+    shift = prediction.from_known[limited]
+    no_jump = np.zeros((len(shift), len(settings.inputs)))
+    return (
+        prediction.from_moves[limited],
+        lower[limited],
+        upper[limited],
+        np.hstack([shift, no_jump]),
+    )
+
+
+def _levels(moves: int, inputs: int) -> np.ndarray:
+    """Return the map from moves to what the inputs have changed by, period by period."""
+    return np.kron(np.tril(np.ones((moves, moves))), np.eye(inputs))

@@ -1,0 +1,1 @@
+"""Quadratic programs of the predictive controllers, behind one small backend interface."""

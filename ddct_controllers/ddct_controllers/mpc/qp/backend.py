@@ -1,0 +1,92 @@
+"""The interface behind which solvers of quadratic programs are swapped."""
+
+import math
+import sys
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+
+from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_controllers.mpc.qp.scaling import scale
+from ddct_controllers.mpc.qp.solution import QpSolution, QpStatus
+from ddct_plant.errors import ParameterError
+
+Vector = np.ndarray | Sequence[float]
+
+_LARGEST = sys.float_info.max
+
+
+class QpBackend(ABC):
+    """
+    Solves programs of one structure, each solve starting from the solution of the last one.
+
+    A solve that fails forgets the start. Deterministic: the same solves after `reset` give the
+    same bits. Raise ParameterError when `iteration_limit` is below 1, DdctError when the solver's
+    package is missing.
+    """
+
+    def __init__(self, structure: QpStructure, iteration_limit: int) -> None:
+        if isinstance(iteration_limit, bool) or not isinstance(iteration_limit, int):
+            raise ParameterError(f'QP: iteration_limit is {iteration_limit!r}: give an integer')
+        if iteration_limit < 1:
+            raise ParameterError(f'QP: iteration_limit is {iteration_limit}: at least 1 is needed')
+        self._structure = structure
+        self._scaled = scale(structure)
+        self._iteration_limit = iteration_limit
+        self._soft_rows = structure.soft_rows
+        self._soft_constraints = structure.constraints[self._soft_rows]
+        self.reset()
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Return to the state of a new backend, without a warm start."""
+
+    @abstractmethod
+    def _solve_scaled(
+        self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray
+    ) -> tuple[np.ndarray, int, QpStatus]:
+        """Return the scaled variables (used only if solved), iterations and status."""
+
+    def solve(self, f: Vector, lower: Vector, upper: Vector) -> QpSolution:
+        """
+        Return the solution for f (n,) and the bounds of the rows, (m,) each.
+
+        Bounds may be infinite. Raise ParameterError for wrong shapes, NaN, an infinite f, or
+        bounds that no number lies between; a program without a solution is no error.
+        """
+        f, lower, upper = (np.asarray(vector, dtype=float) for vector in (f, lower, upper))
+        self._check(f, lower, upper)
+        scaled = self._scaled
+        y, iterations, status = self._solve_scaled(
+            scaled.variables * f, scaled.rows * lower, scaled.rows * upper
+        )
+        if status != 'solved':
+            self.reset()
+            return QpSolution(np.full(len(f), math.nan), iterations, status, math.nan)
+        z = scaled.variables * y
+        return QpSolution(z, iterations, status, self._violation(z, lower, upper))
+
+    def _violation(self, z: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
+        rows = self._soft_rows
+        if not len(rows):
+            return 0.0
+        values = self._soft_constraints @ z
+        return max(0.0, float(np.maximum(values - upper[rows], lower[rows] - values).max()))
+
+    def _check(self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
+        rows, size = self._structure.constraints.shape
+        if f.shape != (size,) or lower.shape != (rows,) or upper.shape != (rows,):
+            raise ParameterError(
+                f'QP: f is {f.shape}, lower {lower.shape} and upper {upper.shape}; '
+                f'({size},), ({rows},) and ({rows},) are needed'
+            )
+        # The product, which is infinite above 1e154 too, saves the slower check in the loop.
+        if not (math.isfinite(f @ f) or np.isfinite(f).all()):
+            raise ParameterError(f'QP: f is not finite: {f}')
+        usable = np.maximum(lower, -_LARGEST) <= np.minimum(upper, _LARGEST)
+        if not usable.all():
+            row = int(np.argmin(usable))
+            raise ParameterError(
+                f'QP: row {row} must lie between {lower[row]:g} and {upper[row]:g}: no number does'
+            )

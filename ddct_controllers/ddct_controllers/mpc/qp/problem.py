@@ -1,0 +1,100 @@
+"""The part of a condensed quadratic program that stays the same from step to step."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_plant.checks import require_number
+from ddct_plant.errors import ParameterError
+
+WORST_CONDITION = 1e10
+"""Of the Hessian scaled to a unit diagonal; above, a solution has less than six digits."""
+_ASYMMETRY = 1e-9
+"""Relative; condensing rounds far below this."""
+
+
+@dataclass(frozen=True, eq=False)
+class QpStructure:
+    """
+    Minimise 1/2 z' H z + f' z + 1/2 w sum of s_i^2 over z and the slacks s_i of the soft rows.
+
+    A hard row i keeps lower_i <= (G z)_i <= upper_i, a soft one
+    lower_i <= (G z)_i + s_i <= upper_i, and each soft row has a slack of its own. n variables,
+    m rows; f, lower and upper come with each solve. Arrays are copied and cannot be written.
+
+    Why this penalty: the program is strictly convex in z and s, so its solution is unique,
+    continuous in the data and exists whenever the hard rows alone have one; and a row that must
+    give way frees no other row, as one slack shared by all would. The price is that an active
+    soft row is exceeded by its multiplier over w, even where no conflict forces it: choose w
+    large against H. A row counts more when it and its bounds are multiplied by a factor above 1.
+
+    Raise ParameterError for wrong shapes, numbers that are not finite, a weight that is missing
+    or not positive, or a Hessian that is not symmetric or too close to singular.
+    """
+
+    hessian: np.ndarray
+    """H, (n, n), symmetric and positive definite."""
+    constraints: np.ndarray
+    """G, (m, n), m may be 0."""
+    soft: np.ndarray | None = None
+    """(m,) bool, True for a soft row; None makes every row hard."""
+    soft_weight: float | None = None
+    """w, above 0; needed when a row is soft."""
+
+    def __post_init__(self) -> None:
+        hessian = _matrix('hessian', self.hessian)
+        constraints = _matrix('constraints', self.constraints)
+        size = len(hessian)
+        if hessian.shape != (size, size) or size == 0:
+            raise ParameterError(f'QP: the hessian is {hessian.shape}, it must be square')
+        if constraints.shape[1] != size:
+            raise ParameterError(
+                f'QP: constraints is {constraints.shape}, but the hessian has {size} variables'
+            )
+        _require_definite(hessian)
+        given = np.zeros(len(constraints), dtype=bool) if self.soft is None else self.soft
+        soft = np.array(given)
+        if soft.shape != (len(constraints),) or soft.dtype != bool:
+            raise ParameterError(
+                f'QP: soft is {soft.dtype} {soft.shape}, it must be {len(constraints)} booleans'
+            )
+        if soft.any():
+            require_number('QP: soft_weight', self.soft_weight, above=0.0)
+        soft.setflags(write=False)
+        object.__setattr__(self, 'hessian', hessian)
+        object.__setattr__(self, 'constraints', constraints)
+        object.__setattr__(self, 'soft', soft)
+
+    @property
+    def soft_rows(self) -> np.ndarray:
+        """(number of soft rows,) their indices."""
+        return np.flatnonzero(np.asarray(self.soft))
+
+
+def _matrix(name: str, given: np.ndarray) -> np.ndarray:
+    matrix = np.array(given, dtype=float)
+    if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
+        raise ParameterError(f'QP: {name} must be a matrix of finite numbers')
+    matrix.setflags(write=False)
+    return matrix
+
+
+def _require_definite(hessian: np.ndarray) -> None:
+    """Raise ParameterError unless `hessian` is symmetric and safely positive definite."""
+    if np.abs(hessian - hessian.T).max() > _ASYMMETRY * np.abs(hessian).max():
+        raise ParameterError('QP: the hessian is not symmetric: mend what builds it')
+    diagonal = np.diag(hessian)
+    if np.any(diagonal <= 0.0):
+        variable = int(np.argmin(diagonal))
+        raise ParameterError(
+            f'QP: variable {variable} costs nothing (its diagonal of the hessian is '
+            f'{diagonal[variable]:g}): give it a weight above 0'
+        )
+    scale = 1.0 / np.sqrt(diagonal)
+    eigenvalues = np.linalg.eigvalsh(hessian * scale * scale[:, None])
+    if eigenvalues[0] * WORST_CONDITION < eigenvalues[-1]:
+        raise ParameterError(
+            'QP: the hessian is singular to working precision (its eigenvalues, scaled to a unit '
+            f'diagonal, are {eigenvalues[0]:.1e} to {eigenvalues[-1]:.1e}; at most a ratio of '
+            f'{WORST_CONDITION:g} is solved): raise the weights on the inputs or their moves'
+        )

@@ -1,0 +1,173 @@
+"""The condensed program is the cost and the limits that the settings state, nothing else."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_controllers.mpc.horizon import condense, predict
+from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    SLIP_ACCELERATION,
+    SLIP_SPEED,
+    TORSION_SPEED,
+    transmission_model,
+)
+from ddct_plant.errors import ParameterError
+from ddct_plant.parameters import DrivelineParameters
+
+MODEL = transmission_model(DrivelineParameters())
+ONE = MpcSettings(
+    9, 3, (OutputTerms(SLIP_SPEED, 2.0), OutputTerms(TORSION_SPEED, 5.0)), (InputTerms(0.4),)
+)
+TWO = MpcSettings(
+    7,
+    2,
+    (OutputTerms(SLIP_SPEED, 1.0), OutputTerms(SLIP_ACCELERATION, 0.05)),
+    (InputTerms(move_weight=0.1), InputTerms(move_weight=0.2, target_weight=0.3)),
+)
+RANDOM = np.random.default_rng(2)
+STATE = np.array([180.0, 150.0, 16.0, 0.01, *RANDOM.normal(size=4), 40.0])
+
+
+def simulate(settings, before, known, moves):
+    """Return weighted outputs (p, outputs) and inputs (m, inputs) by running the model."""
+    inputs = len(settings.inputs)
+    levels = before + np.cumsum(moves.reshape(settings.control_steps, inputs), axis=0)
+    rows = [terms.output for terms in settings.outputs]
+    state, outputs = STATE, []
+    for i in range(settings.prediction_steps + 1):
+        u = np.zeros(3)
+        u[:inputs] = levels[min(i, settings.control_steps - 1)]
+        u[inputs:] = known
+        if i > 0:
+            outputs.append((MODEL.c @ state + MODEL.d @ u)[rows])
+        state = MODEL.a @ state + MODEL.b @ u
+    return np.array(outputs), levels
+
+
+def case(settings):
+    inputs = len(settings.inputs)
+    before = np.array([35.0, 120.0])[:inputs]
+    known = np.array([110.0, 60.0])[inputs - 1 :]
+    moves = RANDOM.normal(size=inputs * settings.control_steps)
+    targets = np.array([0.0, 140.0])[:inputs]
+    references = RANDOM.normal(size=(settings.prediction_steps, len(settings.outputs)))
+    return before, known, moves, targets, references
+
+
+@pytest.mark.parametrize('settings', [ONE, TWO], ids=['one input', 'two inputs'])
+def test_prediction_is_the_simulated_model(settings):
+    before, known, moves, _, _ = case(settings)
+    prediction = predict(MODEL, settings)
+    v = np.concatenate([STATE, before, known])
+    outputs, _ = simulate(settings, before, known, moves)
+    predicted = prediction.from_moves @ moves + prediction.from_known @ v
+    assert predicted == pytest.approx(outputs.ravel(), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize('settings', [ONE, TWO], ids=['one input', 'two inputs'])
+def test_program_is_the_stated_cost(settings):
+    """Half the cost of simulated outputs, moves and levels, up to what the moves do not change."""
+    before, known, moves, targets, references = case(settings)
+    program = condense(MODEL, settings)
+    f = program.gradient @ np.concatenate([STATE, before, known, targets, references.ravel()])
+
+    def cost(z):
+        outputs, levels = simulate(settings, before, known, z)
+        steps = z.reshape(levels.shape)
+        total = 0.0
+        for column, terms in enumerate(settings.outputs):
+            total += np.sum((terms.weight * (outputs - references)[:, column]) ** 2)
+        for column, terms in enumerate(settings.inputs):
+            total += np.sum((terms.move_weight * steps[:, column]) ** 2)
+            total += np.sum((terms.target_weight * (levels[:, column] - targets[column])) ** 2)
+        return total / 2.0
+
+    expected = cost(moves) - cost(np.zeros_like(moves))
+    assert 0.5 * moves @ program.structure.hessian @ moves + f @ moves == pytest.approx(
+        expected, rel=1e-7
+    )
+
+
+def test_rows_are_levels_rates_and_soft_outputs():
+    limited = replace(
+        TWO,
+        outputs=(OutputTerms(SLIP_SPEED, 1.0, lowest=-1.0), TWO.outputs[1]),
+        inputs=(
+            replace(TWO.inputs[0], lowest=0.0, highest=350.0, rate_n_m_s=2000.0),
+            replace(TWO.inputs[1], lowest=-math.inf, highest=300.0),
+        ),
+    )
+    before, known, moves, _, _ = case(limited)
+    jump = np.array([3.0, 0.0])
+    program = condense(MODEL, limited)
+    shift = program.shift @ np.concatenate([STATE, before, known, jump])
+    values = program.structure.constraints @ moves + shift
+    outputs, levels = simulate(limited, before, known, moves)
+    steps = moves.reshape(levels.shape)
+    rates = steps[:, 0] + np.array([3.0, 0.0])
+    expected = np.concatenate([levels.ravel(), rates, outputs[:, 0]])
+    assert values == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert program.lower.tolist() == [0.0, -math.inf] * 2 + [-20.0] * 2 + [-1.0] * 7
+    assert program.upper.tolist() == [350.0, 300.0] * 2 + [20.0] * 2 + [math.inf] * 7
+    assert program.structure.soft_rows.tolist() == list(range(6, 13))
+
+
+def test_inputs_without_limits_have_no_rows():
+    free = replace(ONE, inputs=(InputTerms(0.4, lowest=-math.inf),))
+    assert condense(MODEL, free).structure.constraints.shape == (0, 3)
+
+
+def test_known_engine_torque_counts_as_the_model_says():
+    more = replace(ONE, outputs=(OutputTerms(SLIP_SPEED, 1.0),))
+    column = predict(MODEL, more).from_known[:, len(STATE) + 1]
+    state = np.zeros(len(STATE))
+    for predicted in column:
+        state = MODEL.a @ state + MODEL.b[:, ENGINE_TORQUE]
+        assert predicted == pytest.approx((MODEL.c @ state)[SLIP_SPEED])
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        ({'prediction_steps': 0}, 'prediction_steps is 0'),
+        ({'prediction_steps': 2.5}, 'prediction_steps is 2.5'),
+        ({'control_steps': 10}, 'control_steps is 10, longer than prediction_steps, 9'),
+        ({'iteration_limit': 0}, 'iteration_limit is 0'),
+        ({'backend': 'magic'}, 'choose from daqp, osqp'),
+        ({'outputs': ()}, 'at least one output'),
+        ({'inputs': ()}, 'one or two inputs'),
+        ({'soft_limit_weight': 0.0}, 'soft_limit_weight'),
+    ],
+)
+def test_settings_that_do_not_fit_are_named(change, complaint):
+    with pytest.raises(ParameterError, match=complaint):
+        replace(ONE, **change)
+
+
+@pytest.mark.parametrize(
+    ('terms', 'complaint'),
+    [
+        (lambda: InputTerms(move_weight=-1.0), 'move_weight'),
+        (lambda: InputTerms(target_weight=math.nan), 'target_weight'),
+        (lambda: InputTerms(highest=0.0), 'lowest torque, 0 N m, must be below the highest'),
+        (lambda: InputTerms(highest=-5.0), 'must be below the highest, -5'),
+        (lambda: InputTerms(rate_n_m_s=0.0), 'rate_n_m_s is 0: it must be above 0'),
+        (lambda: InputTerms(rate_n_m_s=math.nan), 'rate_n_m_s'),
+        (lambda: OutputTerms(SLIP_SPEED, -1.0), 'output weight'),
+        (lambda: OutputTerms(SLIP_SPEED, 1.0, lowest=2.0, highest=1.0), 'must be below'),
+    ],
+)
+def test_terms_out_of_range_are_named(terms, complaint):
+    with pytest.raises(ParameterError, match=complaint):
+        terms()
+
+
+def test_weights_that_leave_the_program_singular_are_refused():
+    """The last moves of an input act beyond the horizon: without a weight nothing fixes them."""
+    loose = MpcSettings(3, 3, (OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(),))
+    with pytest.raises(ParameterError, match='hessian'):
+        condense(MODEL, loose)

@@ -1,0 +1,175 @@
+"""The predictive controllers' model is the plant they run in, and their observer follows it."""
+
+import control
+import numpy as np
+import pytest
+
+from ddct_controllers.mpc.observer import NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    REQUEST,
+    SLIP_ACCELERATION,
+    SLIP_SPEED,
+    STATES,
+    TORSION_SPEED,
+    transmission_model,
+    with_disturbances,
+)
+from ddct_plant.actuator import Actuator
+from ddct_plant.clutch import LinearClutch
+from ddct_plant.driveline import Driveline
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.errors import ParameterError
+from ddct_plant.initial import InitialState
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.vehicle import VehicleParameters
+
+DRIVELINE = DrivelineParameters()
+MODEL = transmission_model(DRIVELINE)
+START = InitialState(180.0, 150.0, 150.0 / DRIVELINE.total_ratio, 0.01, 40.0, 60.0, 35.0, 35.0)
+
+
+def inputs(steps):
+    random = np.random.default_rng(4)
+    request = 100.0 + 80.0 * np.cumsum(random.normal(size=steps)) / np.sqrt(steps)
+    engine = 120.0 + 20.0 * np.sin(np.arange(steps) / 7.0)
+    return np.column_stack([np.maximum(request, 0.0), engine, np.full(steps, 60.0)])
+
+
+def plant_run(rows, wear_gain=1.0):
+    """Return w_m, w_p, w_r, w_sr (steps, 4) of the plant's own classes."""
+    driveline = Driveline(DRIVELINE, VehicleParameters(), START)
+    actuator, clutch = Actuator(START.torque_request), LinearClutch(wear_gain)
+    speeds = []
+    for request, engine, load in rows:
+        speeds.append(driveline.outputs().speeds)
+        driveline.step(engine, load, clutch.transmit(actuator.update(request)))
+    return np.array(speeds)
+
+
+def rest(model):
+    speeds = (START.engine_speed, START.shaft_speed, START.wheel_speed)
+    return model.at_rest(speeds, START.twist, START.torque_request)
+
+
+def model_run(model, rows):
+    states = [rest(model)]
+    for row in rows[:-1]:
+        states.append(model.a @ states[-1] + model.b @ row)
+    return np.array(states)
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+def test_model_follows_the_plant(wear_gain):
+    rows = inputs(300)
+    plant = plant_run(rows, wear_gain)
+    states = model_run(transmission_model(DRIVELINE, wear_gain), rows)
+    peak = np.abs(plant[:, 0] - plant[:, 1]).max()
+    # The plant's actuator torque is linear between nodes 1 ms apart.
+    assert np.abs(states[:, :3] - plant[:, :3]).max() < 2e-4 * peak
+    slip, torsion = (states @ MODEL.c.T)[:, [SLIP_SPEED, TORSION_SPEED]].T
+    assert np.allclose(slip, states[:, 0] - states[:, 1])
+    assert np.abs(torsion - plant[:, 3]).max() < 2e-4 * peak
+
+
+def test_slip_acceleration_is_the_derivative_at_the_start_of_a_period():
+    """The inputs of a period count from its start: C_m at once, the request not yet."""
+    state, u = rest(MODEL), np.array([90.0, 130.0, 60.0])
+    state[4:8] += 0.01 * np.arange(1, 5)
+    rate = (MODEL.c @ state + MODEL.d @ u)[SLIP_ACCELERATION]
+    small = 1e-6
+    change = transmission_at(state, u, small) - state[:8]
+    assert rate == pytest.approx((change[0] - change[1]) / small, rel=1e-3)
+
+
+def transmission_at(state, u, time_s):
+    """Return the first eight states a short time into a period, by fine Euler steps."""
+    plant, actuator = driveline_matrices(DRIVELINE), ACTUATOR.to_state_space()
+    x, steps = state[:8].copy(), 200
+    for _ in range(steps):
+        c_f = (actuator.c @ x[4:])[0]
+        rate = np.concatenate(
+            [
+                plant.a @ x[:4] + plant.b @ [u[1], c_f, u[2]],
+                actuator.a @ x[4:] + actuator.b[:, 0] * state[8],
+            ]
+        )
+        x += rate * time_s / steps
+    return x
+
+
+def test_disturbances_are_constants_that_push_through_their_columns():
+    columns = np.column_stack([MODEL.clutch, MODEL.b[:, LOAD_TORQUE]])
+    model = with_disturbances(MODEL, columns)
+    assert model.disturbances == 2
+    state = np.concatenate([rest(MODEL), [7.0, -3.0]])
+    after = model.a @ state
+    assert after[STATES:].tolist() == [7.0, -3.0]
+    assert np.allclose(after[:STATES], MODEL.a @ state[:STATES] + columns @ [7.0, -3.0])
+
+
+def test_clutch_column_is_a_held_torque_beside_the_actuator():
+    """Held C_f of 1 N m pushes engine and shaft apart as the driveline's step does."""
+    steps = np.full(11, 35.0)
+    moved, still = (Driveline(DRIVELINE, VehicleParameters(), START) for _ in range(2))
+    moved.step(40.0, 60.0, (steps + 1.0).tolist())
+    still.step(40.0, 60.0, steps.tolist())
+    difference = np.subtract(moved.outputs().speeds, still.outputs().speeds)
+    assert MODEL.clutch[:3] == pytest.approx(difference[:3], rel=1e-9)
+
+
+def test_gain_is_the_stationary_kalman_filter():
+    noise = NoiseLevels()
+    gain = kalman_gain(MODEL, noise)
+    torque = np.column_stack([MODEL.b[:, ENGINE_TORQUE], MODEL.b[:, LOAD_TORQUE], MODEL.clutch])
+    levels = (noise.engine_torque_n_m, noise.load_torque_n_m, noise.clutch_torque_n_m)
+    process = torque @ np.diag(np.square(levels)) @ torque.T
+    _, covariance, _ = control.dlqe(
+        MODEL.a, np.eye(STATES), np.eye(3, STATES), process, noise.speed_rad_s**2 * np.eye(3)
+    )
+    measured = np.eye(3, STATES)
+    # dlqe gives the covariance of the prediction in some releases, of the update in others.
+    candidates = [covariance, MODEL.a @ covariance @ MODEL.a.T + process]
+    expected = [
+        p
+        @ measured.T
+        @ np.linalg.inv(measured @ p @ measured.T + noise.speed_rad_s**2 * np.eye(3))
+        for p in candidates
+    ]
+    assert min(np.abs(gain - each).max() for each in expected) < 1e-6
+
+
+def test_observer_finds_the_twist_that_is_not_measured():
+    rows = inputs(200)
+    states = model_run(MODEL, rows)
+    observer = Observer(MODEL, NoiseLevels(), DRIVELINE.halfshaft_stiffness, 35.0)
+    for row, state in zip(rows, states, strict=True):
+        estimate = observer.correct(tuple(state[:3]), load_torque=500.0)
+        observer.predict(tuple(row))
+    assert states[0, 3] != pytest.approx(500.0 / DRIVELINE.halfshaft_stiffness)
+    assert estimate[3] == pytest.approx(states[-1, 3], abs=1e-4)
+
+
+def test_a_reset_observer_is_a_new_one():
+    observers = [
+        Observer(MODEL, NoiseLevels(), DRIVELINE.halfshaft_stiffness, 35.0) for _ in range(2)
+    ]
+    observers[0].correct((200.0, 100.0, 10.0), 50.0)
+    observers[0].predict((10.0, 20.0, 30.0))
+    observers[0].reset()
+    first, second = (each.correct((180.0, 150.0, 16.0), 60.0) for each in observers)
+    assert np.array_equal(first, second)
+
+
+def test_noise_that_leaves_no_gain_is_refused():
+    with pytest.raises(ParameterError, match='no stationary Kalman gain'):
+        kalman_gain(MODEL, NoiseLevels(speed_rad_s=0.0, clutch_torque_n_m=float('nan')))
+
+
+def test_inputs_are_where_their_names_say():
+    assert (REQUEST, ENGINE_TORQUE, LOAD_TORQUE) == (0, 1, 2)
+    pushed = MODEL.b[:, ENGINE_TORQUE]
+    assert pushed[0] == pytest.approx(0.01 / DRIVELINE.engine_inertia, rel=1e-3)
+    assert MODEL.b[2, LOAD_TORQUE] < 0.0 < MODEL.b[8, REQUEST]

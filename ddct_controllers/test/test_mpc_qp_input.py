@@ -1,0 +1,115 @@
+"""What the quadratic programs refuse: bad structures, vectors, names, and absent solvers."""
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_plant.errors import DdctError, ParameterError
+
+INF = math.inf
+ONE = QpStructure(np.eye(1), np.eye(1))
+
+backends = pytest.mark.parametrize('name', BACKENDS)
+
+
+@backends
+@pytest.mark.parametrize(
+    ('f', 'lower', 'upper', 'complaint'),
+    [
+        ([math.nan], [0.0], [1.0], 'f is not finite'),
+        ([INF], [0.0], [1.0], 'f is not finite'),
+        ([0.0], [math.nan], [1.0], 'row 0'),
+        ([0.0], [0.0], [math.nan], 'row 0'),
+        ([0.0], [2.0], [1.0], 'row 0 must lie between 2 and 1'),
+        ([0.0], [INF], [INF], 'row 0'),
+        ([0.0], [-INF], [-INF], 'row 0'),
+        ([0.0, 0.0], [0.0], [1.0], r'f is \(2,\)'),
+        ([0.0], [0.0, 0.0], [1.0], r'lower \(2,\)'),
+        ([0.0], [0.0], [], r'upper \(0,\)'),
+    ],
+)
+def test_bad_vectors_are_named_and_harm_nothing(name, f, lower, upper, complaint):
+    backend = make_backend(name, ONE, 1000)
+    with pytest.raises(ParameterError, match=complaint):
+        backend.solve(f, lower, upper)
+    assert backend.solve([-3.0], [0.0], [1.0]).z[0] == pytest.approx(1.0, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ('hessian', 'complaint'),
+    [
+        ([[1.0, 0.0], [0.0, 0.0]], 'variable 1 costs nothing'),
+        ([[1.0, 1.0], [1.0, 1.0]], 'singular to working precision'),
+        ([[1.0, 1.0], [1.0, 1.0 + 1e-12]], 'singular to working precision'),
+        ([[1.0, 2.0], [2.0, 1.0]], 'singular to working precision'),
+        ([[1.0, 0.5], [0.4, 1.0]], 'not symmetric'),
+        ([[1.0, math.nan], [math.nan, 1.0]], 'hessian must be a matrix of finite numbers'),
+        ([[1.0, 0.0]], 'must be square'),
+        ([1.0, 2.0], 'hessian must be a matrix'),
+    ],
+)
+def test_a_hessian_that_cannot_be_solved_is_refused_at_configuration(hessian, complaint):
+    with pytest.raises(ParameterError, match=complaint):
+        QpStructure(np.array(hessian), np.eye(2))
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'complaint'),
+    [
+        ({'constraints': np.eye(3)}, 'hessian has 2 variables'),
+        ({'constraints': np.full((1, 2), INF)}, 'constraints must be a matrix of finite'),
+        ({'soft': np.array([True])}, '2 booleans'),
+        ({'soft': np.array([0.0, 1.0])}, '2 booleans'),
+        ({'soft': np.array([True, False])}, 'soft_weight is None'),
+        ({'soft': np.array([True, False]), 'soft_weight': 0.0}, 'above 0'),
+        ({'soft': np.array([True, False]), 'soft_weight': math.nan}, 'finite number'),
+    ],
+)
+def test_a_bad_structure_is_refused(arguments, complaint):
+    with pytest.raises(ParameterError, match=complaint):
+        QpStructure(**({'hessian': np.eye(2), 'constraints': np.eye(2)} | arguments))
+
+
+def test_a_structure_keeps_its_own_copy():
+    hessian = np.eye(2)
+    structure = QpStructure(hessian, np.eye(2))
+    hessian[0, 0] = 5.0
+    assert structure.hessian[0, 0] == 1.0
+    with pytest.raises(ValueError, match='read-only'):
+        structure.hessian[0, 0] = 5.0
+
+
+@pytest.mark.parametrize('limit', [0, -1, 2.5, True])
+def test_an_iteration_limit_below_one_is_refused(limit):
+    with pytest.raises(ParameterError, match='iteration_limit'):
+        make_backend(DEFAULT_BACKEND, ONE, limit)
+
+
+def test_an_unknown_backend_is_refused_with_the_choices():
+    with pytest.raises(ParameterError, match='choose from daqp, osqp'):
+        make_backend('simplex', ONE, 1000)
+
+
+@backends
+def test_a_missing_solver_is_named(name, monkeypatch):
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(DdctError, match=f'pip install {name}'):
+        make_backend(name, ONE, 1000)
+
+
+def test_a_solver_is_imported_only_when_it_is_chosen():
+    """Every process of a graph would pay for it."""
+    program = (
+        'import sys, numpy\n'
+        'from ddct_controllers.mpc.qp.factory import make_backend\n'
+        'from ddct_controllers.mpc.qp.problem import QpStructure\n'
+        'assert not {"daqp", "osqp", "scipy"} & set(sys.modules)\n'
+        'make_backend("daqp", QpStructure(numpy.eye(1), numpy.eye(1)), 10)\n'
+        'assert "osqp" not in sys.modules\n'
+    )
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=60)

@@ -1,0 +1,106 @@
+"""Quadratic programs of slip control: both backends, bare OSQP and cvxpy, in one run."""
+
+import time
+from typing import Any
+
+import numpy as np
+from qp_peers import Solve, bare_osqp, cvxpy_osqp_and_clarabel
+from qp_programs import LIMIT, SlipControl
+
+from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.problem import QpStructure
+
+SIZES = {
+    '4 moves, 8 hard rows': (4, 22, False),
+    '4 moves, 8 hard and 22 soft rows': (4, 22, True),
+    '50 moves, 100 hard and 50 soft rows': (50, 50, True),
+}
+"""Moves, predicted outputs, and whether these have soft rows."""
+_ROUNDS = 3
+_COMPARED = 10
+"""Every so many steps the solutions are compared with Clarabel's."""
+
+
+def measure() -> dict[str, Any]:
+    """
+    Return for each size and solver the times per solve, their ratios to ours, and the error.
+
+    The solvers go through the programs of a run in turn, several rounds, each program warm from
+    the one before. The error is the largest distance from Clarabel's solution over the largest
+    solution, both in the norm of the hessian. Without cvxpy there is none: `skipped` says why.
+    """
+    return {label: _measure_size(SlipControl(*size)) for label, size in SIZES.items()}
+
+
+def print_table(figures: dict[str, Any]) -> None:
+    """Print what `measure` returned."""
+    for label, found in figures.items():
+        print(f'QP, {label} (against {DEFAULT_BACKEND}):')
+        for name, row in found['solvers'].items():
+            error = f', error {row["error"]:.0e}' if 'error' in row else ''
+            print(
+                f'  {name:10} median {row["median_us"]:7.1f} us ({row["median_ratio"]:5.1f}x), '
+                f'p99 {row["p99_us"]:7.1f} us ({row["p99_ratio"]:5.1f}x){error}'
+            )
+        if 'skipped' in found:
+            print(f'  not compared: {found["skipped"]}')
+
+
+def _measure_size(control: SlipControl) -> dict[str, Any]:
+    structure = control.structure
+    solvers = {name: _backend(name, structure) for name in BACKENDS}
+    solvers['bare osqp'] = bare_osqp(structure)
+    try:
+        import cvxpy
+    except ImportError as error:
+        skipped = {'skipped': f'cvxpy is not installed ({error})'}
+        return {'solvers': _run(control, solvers, None)} | skipped
+    solvers['cvxpy'], exact = cvxpy_osqp_and_clarabel(cvxpy, structure)
+    return {'solvers': _run(control, solvers, exact)}
+
+
+def _backend(name: str, structure: QpStructure) -> Solve:
+    backend = make_backend(name, structure, LIMIT)
+    return lambda f, lower, upper: backend.solve(f, lower, upper).z
+
+
+def _run(control: SlipControl, solvers: dict[str, Solve], exact: Solve | None) -> dict[str, Any]:
+    steps = control.steps()
+    references = [exact(*step) for step in steps[::_COMPARED]] if exact else []
+    times: dict[str, list[float]] = {name: [] for name in solvers}
+    solutions: dict[str, list[np.ndarray]] = {}
+    for _ in range(_ROUNDS):
+        for name, solve in solvers.items():
+            solutions[name] = []
+            for step in steps:
+                started = time.perf_counter()
+                z = solve(*step)
+                times[name].append(1e6 * (time.perf_counter() - started))
+                solutions[name].append(z)
+    ours = np.percentile(times[DEFAULT_BACKEND], [50, 99])
+    return {
+        name: _figures(np.percentile(taken, [50, 99]), ours)
+        | _error(control.structure.hessian, solutions[name][::_COMPARED], references)
+        for name, taken in times.items()
+    }
+
+
+def _figures(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
+    ratios = times_us / ours_us
+    return {
+        'median_us': float(times_us[0]),
+        'p99_us': float(times_us[1]),
+        'median_ratio': float(ratios[0]),
+        'p99_ratio': float(ratios[1]),
+    }
+
+
+def _error(
+    hessian: np.ndarray, solutions: list[np.ndarray], references: list[np.ndarray]
+) -> dict[str, float]:
+    if not references:
+        return {}
+    exact = np.array(references)
+    off = np.array(solutions) - exact
+    distance, size = (np.sqrt(np.einsum('ki,ij,kj->k', v, hessian, v)) for v in (off, exact))
+    return {'error': float(distance.max() / size.max())}
