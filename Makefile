@@ -17,6 +17,7 @@ BIN := .venv/bin
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
+PEERS_INSTALLED := .venv/.peers
 BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/config ddct_*/foxglove)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
@@ -88,7 +89,12 @@ lint: $(VENV_MADE)
 	$(BIN)/mypy || status=1; \
 	exit $$status
 
-bench: setup
+# The peers are added to the environment that is there; a second sync would break it.
+$(PEERS_INSTALLED): requirements-bench.txt $(VENV_MADE)
+	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements-bench.txt
+	@touch $@
+
+bench: setup $(PEERS_INSTALLED)
 	@$(SOURCED) $(BIN)/python tests/bench/run.py
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
@@ -96,6 +102,7 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
     --no-header --fork-strategy fewest
 lock: $(VENV_MADE)
 	@$(COMPILE) requirements.in -o requirements.txt
+	@$(COMPILE) requirements-bench.in -c requirements.txt -o requirements-bench.txt
 	@echo uv | $(COMPILE) - -o requirements-uv.txt
 
 clean:

@@ -20,7 +20,7 @@ def bare_osqp(structure: QpStructure) -> Solve:
     """Return OSQP with a slack per soft row and its defaults but for the accuracy."""
     rows, size = structure.constraints.shape
     slacks = len(structure.soft_rows)
-    weights = np.full(slacks, structure.soft_weight)
+    weights = np.full(slacks, structure.soft_weight or 0.0)  # None without soft rows
     cost = sparse.block_diag([structure.hessian, np.diag(weights)])
     constraints = np.hstack([structure.constraints, np.eye(rows)[:, structure.soft_rows]])
     f, none = np.zeros(size + slacks), np.full(rows, np.inf)
@@ -50,7 +50,7 @@ def cvxpy_osqp_and_clarabel(cvxpy: Any, structure: QpStructure) -> tuple[Solve, 
     root = np.linalg.cholesky(structure.hessian).T
     f, lower, upper = (cvxpy.Parameter(count) for count in (size, rows, rows))
     cost = 0.5 * cvxpy.sum_squares(root @ z) + f @ z
-    cost += 0.5 * structure.soft_weight * cvxpy.sum_squares(slack)
+    cost += 0.5 * (structure.soft_weight or 0.0) * cvxpy.sum_squares(slack)
     values = structure.constraints @ z + slack
     hard = np.flatnonzero(~structure.soft)
     problem = cvxpy.Problem(

@@ -3,7 +3,7 @@
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis,
-and the quadratic programs of predictive control.
+the quadratic programs of predictive control, and a whole step of MPC3.
 """
 
 import argparse
@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from bare_chain import WIRING
+from mpc_step import measure as measure_mpc_step
+from mpc_step import print_table as print_mpc_step
 from qp import measure as measure_qp
 from qp import print_table as print_qp
 from synthesis import measure as measure_synthesis
@@ -59,12 +61,15 @@ def main() -> int:
     _print_synthesis(synthesis)
     programs = measure_qp()
     print_qp(programs)
+    mpc_step = measure_mpc_step()
+    print_mpc_step(mpc_step)
     if options.json:
         figures = {
             **results,
             'headless_us': headless,
             'synthesis': synthesis,
             'quadratic_programs': programs,
+            'mpc_step': mpc_step,
         }
         write_json(options.json, figures)
     return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1

@@ -1,0 +1,162 @@
+"""One step of MPC3 as the controller takes it: filter, program and command, against peers."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from qp_peers import bare_osqp, cvxpy_osqp_and_clarabel
+
+from ddct_bringup.headless import run_headless
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.qp.solution import QpSolution
+from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, thesis_settings
+from ddct_controllers.mpc.transmission_model import transmission_model
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+RUN = RunSettings(load_scenario('thesis'))
+MODEL = transmission_model(RUN.scenario.driveline)
+MEDIAN_GOAL_US, P99_GOAL_US = 40.0, 200.0
+_ROUNDS = 10
+_SLOW_ROUNDS = 1
+
+
+def measure() -> dict[str, Any]:
+    """
+    Return per way of taking the step its median and p99 in us, and their ratios to ours.
+
+    All answer the measurements of one closed-loop run of MPC3, in turn. What is not installed is
+    named in `skipped`.
+    """
+    settings = thesis_settings(TABLE_4_1['mpc3'])
+    measurements = _measurements(_controller(settings))
+    ways: dict[str, tuple[Controller, int]] = {
+        'ours, daqp': (_controller(settings), _ROUNDS),
+        'ours, osqp': (_controller(replace(settings, backend='osqp')), _ROUNDS),
+        'bare osqp': (_with_solver(settings, bare_osqp), _ROUNDS),
+    }
+    skipped = []
+    for name, make, rounds in (
+        ('cvxpy', _cvxpy, _SLOW_ROUNDS),
+        ('do-mpc', _do_mpc, _SLOW_ROUNDS),
+    ):
+        try:
+            ways[name] = (make(settings), rounds)
+        except ImportError as error:
+            skipped.append(f'{name} is not installed ({error})')
+    times = {name: _times(way, measurements, rounds) for name, (way, rounds) in ways.items()}
+    ours = np.percentile(times['ours, daqp'], [50, 99])
+    ways_figures = {
+        name: _figures(np.percentile(each, [50, 99]), ours) for name, each in times.items()
+    }
+    return {'ways': ways_figures, 'skipped': skipped}
+
+
+def print_table(figures: dict[str, Any]) -> None:
+    """Print what `measure` returned."""
+    print(f'MPC3 step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us):')
+    for name, row in figures['ways'].items():
+        print(
+            f'  {name:10} median {row["median_us"]:8.1f} us ({row["median_ratio"]:6.1f}x), '
+            f'p99 {row["p99_us"]:8.1f} us ({row["p99_ratio"]:6.1f}x)'
+        )
+    for reason in figures['skipped']:
+        print(f'  not compared: {reason}')
+
+
+def _controller(settings: MpcSettings) -> PredictiveController:
+    return PredictiveController(MODEL, make_observer(RUN, MODEL), settings)
+
+
+class _Listening(Controller):
+    """Passes everything on and keeps the measurements."""
+
+    def __init__(self, controller: Controller) -> None:
+        self.controller, self.preview_steps = controller, controller.preview_steps
+        self.held: list[Measurement] = []
+        self.updated: list[Measurement] = []
+
+    def reset(self) -> None:
+        self.controller.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        self.held.append(measurement)
+        self.controller.hold(measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        self.updated.append(measurement)
+        return self.controller.update(measurement)
+
+
+def _measurements(controller: Controller) -> tuple[list[Measurement], list[Measurement]]:
+    listening = _Listening(controller)
+    run_headless(RUN, listening)
+    return listening.held, listening.updated
+
+
+def _times(
+    controller: Controller, run: tuple[list[Measurement], list[Measurement]], rounds: int
+) -> list[float]:
+    held, updated = run
+    times = []
+    for _ in range(rounds):
+        controller.reset()
+        for measurement in held:
+            controller.hold(measurement)
+        for measurement in updated:
+            started = time.perf_counter()
+            controller.update(measurement)
+            times.append(1e6 * (time.perf_counter() - started))
+    return times
+
+
+def _figures(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
+    median, p99 = times_us
+    median_ratio, p99_ratio = times_us / ours_us
+    return {
+        'median_us': float(median),
+        'p99_us': float(p99),
+        'median_ratio': float(median_ratio),
+        'p99_ratio': float(p99_ratio),
+    }
+
+
+class _Solver:
+    """What a controller needs of a backend, around a bare function."""
+
+    def __init__(self, solve: Callable[..., np.ndarray]) -> None:
+        self._solve = solve
+
+    def reset(self) -> None:
+        """Do nothing: every program starts from the last solution."""
+
+    def solve(self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> QpSolution:
+        return QpSolution(self._solve(f, lower, upper), 0, 'solved', 0.0)
+
+
+def _with_solver(settings: MpcSettings, make: Callable[..., Any]) -> PredictiveController:
+    controller = _controller(settings)
+    controller._solver = _Solver(make(controller.program.structure))  # type: ignore[assignment]
+    return controller
+
+
+def _cvxpy(settings: MpcSettings) -> PredictiveController:
+    import cvxpy
+
+    return _with_solver(settings, lambda structure: cvxpy_osqp_and_clarabel(cvxpy, structure)[0])
+
+
+def _do_mpc(settings: MpcSettings) -> Controller:
+    """
+    Return do-mpc with IPOPT for the same model, weights and horizon.
+
+    It has no control horizon: all 22 moves are free, where ours has 4.
+    """
+    from do_mpc_step import DoMpcController
+
+    return DoMpcController(MODEL, make_observer(RUN, MODEL), settings)
