@@ -1,7 +1,5 @@
 """Node `recorder`: writes every tick off the wire into a bag and acknowledges it."""
 
-import importlib
-import struct
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +13,7 @@ from ddct_bringup.bag.cdr import CdrNormaliser
 from ddct_bringup.bag.message_definitions import load_definition
 from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
 from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
+from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.run.graph_nodes import NODE_NAMES
 from ddct_bringup.run.record import custom_data
@@ -33,9 +32,6 @@ ACK = 'recorder/ack'
 TIMING = 'controller/timing'
 DIAGNOSTICS = '/diagnostics'
 DIAGNOSTICS_SOURCE = 'driveline: ticks'
-_STAMP = struct.Struct('<iI')
-_STAMP_AT = 4
-"""Every recorded type begins with its stamp, right behind the four bytes of the encapsulation."""
 
 
 class RecorderNode(GraphNode):
@@ -77,6 +73,8 @@ class RecorderNode(GraphNode):
         self._timing = RunTiming()
         self._first_tick_at = 0.0
         self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
+        # Acknowledgements differ in nothing but the stamp.
+        self._ack_cdr = bytearray(serialize_message(ack_message(START_NS)))
         self._subscribe_all()
         self.publish_run_info()
 
@@ -98,12 +96,12 @@ class RecorderNode(GraphNode):
                 continue
             qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
             self.create_subscription(
-                _message_type(topic), topic.name, self._receiver(topic), qos, raw=True
+                message_type(topic), topic.name, self._receiver(topic), qos, raw=True
             )
 
     def _receiver(self, topic: TopicSpec) -> Callable[[bytes], None]:
         if topic.every_tick:
-            return self.guarded(lambda cdr: self._on_tick_message(topic.name, cdr))
+            return self.guarded(self._tick_receiver(topic.name))
         receive = {
             RUN_INFO_TOPIC: self._on_run_info,
             TIMING: self._on_timing,
@@ -111,10 +109,15 @@ class RecorderNode(GraphNode):
         }[topic.name]
         return self.guarded(receive)
 
-    def _on_tick_message(self, topic: str, cdr: bytes) -> None:
-        ready = self._buffer.offer(topic, _stamp_ns(cdr), cdr)
-        if ready:
-            self._write_ticks(ready)
+    def _tick_receiver(self, topic: str) -> Callable[[bytes], None]:
+        offer = self._buffer.offer
+
+        def receive(cdr: bytes) -> None:
+            ready = offer(topic, stamp_of_cdr(cdr), cdr)
+            if ready:
+                self._write_ticks(ready)
+
+        return receive
 
     def _on_run_info(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
@@ -154,9 +157,9 @@ class RecorderNode(GraphNode):
         if self.settings.lockstep:
             return
         if self._bag is None:
-            self._unordered.append((topic, _stamp_ns(cdr), cdr))
+            self._unordered.append((topic, stamp_of_cdr(cdr), cdr))
         else:
-            self._bag.write(topic, _stamp_ns(cdr), cdr)
+            self._bag.write(topic, stamp_of_cdr(cdr), cdr)
 
     def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
         self._held += ticks
@@ -170,7 +173,8 @@ class RecorderNode(GraphNode):
 
     def _write_tick(self, stamp: int, tick: Tick) -> None:
         assert self._bag is not None
-        ack = serialize_message(ack_message(stamp))
+        set_stamp_of_cdr(self._ack_cdr, stamp)
+        ack = bytes(self._ack_cdr)
         # The tick is safe here now: the graph goes on while it is being written.
         self._ack.publish(ack)
         for topic in self._tick_topics:
@@ -203,16 +207,6 @@ class RecorderNode(GraphNode):
         if silent:
             return f'no run_info came from {", ".join(silent)}: start them, or set `nodes`'
         return 'no whole tick came: start it first or set require_recorder on driveline'
-
-
-def _stamp_ns(cdr: bytes) -> int:
-    seconds, nanoseconds = _STAMP.unpack_from(cdr, _STAMP_AT)
-    return seconds * 1_000_000_000 + nanoseconds
-
-
-def _message_type(topic: TopicSpec) -> type:
-    package, kind, name = topic.type.split('/')
-    return getattr(importlib.import_module(f'{package}.{kind}'), name)
 
 
 def main() -> int:

@@ -1,6 +1,6 @@
 """Control architectures of the thesis: how open loop and feedback make one torque request."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from numbers import Real
 from typing import Protocol
 
@@ -79,7 +79,7 @@ class Architecture:
         """Return the request for the period that starts at the measurement's step."""
         load_torque = self._load.torque(measurement.vehicle_speed)
         open_loop = self._open_loop.update(measurement.engine_torque, load_torque)
-        measurement = replace(measurement, load_torque=load_torque, open_loop_torque=open_loop)
+        measurement = measurement.within(load_torque, open_loop)
         if measurement.step >= self._start_step:
             feedback = 'on'
             command = self._checked(self._controller.update(measurement), measurement.step)

@@ -22,7 +22,7 @@ from ddct_plant.graph.arrivals import (
     read_vehicle_speed,
 )
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import status_message, torque_message
+from ddct_plant.graph.messages import StatusMessage, status_message, torque_message
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
@@ -59,6 +59,7 @@ class ControllerNode(FollowerNode):
         self._status = self.create_publisher(DiagnosticArray, 'controller/status', LOOP_QOS)
         self._timing = self.create_publisher(DiagnosticArray, 'controller/timing', LOOP_QOS)
         self._request_message = WrenchStamped()
+        self._status_message = StatusMessage(self.get_name())
         self._update_times_us: list[float] = []
         self._declare_gains()
         self.publish_run_info(controller_info(controller_label(name), self._controller))
@@ -82,7 +83,7 @@ class ControllerNode(FollowerNode):
                 self._request,
                 torque_message(stamp_ns, request.torque, reuse=self._request_message),
             ),
-            (self._status, status_message(stamp_ns, self.get_name(), request.status)),
+            (self._status, self._status_message.fill(stamp_ns, request.status)),
         )
         if request.engine_torque is None:
             return reply

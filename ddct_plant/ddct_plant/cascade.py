@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from ddct_plant.errors import ParameterError
 
@@ -67,6 +66,11 @@ def _frequency(section: _Polynomial) -> float:
 def _paired(
     zeros: Sequence[_Polynomial], poles: Sequence[_Polynomial]
 ) -> list[tuple[_Polynomial, _Polynomial]]:
+    if not zeros:
+        return [((1.0,), pole) for pole in poles]
+    # Only here: nodes without such a transfer function need not wait for this slow import.
+    from scipy.optimize import linear_sum_assignment
+
     forbidden = 1e6
     distance = np.array(
         [

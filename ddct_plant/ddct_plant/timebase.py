@@ -5,6 +5,8 @@ Step k is stamped t_k = t_0 + k x 10 ms with t_0 = 1 s exactly, because a ROS ti
 "no clock". Scenario time is the stamp less t_0.
 """
 
+from functools import lru_cache
+
 from ddct_plant.errors import DdctError, ParameterError
 
 START_NS = 1_000_000_000
@@ -22,6 +24,7 @@ def stamp_of_step(step: int) -> int:
     return START_NS + step * PERIOD_NS
 
 
+@lru_cache(maxsize=64)  # in one process some thirty messages carry each stamp
 def step_of_stamp(stamp_ns: int) -> int:
     """Return k of the stamp t_k; raise DdctError for a stamp that is off the 10 ms grid."""
     step, rest = divmod(stamp_ns - START_NS, PERIOD_NS)

@@ -108,3 +108,18 @@ def test_status_pairs_come_back_in_order():
     message = messages.status_message(STAMP, 'controller', [('b', '1'), ('a', '2')])
     assert messages.status_name_of(message) == 'controller'
     assert messages.status_pairs_of(message) == (('b', '1'), ('a', '2'))
+
+
+def test_status_is_filled_anew_with_more_or_fewer_pairs():
+    kept = messages.StatusMessage('controller')
+    first = kept.fill(STAMP, [('a', '1'), ('b', '2')])
+    for pairs in (
+        (('a', '3'), ('c', '4')),
+        (('a', '5'),),
+        (('a', '6'), ('b', '7'), ('d', '8')),
+        (),
+    ):
+        assert kept.fill(LATER, pairs) is first
+        assert messages.status_name_of(first) == 'controller'
+        assert messages.status_pairs_of(first) == pairs
+    assert messages.stamp_ns(first) == LATER

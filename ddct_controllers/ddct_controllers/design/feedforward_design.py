@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_discrete_are
 
 from ddct_controllers.design.state_space import series
 from ddct_plant.driveline_model import driveline_matrices
@@ -130,6 +129,9 @@ def _optimal_gains(problem: _Problem) -> tuple[np.ndarray, np.ndarray]:
     X = A_c' X S + A_c' P G + C_c' F, A_c = A - B K, C_c = C - D K. That has a solution although
     ramps do not decay, because A_c does.
     """
+    # Only here: the architectures without feedforward need not wait for its import.
+    from scipy.linalg import solve_discrete_are
+
     p = problem
     try:
         value = solve_discrete_are(p.a, p.b, p.c.T @ p.c, p.d.T @ p.d, s=p.c.T @ p.d)

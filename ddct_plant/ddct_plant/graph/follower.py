@@ -38,13 +38,15 @@ class FollowerNode(GraphNode):
         """Compute the reply to the inputs of one stamp; called once per stamp, in order."""
 
     def _callback(self, topic: str) -> Any:
+        offer, complete, repeat = self.join.offer, Verdict.COMPLETE, Verdict.REPEAT
+
         def receive(message: Any) -> None:
             stamp = stamp_ns(message)
-            verdict = self.join.offer(topic, stamp, message)
-            if verdict is Verdict.COMPLETE:
+            verdict = offer(topic, stamp, message)
+            if verdict is complete:
                 self._answer(stamp)
                 self.publish_reply()
-            elif verdict is Verdict.REPEAT:
+            elif verdict is repeat:
                 self.publish_reply()
 
         return self.guarded(receive)

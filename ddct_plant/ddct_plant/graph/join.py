@@ -54,7 +54,9 @@ class StampJoin:
                 return Verdict.REPEAT
             self.ignored += 1
             return Verdict.IGNORE
-        inputs = self._waiting.setdefault(step, {})
+        inputs = self._waiting.get(step)
+        if inputs is None:
+            inputs = self._waiting[step] = {}
         inputs[topic] = message
         if len(inputs) < len(self.topics):
             return Verdict.WAIT
@@ -75,5 +77,6 @@ class StampJoin:
             )
         self.skipped = 0 if self.last_step is None else step - expected
         self.last_step = step
-        for older in [waiting for waiting in self._waiting if waiting < step]:
-            self.ignored += len(self._waiting.pop(older))
+        if len(self._waiting) > 1:
+            for older in [waiting for waiting in self._waiting if waiting < step]:
+                self.ignored += len(self._waiting.pop(older))

@@ -16,12 +16,8 @@ NS_PER_S = 1_000_000_000
 
 def stamp_ns(message: Any) -> int:
     """Return the stamp in ns of a message with a header, of a Header, of a Clock or of a Time."""
-    if hasattr(message, 'header'):
-        time = message.header.stamp
-    elif hasattr(message, 'stamp'):
-        time = message.stamp
-    else:
-        time = getattr(message, 'clock', message)
+    header = getattr(message, 'header', message)
+    time = getattr(header, 'stamp', None) or getattr(message, 'clock', message)
     return time.sec * NS_PER_S + time.nanosec
 
 

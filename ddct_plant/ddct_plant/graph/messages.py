@@ -2,8 +2,8 @@
 Make the graph's messages, one function per kind, all SI; `message_values` reads them.
 
 Building a message costs 1 to 60 us, filling one far below 1 us, so a publisher may keep one
-message of its kind and hand it in as `reuse` (or keep a `TorquePointsMessage` or a
-`SlipReferenceMessage`); what comes back is then that same object.
+message of its kind and hand it in as `reuse` (or keep a `TorquePointsMessage`, a
+`SlipReferenceMessage` or a `StatusMessage`); what comes back is then that same object.
 """
 
 from array import array
@@ -37,6 +37,7 @@ from ddct_plant.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 __all__ = [
     'JOINTS',
     'SlipReferenceMessage',
+    'StatusMessage',
     'TorquePointsMessage',
     'accel_message',
     'ack_message',
@@ -185,12 +186,30 @@ def slip_reference_message(
     return SlipReferenceMessage(len(speeds) - 1).fill(stamp, speeds, rates)
 
 
+class StatusMessage:
+    """One DiagnosticArray with one status, to be filled at every tick."""
+
+    def __init__(self, name: str) -> None:
+        """Take who the status is about."""
+        self._status = DiagnosticStatus(name=name)
+        self._message = DiagnosticArray(status=[self._status])
+        self._values: list[KeyValue] = []
+
+    def fill(self, stamp: int, pairs: Sequence[tuple[str, str]]) -> DiagnosticArray:
+        """Return the (key, value) pairs, of which there may be more or fewer than last time."""
+        _set_time(self._message.header.stamp, stamp)
+        if len(self._values) != len(pairs):
+            self._values = [KeyValue() for _ in pairs]
+            self._status.values = self._values
+        for value, (key, text) in zip(self._values, pairs, strict=True):
+            value.key = key
+            value.value = text
+        return self._message
+
+
 def status_message(stamp: int, name: str, pairs: Sequence[tuple[str, str]]) -> DiagnosticArray:
-    """Return a DiagnosticArray with one status: who it is about and its (key, value) pairs."""
-    values = [KeyValue(key=key, value=value) for key, value in pairs]
-    message = DiagnosticArray(status=[DiagnosticStatus(name=name, values=values)])
-    _set_time(message.header.stamp, stamp)
-    return message
+    """Return a new DiagnosticArray with one status; see `StatusMessage.fill`."""
+    return StatusMessage(name).fill(stamp, pairs)
 
 
 def _set_time(time: Time | Duration, time_ns: int) -> None:

@@ -28,6 +28,8 @@ class GraphNode(Node):
         self.settings = declare_settings(self)
         self.done = Future()
         """Set when the node has nothing more to do, with the DdctError that ended it, or None."""
+        # The same as done.done(), which takes long enough to matter for every message.
+        self._over = False
 
     def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
         """Latch this node's settings, stamped t_0."""
@@ -39,7 +41,7 @@ class GraphNode(Node):
         """Wrap a callback so that a DdctError ends the node with its one-line reason."""
 
         def call(*arguments: Any) -> None:
-            if self.done.done():
+            if self._over:
                 return
             try:
                 callback(*arguments)
@@ -50,7 +52,8 @@ class GraphNode(Node):
 
     def finish(self, error: DdctError | None = None) -> None:
         """End the node, with the error that made it end or None when its work is done."""
-        if not self.done.done():
+        if not self._over:
+            self._over = True
             self.done.set_result(error)
 
     def close(self) -> None:

@@ -1,0 +1,28 @@
+"""What can be told of a recorded topic's messages while they are still serialised."""
+
+import importlib
+import struct
+
+from ddct_bringup.bag.topics import TopicSpec
+from ddct_plant.graph.message_values import NS_PER_S
+
+_STAMP = struct.Struct('<iI')
+_STAMP_AT = 4
+"""Every recorded type begins with its stamp, right behind the four bytes of the encapsulation."""
+
+
+def stamp_of_cdr(cdr: bytes) -> int:
+    """Return the stamp in ns of a serialised message."""
+    seconds, nanoseconds = _STAMP.unpack_from(cdr, _STAMP_AT)
+    return seconds * NS_PER_S + nanoseconds
+
+
+def set_stamp_of_cdr(cdr: bytearray, stamp_ns: int) -> None:
+    """Stamp a serialised message anew, in place."""
+    _STAMP.pack_into(cdr, _STAMP_AT, *divmod(stamp_ns, NS_PER_S))
+
+
+def message_type(topic: TopicSpec) -> type:
+    """Return the ROS class of the topic's messages."""
+    package, kind, name = topic.type.split('/')
+    return getattr(importlib.import_module(f'{package}.{kind}'), name)
