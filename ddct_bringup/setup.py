@@ -5,6 +5,19 @@ from glob import glob
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
+MPC_STUDIES = {
+    'clutch_torque_limit': ['clutch_torque_limit'],
+    'engine_authority': ['engine_authority'],
+    'mpc4_readings': ['mpc4_readings'],
+    'readings': ['readings'],
+    'state_of_art': ['state_of_art'],
+    'torque_level': ['torque_level'],
+    'torsion_weight': ['torsion_weight'],
+    'two_input_wear': ['two_input_wear'],
+    'wear': ['wear', 'wear_feedforward'],
+    'wear_estimate': ['wear_estimate'],
+}
+"""Functions by module, all below studies/."""
 
 setup(
     name=PACKAGE,
@@ -32,8 +45,9 @@ setup(
             'score = ddct_bringup.score:main',
         ],
         'ddct.mpc_studies': [
-            'clutch_torque_limit = ddct_bringup.studies.clutch_torque_limit:clutch_torque_limit',
-            'readings = ddct_bringup.studies.readings:readings',
+            f'{name} = ddct_bringup.studies.{module}:{name}'
+            for module, names in MPC_STUDIES.items()
+            for name in names
         ],
         'ddct.thesis_numbers': [
             'closed_loop = ddct_bringup.thesis.values:closed_loop_values',

@@ -30,16 +30,20 @@ def run_headless(
     """
     if isinstance(controller, str):
         controller = make_controller(controller, settings)
+    return run_loop(ClosedLoop(settings, controller), settings.scenario.steps, timing)
+
+
+def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> Trajectory:
+    """Simulate a loop that is at t_0 up to t_`steps`; as `run_headless` otherwise."""
     timing = RunTiming() if timing is None else timing
     started = time.perf_counter()
-    loop = ClosedLoop(settings, controller)
     rows = [loop.reply(0)]
     timing.update_times_us.append(loop.update_time_us)
-    for step in range(1, settings.scenario.steps + 1):
+    for step in range(1, steps + 1):
         loop.advance(rows[-1])
         rows.append(loop.reply(step))
         timing.update_times_us.append(loop.update_time_us)
-    timing.steps = settings.scenario.steps
+    timing.steps = steps
     timing.wall_time_s = time.perf_counter() - started
     columns = {
         name: np.array([row[name] for row in rows])

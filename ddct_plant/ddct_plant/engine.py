@@ -8,6 +8,9 @@ from ddct_plant.checks import require_number
 from ddct_plant.errors import ParameterError
 from ddct_plant.timebase import PERIOD_S, time_of_step
 
+MOST_AUTHORITY = 1e6
+"""Largest deviation in N m and largest rate in N m/s that an engine's authority may have."""
+
 
 @dataclass(frozen=True)
 class TorqueProfile:
@@ -52,7 +55,7 @@ class EngineAuthority:
 
     deviation_n_m: float = 1000.0
     """Largest deviation from the demand, either way."""
-    slew_n_m_s: float = 1e6
+    slew_n_m_s: float = MOST_AUTHORITY
     """Largest rate of the deviation."""
     lag_s: float = 0.0
     """Time constant of the first-order lag with which the deviation comes about; 0 is none."""
@@ -65,7 +68,10 @@ class EngineAuthority:
         """Check every value; raise ParameterError that names a bad one."""
         for name in ('deviation_n_m', 'slew_n_m_s', 'lag_s'):
             require_number(
-                f'engine_authority.{name}', getattr(self, name), at_least=0.0, at_most=1e6
+                f'engine_authority.{name}',
+                getattr(self, name),
+                at_least=0.0,
+                at_most=MOST_AUTHORITY,
             )
         for name in ('minimum_torque_n_m', 'maximum_torque_n_m'):
             require_number(
@@ -83,6 +89,43 @@ class EngineAuthority:
         return 1.0 - math.exp(-PERIOD_S / self.lag_s) if self.lag_s > 0.0 else 1.0
 
 
+class EngineResponse:
+    """What becomes of requests within an engine's authority: the state between two periods."""
+
+    def __init__(self, authority: EngineAuthority) -> None:
+        """Start on the demand."""
+        self._authority = authority
+        self._most_change = authority.slew_n_m_s * PERIOD_S
+        self.asked = 0.0
+        """Deviation from the demand in N m, limited, before the lag."""
+        self.deviation = 0.0
+        """The same after the lag."""
+
+    def deliver(self, demand: float, request: float) -> float:
+        """
+        Return C_m in N m over the coming period, and take the request in N m in.
+
+        The deviation is limited, then its rate; it passes the lag; then the torque is limited.
+        """
+        limits = self._authority
+        asked = _limited(request - demand, limits.deviation_n_m)
+        self.asked += _limited(asked - self.asked, self._most_change)
+        self.deviation += limits.lag_share * (self.asked - self.deviation)
+        torque = demand + self.deviation
+        return min(max(torque, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
+
+    def reachable(self, demand: float, periods: int) -> tuple[float, float]:
+        """
+        Return the lowest and the highest deviation in N m that may be asked for `periods` ahead.
+
+        Within them the torque keeps its limits, as far as the rate allows; 1 is the coming period.
+        """
+        limits, asked, change = self._authority, self.asked, periods * self._most_change
+        lowest = _limited(limits.minimum_torque_n_m - demand, limits.deviation_n_m)
+        highest = _limited(limits.maximum_torque_n_m - demand, limits.deviation_n_m)
+        return asked + _limited(lowest - asked, change), asked + _limited(highest - asked, change)
+
+
 class Engine:
     """
     An engine whose torque C_m is held over the 10 ms period that starts at its stamp.
@@ -94,9 +137,7 @@ class Engine:
     def __init__(self, profile: TorqueProfile, authority: EngineAuthority | None = None) -> None:
         """Start on the demand; without `authority` it follows any request at once."""
         self._profile = profile
-        self._authority = authority or EngineAuthority()
-        self._asked = 0.0
-        self._deviation = 0.0
+        self._response = EngineResponse(authority or EngineAuthority())
 
     def demand(self, step: int) -> float:
         """Return the driver's torque demand in N m at step `step`."""
@@ -115,17 +156,10 @@ class Engine:
         Return the torque C_m in N m delivered over the period of step `step`.
 
         It is the demand, or what comes about of `request` in N m; with requests it is called once
-        per step, in order. The deviation is limited, then its rate, then it passes the lag.
+        per step, in order.
         """
         demand = self.demand(step)
-        if request is None:
-            return demand
-        limits = self._authority
-        asked = _limited(request - demand, limits.deviation_n_m)
-        self._asked += _limited(asked - self._asked, limits.slew_n_m_s * PERIOD_S)
-        self._deviation += limits.lag_share * (self._asked - self._deviation)
-        torque = demand + self._deviation
-        return min(max(torque, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
+        return demand if request is None else self._response.deliver(demand, request)
 
 
 def _limited(value: float, limit: float) -> float:

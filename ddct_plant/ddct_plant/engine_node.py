@@ -39,6 +39,8 @@ class EngineNode(FollowerNode):
         scenario = self.settings.scenario
         self._engine = Engine(scenario.engine, scenario.engine_authority)
         self._last_request_step = 0
+        self._alone_step = -1
+        self._alone_torque = 0.0
         self._demand = self.create_publisher(WrenchStamped, 'engine/torque_demand', LOOP_QOS)
         self._torque = self.create_publisher(WrenchStamped, 'engine/torque', LOOP_QOS)
         self._demand_message = WrenchStamped()
@@ -60,6 +62,8 @@ class EngineNode(FollowerNode):
         if self._two_input:
             self._last_request_step = step
             request = read_torque(REQUEST, inputs[REQUEST])
+            if step <= self._alone_step:
+                return ()  # too late: this step was answered without it
             return (self._delivered(stamp_ns, self._engine.torque(step, request)),)
         return (
             self._delivered(stamp_ns, self._engine.torque(step)),
@@ -72,8 +76,14 @@ class EngineNode(FollowerNode):
         self._demand.publish(self._demand_at(step, stamp))
         silent_s = (step - self._last_request_step) * PERIOD_S
         if not self.settings.lockstep and silent_s > REQUEST_TIMEOUT_S:
-            torque = self._engine.torque(step, self._engine.demand(step))
-            self._torque.publish(self._delivered(stamp, torque)[1])
+            self._answer_alone(step, stamp)
+
+    def _answer_alone(self, step: int, stamp: int) -> None:
+        """Publish the torque without a request; a tick that comes again gets the same one."""
+        if step > self._alone_step:
+            self._alone_step = step
+            self._alone_torque = self._engine.torque(step, self._engine.demand(step))
+        self._torque.publish(self._delivered(stamp, self._alone_torque)[1])
 
     def _refuse_request(self, _message: WrenchStamped) -> None:
         raise DdctError(

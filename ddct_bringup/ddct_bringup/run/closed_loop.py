@@ -1,7 +1,7 @@
 """The closed loop without ROS: one step at a time, the same classes as the nodes."""
 
 import time
-from typing import Any
+from typing import Any, Protocol
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
@@ -13,6 +13,13 @@ from ddct_plant.initial import initial_state
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import RunSettings
 from ddct_reference.factory import make_reference
+
+
+class TorqueActuator(Protocol):
+    """What turns torque requests into torque."""
+
+    def update(self, request: float) -> list[float]:
+        """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and take the next request in."""
 
 
 class ClosedLoop:
@@ -27,7 +34,7 @@ class ClosedLoop:
         self._load = RoadLoad(scenario.load, scenario.vehicle)
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
-        self._actuator = Actuator(initial.torque_request)
+        self._actuator: TorqueActuator = Actuator(initial.torque_request)
         self._clutch = LinearClutch(settings.wear_gain)
         self.update_time_us = 0.0
         """Wall time that the controller took for the last reply."""

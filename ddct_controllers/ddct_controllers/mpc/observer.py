@@ -82,9 +82,7 @@ class Observer:
         """l, (n, 3)."""
         return self._gain
 
-    def first_estimate(
-        self, speeds: tuple[float, float, float], load_torque: float
-    ) -> np.ndarray:
+    def first_estimate(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """Return x_(k|k), (n,), at the first measurement; speeds in rad/s, C_load in N m."""
         twist = load_torque / self._halfshaft_stiffness
         return self._model.at_rest(speeds, twist, self._initial_request)

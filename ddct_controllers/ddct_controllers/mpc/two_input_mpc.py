@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_controllers.interface import Command, Measurement
+from ddct_controllers.interface import Command, Measurement, Status
 from ddct_controllers.mpc.engine_model import with_engine
 from ddct_controllers.mpc.observer import StateEstimator
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.transmission_model import SLIP_SPEED, TransmissionModel
-from ddct_plant.engine import EngineAuthority, EngineResponse
+from ddct_plant.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
 from ddct_plant.timebase import PERIOD_S
 
 ENGINE = 1
@@ -21,9 +21,9 @@ class TwoInputController(PredictiveController):
     """
     Decides the clutch torque request and the engine's deviation from the driver's demand.
 
-    The deviation's target is zero, its limits and its rate are the engine's, and an engine's lag is
-    part of the prediction; the observer is told what the engine delivers. The demand is taken as
-    constant over the horizon. Without preview the slip reference is continued along its tangent.
+    The deviation's target is zero, its limits and its rate are the engine's, and the engine's lag
+    is part of the prediction; the observer is told what the engine delivers. The demand is taken
+    as constant over the horizon. Without preview the slip reference goes on along its tangent.
     """
 
     def __init__(
@@ -34,24 +34,25 @@ class TwoInputController(PredictiveController):
         authority: EngineAuthority,
     ) -> None:
         """Take the model without an engine; the second input is limited by `authority` alone."""
-        # A limit that no deviation reaches makes the rows whose bounds each period sets.
+        # A limit that no engine has: it makes the rows whose bounds each period sets.
         engine = replace(
-            settings.inputs[ENGINE],
-            lowest=-EngineAuthority.MOST,
-            highest=EngineAuthority.MOST,
-            rate_n_m_s=authority.slew_n_m_s or EngineAuthority.MOST,
+            settings.inputs[ENGINE], lowest=-2.0 * MOST_AUTHORITY, highest=2.0 * MOST_AUTHORITY
         )
         self._authority = authority
         settings = replace(settings, inputs=(settings.inputs[0], engine))
         super().__init__(with_engine(model, authority.lag_share), observer, settings)
-        rows = self.program.lower == engine.lowest
-        self._engine_rows = np.flatnonzero(rows)
+        self._engine_rows = np.flatnonzero(self._program.lower == engine.lowest)
+
+    @property
+    def authority(self) -> EngineAuthority:
+        """What the engine is known to do of a request."""
+        return self._authority
 
     def reset(self) -> None:
         """Forget everything; the engine is on the demand."""
         super().reset()
         self._engine = EngineResponse(self._authority)
-        self._reachable = (0.0, 0.0)
+        self._reachable = np.zeros((2, self._settings.control_steps))
 
     def hold(self, measurement: Measurement) -> None:
         """Let the observer follow the plant while the engine goes back to the demand."""
@@ -65,12 +66,29 @@ class TwoInputController(PredictiveController):
 
     def _solve(
         self, state: np.ndarray, before: np.ndarray, jump: np.ndarray, measurement: Measurement
-    ) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
-        """Solve for the deviation, whose target is zero, with the engine's states."""
+    ) -> tuple[np.ndarray, Status]:
+        """Solve for the moves of the request and of the deviation."""
+        return self._solve_divided(state, before, jump, measurement, 1.0)
+
+    def _solve_divided(
+        self,
+        state: np.ndarray,
+        before: np.ndarray,
+        jump: np.ndarray,
+        measurement: Measurement,
+        gain: float,
+    ) -> tuple[np.ndarray, Status]:
+        """Solve with the engine's torques divided by `gain`, as the rest of `state` is."""
         demand = measurement.engine_torque
-        self._reachable = self._engine.reachable(demand)
-        state = np.concatenate((state, (demand, self._engine.deviation)))
-        return super()._solve(state, before, jump, replace(measurement, engine_torque=0.0))
+        periods = range(1, self._settings.control_steps + 1)
+        reachable = [self._engine.reachable(demand, period) for period in periods]
+        self._reachable = np.transpose(reachable) / gain
+        state = np.concatenate((state, (demand / gain, self._engine.deviation / gain)))
+        divisor = np.array([1.0, gain])
+        # The target of the deviation is zero.
+        measurement = replace(measurement, engine_torque=0.0)
+        moves, status = super()._solve(state, before / divisor, jump, measurement)
+        return moves * divisor, status
 
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         lower, upper = self._program.lower.copy(), self._program.upper.copy()
@@ -91,14 +109,12 @@ class TwoInputController(PredictiveController):
 
     def _next_planned(self, before: np.ndarray, jump: np.ndarray) -> np.ndarray:
         moves = super()._next_planned(before, jump)
-        lowest, highest = self._reachable
+        lowest, highest = self._reachable[:, 0]
         asked = before[ENGINE] + moves[ENGINE]
         moves[ENGINE] = min(max(asked, lowest), highest) - before[ENGINE]
         return moves
 
-    def _command(
-        self, levels: np.ndarray, status: tuple[tuple[str, str], ...], measurement: Measurement
-    ) -> Command:
+    def _command(self, levels: np.ndarray, status: Status, measurement: Measurement) -> Command:
         demand = measurement.engine_torque
         request = demand + float(levels[ENGINE])
         delivered = self._engine.deliver(demand, request)

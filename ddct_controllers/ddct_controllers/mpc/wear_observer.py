@@ -17,7 +17,7 @@ from ddct_controllers.mpc.transmission_model import (
 LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
 """Bounds of the estimate, beyond the 0.7 to 1.3 that a clutch is taken to reach."""
 LEAST_TORQUE_N_M = 5.0
-"""Of the actuator, below which the estimate rests: as little as C_f may be wrong anyway."""
+"""Below which the estimate rests; C_f may be wrong by as much anyway."""
 _DRIVELINE = 4
 _SIZE = _DRIVELINE + 2
 _GAIN, _LOAD = _DRIVELINE, _DRIVELINE + 1

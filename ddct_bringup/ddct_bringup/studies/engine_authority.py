@@ -1,0 +1,50 @@
+"""What MPC4 keeps of its advantage as the engine's authority shrinks."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.studies.scored_run import metrics_of, text
+from ddct_bringup.studies.two_input_figures import HEADERS, cells
+from ddct_bringup.thesis.runs import THESIS_SCENARIO
+from ddct_controllers.design.study import Study
+from ddct_plant.engine import EngineAuthority
+from ddct_plant.run_settings import RunSettings
+
+CONTROLLERS = ('mpc4', 'mpc4_wear')
+DEVIATIONS_N_M = (40.0, 30.0, 20.0, 10.0, 5.0, 0.0)
+SLEWS_N_M_S = (2000.0, 1000.0, 500.0, 200.0, 100.0)
+LAGS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+
+
+def engine_authority() -> Study:
+    """Return the figures of the two-input controllers between free authority and none."""
+    cases = [
+        ('free', EngineAuthority()),
+        *((f'{limit:g} N m', EngineAuthority(deviation_n_m=limit)) for limit in DEVIATIONS_N_M),
+        *((f'{rate:g} N m/s', EngineAuthority(slew_n_m_s=rate)) for rate in SLEWS_N_M_S),
+        *((f'lag {1000.0 * lag:g} ms', EngineAuthority(lag_s=lag)) for lag in LAGS_S),
+    ]
+    rows: list[Sequence[str]] = [
+        (controller, case, *_cells(controller, authority))
+        for controller in CONTROLLERS
+        for case, authority in cases
+    ]
+    rows.append(('mpc3', 'none', *_cells('mpc3', EngineAuthority())))
+    return Study(
+        'Two inputs in the thesis scenario, by what the engine may do about the demand',
+        ('controller', 'authority', *HEADERS, 'peak jerk m/s^3', 'friction kJ'),
+        [tuple(row) for row in rows],
+    )
+
+
+def _cells(controller: str, authority: EngineAuthority) -> tuple[str, ...]:
+    settings = RunSettings(replace(THESIS_SCENARIO, engine_authority=authority))
+    trajectory = run_headless(settings, controller)
+    metrics = metrics_of(settings, trajectory)
+    energy = metrics.friction_energy_j
+    return (
+        *cells(settings, trajectory),
+        text(metrics.peak_jerk_m_s3, '.1f'),
+        text(None if energy is None else energy / 1000.0, '.2f'),
+    )

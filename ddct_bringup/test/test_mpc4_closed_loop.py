@@ -1,0 +1,170 @@
+"""What docs/mpc4.md claims of clutch and engine together holds in the thesis's scenario."""
+
+import numpy as np
+import pytest
+
+from ddct_bringup.headless import run_headless, run_loop
+from ddct_bringup.run.closed_loop import ClosedLoop
+from ddct_bringup.studies.actuator_left_out import LoopWithoutActuator, model_without_actuator
+from ddct_bringup.studies.scored_run import metrics_of
+from ddct_bringup.studies.torque_level import growth
+from ddct_bringup.studies.two_input_figures import close_time_s, deviation_range
+from ddct_bringup.thesis.runs import thesis_run
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.units import rpm_from_rad_s
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+START = SETTINGS.scenario.control_start_step
+BOTH = ('mpc4', 'mpc4_wear')
+
+
+def run(controller, *changes, wear_gain=1.0, architecture='detailed'):
+    scenario = load_scenario('thesis', changes)
+    return run_headless(RunSettings(scenario, architecture, wear_gain=wear_gain), controller)
+
+
+def metrics(trajectory):
+    return metrics_of(SETTINGS, trajectory)
+
+
+class StaticControllerAlone(Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return Command(0.0)
+
+
+@pytest.mark.parametrize('name', BOTH)
+def test_both_inputs_take_off_most_of_the_oscillation_that_mpc3_leaves(name):
+    two, one = metrics(run(name)), metrics(thesis_run('mpc3', 'detailed', 1.0))
+    assert two.torsion_speed_std_rpm < one.torsion_speed_std_rpm / 5.0
+    assert two.acceleration_std_m_s2 < one.acceleration_std_m_s2 / 5.0
+    assert close_time_s(run(name), START) < 0.47
+
+
+def test_mpc4_leaves_hardly_more_oscillation_than_was_there_before_it_began():
+    left = metrics(run_headless(SETTINGS, StaticControllerAlone())).torsion_speed_std_rpm
+    assert left < metrics(run('mpc4')).torsion_speed_std_rpm < 1.3 * left
+
+
+def test_mpc4_ends_close_to_zero_without_passing_it_and_on_the_demand():
+    trajectory = run('mpc4')
+    assert metrics(trajectory).engagement_time_s is None
+    assert 0.0 < rpm_from_rad_s(trajectory.slip_speed[-1]) < 2.0
+    assert abs(trajectory.engine_torque[-1] - trajectory.torque_demand[-1]) < 1.0
+
+
+def test_the_coming_corner_of_the_reference_costs_more_than_it_gives():
+    previewed = metrics(run('mpc4', 'controllers.mpc4.preview=true'))
+    assert previewed.torsion_speed_std_rpm > 1.8 * metrics(run('mpc4')).torsion_speed_std_rpm
+
+
+def test_the_slip_error_decays_as_slowly_as_the_weights_say():
+    """Of a e with dw_d/dt = a: least square of (e + a t, a) over the horizon, Q = (1, 0.05)."""
+    times = 0.01 * np.arange(1, 8)
+    rate = np.sum(times) / (np.sum(times**2) + 7 * 0.05)
+    slip = run('mpc4').slip_speed
+    late = np.log(slip[120] / slip[220])
+    assert late == pytest.approx(rate, rel=0.5)
+
+
+@pytest.mark.parametrize(
+    ('change', 'least'),
+    [
+        ('engine_authority.deviation_n_m=10.0', 4.0),
+        ('engine_authority.slew_n_m_s=500.0', 3.0),
+        ('engine_authority.lag_s=0.2', 2.0),
+    ],
+)
+def test_the_advantage_goes_as_the_authority_shrinks(change, least):
+    limited, free = metrics(run('mpc4', change)), metrics(run('mpc4'))
+    assert limited.torsion_speed_std_rpm > least * free.torsion_speed_std_rpm
+
+
+@pytest.mark.parametrize('name', BOTH)
+@pytest.mark.parametrize(
+    'changes',
+    [
+        ('engine_authority.deviation_n_m=20.0',),
+        ('engine_authority.slew_n_m_s=500.0', 'engine_authority.lag_s=0.05'),
+        ('engine_authority.minimum_torque_n_m=290.0', 'engine_authority.maximum_torque_n_m=320.0'),
+    ],
+)
+def test_the_engine_delivers_what_is_asked_as_the_controller_expects(name, changes):
+    trajectory = run(name, *changes)
+    for status, torque, demand in zip(
+        trajectory.status[START:],
+        trajectory.engine_torque[START:],
+        trajectory.torque_demand[START:],
+        strict=True,
+    ):
+        assert dict(status)['engine_torque_deviation_n_m'] == repr(float(torque - demand))
+        assert dict(status)['qp_status'] == 'solved'
+
+
+def test_mpc4_does_not_survive_a_worn_clutch_and_its_level_is_why():
+    assert abs(rpm_from_rad_s(run('mpc4', wear_gain=0.95).slip_speed[-1])) > 100.0
+    mpc4 = make_controller('mpc4', SETTINGS)
+    assert growth(mpc4.program, mpc4.observer, 1.0) < 1.0
+    assert growth(mpc4.program, mpc4.observer, 0.95) > 1.05
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 0.85, 1.0, 1.15, 1.3])
+def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
+    trajectory = run('mpc4_wear', wear_gain=wear_gain)
+    scored = metrics(trajectory)
+    assert scored.torsion_speed_std_rpm < 0.7
+    assert scored.slip_rmse_rpm < 5.0
+    assert abs(scored.slip_final_rpm) < 1.0
+    assert abs(trajectory.engine_torque[-1] - trajectory.torque_demand[-1]) < 5.0
+
+
+@pytest.mark.parametrize('name', BOTH)
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+def test_they_run_in_every_architecture_and_reset_completely(name, architecture):
+    scenario = load_scenario('thesis', ['duration_s=1.0'])
+    settings = RunSettings(scenario, architecture, wear_gain=1.1)
+    controller = make_controller(name, settings)
+    first = run_headless(settings, controller)
+    assert np.all(np.isfinite(first.slip_speed))
+    controller.reset()
+    assert run_headless(settings, controller).sha256() == first.sha256()
+
+
+def test_the_loop_without_an_actuator_transmits_the_request_at_once():
+    controller = make_controller('pi', SETTINGS)
+    trajectory = run_loop(LoopWithoutActuator(SETTINGS, controller), 80)
+    np.testing.assert_array_equal(
+        trajectory.clutch_torque, np.repeat(trajectory.torque_request[:, None], 11, axis=1)
+    )
+    usual = run_loop(ClosedLoop(SETTINGS, make_controller('pi', SETTINGS)), 80)
+    assert usual.sha256() == run('pi', 'duration_s=0.8').sha256()
+
+
+def test_the_model_without_an_actuator_is_that_loop():
+    trajectory = run_loop(LoopWithoutActuator(SETTINGS, make_controller('pi', SETTINGS)), 80)
+    model = model_without_actuator(SETTINGS.scenario.driveline)
+    position, speed = trajectory.joint_position[0], trajectory.joint_speed[0]
+    state = model.at_rest(tuple(speed[:3]), position[3], 0.0)
+    for step in range(80):
+        inputs = (
+            trajectory.torque_request[step],
+            trajectory.engine_torque[step],
+            trajectory.load_torque[step],
+        )
+        state = model.a @ state + model.b @ inputs
+        slip = model.c[0] @ state
+        assert slip == pytest.approx(trajectory.slip_speed[step + 1], abs=0.01)
+
+
+def test_the_range_of_the_deviation_and_the_time_to_come_close():
+    trajectory = run('mpc4')
+    lowest, highest = (int(text) for text in deviation_range(trajectory).split(' to '))
+    assert -40 < lowest < -30
+    assert 0 <= highest < 5
+    assert close_time_s(run_headless(SETTINGS, StaticControllerAlone()), START) is None
+    assert deviation_range(thesis_run('pi', 'detailed', 1.0)) == '0'

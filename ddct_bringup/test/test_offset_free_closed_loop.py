@@ -1,0 +1,144 @@
+"""Offset-free and wear-compensating predictive control in the frozen scenario."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_bringup.headless import run_headless
+from ddct_bringup.studies.disturbed_run import NoisySpeeds, slip_after_load_step
+from ddct_bringup.studies.scored_run import scored_run
+from ddct_bringup.studies.torsion_weight import torsion_weight
+from ddct_bringup.studies.wear import LOAD_STEP_N_M, WEAR_GAINS
+from ddct_bringup.studies.wear_estimate import wear_estimate
+from ddct_controllers.mpc.observer import NoiseLevels
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.units import rpm_from_rad_s
+
+SCENARIO = load_scenario('thesis')
+LONG = replace(SCENARIO, duration_s=5.0)
+OWN = ('mpc_offset_free', 'mpc_torsion', 'mpc_wear')
+
+
+def settings(wear_gain=1.0, scenario=SCENARIO, architecture='detailed', **options):
+    controllers = {**scenario.controllers, **options}
+    return RunSettings(
+        replace(scenario, controllers=controllers), architecture, wear_gain=wear_gain
+    )
+
+
+@pytest.mark.parametrize('wear_gain', WEAR_GAINS)
+@pytest.mark.parametrize('name', OWN)
+def test_the_slip_ends_within_1_rpm_of_zero(name, wear_gain):
+    assert abs(scored_run(settings(wear_gain), name).slip_final_rpm) <= 1.0
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+@pytest.mark.parametrize('name', OWN)
+def test_it_stays_there(name, wear_gain):
+    slip = run_headless(settings(wear_gain, LONG), name).slip_speed
+    assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 0.15
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+@pytest.mark.parametrize('name', OWN)
+def test_a_load_step_that_is_not_known_leaves_no_slip(name, wear_gain):
+    run = settings(wear_gain)
+    slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
+    assert abs(rpm_from_rad_s(slip[-1])) <= 1.0
+
+
+def test_mpc3_keeps_an_error_of_each():
+    assert abs(scored_run(settings(0.85), 'mpc3').slip_final_rpm) > 100.0
+    run = settings()
+    slip = slip_after_load_step(run, make_controller('mpc3', run), LOAD_STEP_N_M, 150)
+    assert abs(rpm_from_rad_s(slip[-1])) > 50.0
+
+
+def test_with_a_new_clutch_they_engage_as_fast_as_mpc3():
+    fastest = scored_run(settings(), 'mpc3').engagement_time_s
+    for name in ('mpc_offset_free', 'mpc_wear'):
+        assert scored_run(settings(), name).engagement_time_s <= fastest + 1e-4
+
+
+@pytest.mark.parametrize('wear_gain', WEAR_GAINS)
+def test_weighting_w_sr_lowers_it_at_every_wear(wear_gain):
+    damped = scored_run(settings(wear_gain), 'mpc_torsion').torsion_speed_std_rpm
+    free = scored_run(settings(wear_gain), 'mpc_offset_free').torsion_speed_std_rpm
+    assert damped < 0.9 * free
+
+
+def test_w_sr_falls_and_the_slip_error_grows_with_the_weight():
+    table = torsion_weight()
+    torsion, slip_error = (
+        np.array([float(row[table.headers.index(name)]) for row in table.rows])
+        for name in ('std w_sr rpm', 'slip RMSE rpm')
+    )
+    assert np.all(np.diff(torsion) < 0.0)
+    assert np.all(np.diff(slip_error) > 0.0)
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_the_wear_is_known_when_control_starts(wear_gain):
+    trajectory = run_headless(settings(wear_gain), 'mpc_wear')
+    status = dict(trajectory.status[SCENARIO.control_start_step])
+    assert float(status['wear_gain_estimate']) == pytest.approx(wear_gain, abs=1e-3)
+
+
+def test_it_stays_known_with_noise_and_a_load_step():
+    table = wear_estimate()
+    figures = np.array([[float(cell) for cell in row] for row in table.rows])
+    known_from_s, _, largest_error, slip_final_rpm = figures[:, 2:].T
+    assert set(figures[:, 1]) == {0.0, NoiseLevels().speed_rad_s}
+    assert np.all(known_from_s < 0.2)
+    assert np.all(largest_error < 0.01)
+    assert np.all(np.abs(slip_final_rpm) <= 1.0)
+
+
+def test_with_feedback_from_the_start_wear_makes_no_difference_to_mpc_wear():
+    new, *worn = (
+        run_headless(settings(gain, architecture='feedforward'), 'mpc_wear').slip_speed[60:]
+        for gain in (1.0, 0.7, 1.3)
+    )
+    for slip in worn:
+        assert rpm_from_rad_s(np.abs(slip - new).max()) < 2.0
+
+
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+@pytest.mark.parametrize('name', OWN)
+def test_they_work_in_every_architecture(name, wear_gain, architecture):
+    run = settings(wear_gain, architecture=architecture)
+    trajectory = run_headless(run, name)
+    assert dict(trajectory.status[-1])['fallbacks'] == '0'
+    assert abs(rpm_from_rad_s(trajectory.slip_speed[-1])) <= 1.0
+
+
+@pytest.mark.parametrize('wear_gain', [0.4, 2.5])
+def test_mpc_offset_free_is_stable_far_beyond_that(wear_gain):
+    slip = run_headless(settings(wear_gain, LONG, 'feedforward'), 'mpc_offset_free').slip_speed
+    assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 1.0
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_limits_are_those_of_the_request_whatever_the_wear(wear_gain):
+    limits = {'highest_torque_n_m': 400.0, 'torque_rate_n_m_s': 600.0}
+    trajectory = run_headless(settings(wear_gain, mpc_wear=limits), 'mpc_wear')
+    controlled = trajectory.torque_request[SCENARIO.control_start_step :]
+    changes = np.abs(np.diff(controlled))
+    assert changes.max() == pytest.approx(6.0, abs=1e-6)
+    assert controlled.max() <= 400.0 + 1e-6
+    assert dict(trajectory.status[-1])['fallbacks'] == '0'
+    if wear_gain < 1.0:
+        assert controlled.max() == pytest.approx(400.0, abs=1e-6)
+
+
+@pytest.mark.parametrize('name', OWN)
+def test_a_controller_that_has_run_repeats_its_run_to_the_last_bit(name):
+    run = settings(0.85)
+    controller = NoisySpeeds(make_controller(name, run), 0.05, seed=1)
+    first = run_headless(run, controller).sha256()
+    controller.reset()
+    assert run_headless(run, controller).sha256() == first

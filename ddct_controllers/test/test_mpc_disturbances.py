@@ -1,0 +1,148 @@
+"""Disturbance model and observer of the offset-free predictive controllers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_controllers.interface import ControllerContext
+from ddct_controllers.mpc.disturbances import (
+    offset_free_model,
+    offset_free_noise,
+    require_detectable,
+)
+from ddct_controllers.mpc.observer import NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.offset_free_mpc import make_offset_free_mpc, make_torsion_mpc
+from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    SLIP_SPEED,
+    STATES,
+    TORSION_SPEED,
+    transmission_model,
+    with_disturbances,
+)
+from ddct_plant.errors import ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+DRIVELINE = SETTINGS.scenario.driveline
+PLANT = transmission_model(DRIVELINE)
+COLUMNS = {
+    'engine': PLANT.b[:, ENGINE_TORQUE],
+    'clutch': PLANT.clutch,
+    'load': PLANT.b[:, LOAD_TORQUE],
+}
+
+
+def disturbed(*names):
+    return with_disturbances(PLANT, np.column_stack([COLUMNS[name] for name in names]))
+
+
+@pytest.mark.parametrize(
+    'names', [('clutch', 'load'), ('engine', 'load'), ('engine', 'clutch'), ('clutch',)]
+)
+def test_up_to_two_torques_are_determined_by_the_speeds(names):
+    require_detectable(disturbed(*names))
+
+
+@pytest.mark.parametrize('names', [('engine', 'clutch', 'load'), ('load', 'load')])
+def test_more_are_not(names):
+    with pytest.raises(ParameterError, match='do not determine'):
+        require_detectable(disturbed(*names))
+
+
+def test_its_disturbances_are_torques_at_the_clutch_and_at_the_wheel():
+    np.testing.assert_array_equal(
+        offset_free_model(DRIVELINE).a[:STATES, STATES:],
+        np.column_stack([COLUMNS['clutch'], COLUMNS['load']]),
+    )
+
+
+def estimate(errors_n_m, drift=(), model=PLANT, periods=400):
+    """Run the plant with constant torque errors; return the last innovation and estimate."""
+    noise = NoiseLevels(drift=drift)
+    observer = Observer(model, noise, DRIVELINE.halfshaft_stiffness, initial_request=0.0)
+    state = PLANT.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), 0.01, 0.0)
+    predicted = None
+    for _ in range(periods):
+        corrected = observer.correct(tuple(state[:3]), load_torque=60.0)
+        innovation = 0.0 if predicted is None else np.abs(state[:3] - predicted[:3]).max()
+        inputs = np.array([100.0, 120.0, 60.0])
+        observer.predict(tuple(inputs))
+        predicted = model.a @ corrected + model.b @ inputs
+        state = PLANT.a @ state + PLANT.b @ inputs
+        for name, error in errors_n_m.items():
+            state = state + error * COLUMNS[name]
+    return innovation, corrected
+
+
+OFFSET_FREE = {'drift': offset_free_noise().drift, 'model': offset_free_model(DRIVELINE)}
+
+
+def test_observer_finds_the_errors_of_clutch_and_load():
+    innovation, corrected = estimate({'clutch': -30.0, 'load': 200.0}, **OFFSET_FREE)
+    assert corrected[STATES:] == pytest.approx([-30.0, 200.0], rel=1e-3)
+    assert innovation < 1e-4
+
+
+def test_an_error_of_the_engine_is_explained_by_the_pair_as_well():
+    innovation, corrected = estimate({'engine': 20.0}, **OFFSET_FREE)
+    assert innovation < 1e-4
+    assert corrected[STATES:] == pytest.approx([-20.0, -20.0 * DRIVELINE.total_ratio], rel=1e-2)
+
+
+def test_without_disturbances_the_observer_stays_wrong():
+    innovation, _ = estimate({'clutch': -30.0})
+    assert innovation > 0.1
+
+
+def test_every_disturbance_needs_a_drift():
+    with pytest.raises(ParameterError, match='1 drifts given for 2 disturbances'):
+        kalman_gain(offset_free_model(DRIVELINE), NoiseLevels(drift=(1.0,)))
+
+
+def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
+    slip, torsion = make_torsion_mpc(ControllerContext(SETTINGS, {})).settings.outputs
+    assert (slip.output, torsion.output) == (SLIP_SPEED, TORSION_SPEED)
+    assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.total_ratio)
+
+
+def test_options_change_what_they_say():
+    options = {'torsion_weight': 0.0, 'preview': False, 'load_drift_n_m': 1.0}
+    controller = make_torsion_mpc(ControllerContext(SETTINGS, options))
+    assert controller.settings.outputs[1].weight == 0.0
+    assert controller.preview_steps == 0
+    default = make_torsion_mpc(ControllerContext(SETTINGS, {}))
+    assert not np.allclose(controller.observer.gain, default.observer.gain)
+
+
+@pytest.mark.parametrize('make', [make_offset_free_mpc, make_torsion_mpc])
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        ({'clutch_drift_n_m': 0.0}, 'clutch_drift_n_m is 0: it must be above 0'),
+        ({'load_drift_n_m': float('nan')}, 'load_drift_n_m is nan'),
+        ({'clutch_drift_n_m': 'fast'}, 'give a number'),
+        ({'drift': 1.0}, 'drift is not a key of'),
+        ({'prediction_steps': 2}, 'control_steps is 4, longer than'),
+    ],
+)
+def test_bad_options_are_named(make, options, complaint):
+    with pytest.raises(ParameterError, match=complaint):
+        make(ControllerContext(SETTINGS, options))
+
+
+def test_a_negative_torsion_weight_is_refused():
+    with pytest.raises(ParameterError, match='mpc_torsion.torsion_weight is -1'):
+        make_torsion_mpc(ControllerContext(SETTINGS, {'torsion_weight': -1.0}))
+
+
+def test_a_torsion_weight_is_no_key_of_the_other_controller():
+    with pytest.raises(ParameterError, match='torsion_weight is not a key of mpc_offset_free'):
+        make_offset_free_mpc(ControllerContext(SETTINGS, {'torsion_weight': 1.0}))
+
+
+def test_a_stiffer_half_shaft_is_still_detectable():
+    offset_free_model(replace(DRIVELINE, halfshaft_stiffness=1e5))

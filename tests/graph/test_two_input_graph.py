@@ -1,0 +1,204 @@
+"""A controller of clutch and engine: one run in every layout, and clear words if miswired."""
+
+import signal
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import WrenchStamped
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.processes import START_S, Programs
+from support.runs import bag_bytes, expected, plan, record
+
+from ddct_bringup.run.plan import LAYOUTS
+from ddct_plant.engine_node import REQUEST_TIMEOUT_S
+from ddct_plant.graph.message_values import stamp_ns, torque_of
+from ddct_plant.graph.messages import joint_states_message, torque_message
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.timebase import PERIOD_S, stamp_of_step, step_of_stamp
+
+SLEW_N_M_S = 500.0
+LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
+TIMEOUT_STEPS = round(REQUEST_TIMEOUT_S / PERIOD_S)
+SILENT_AT_STEP = 112
+"""When a corner of the reference has just made the controller move the engine."""
+
+
+@pytest.mark.parametrize(
+    ('controller', 'changes'),
+    [
+        ('mpc4', ()),
+        ('mpc4_wear', ('engine_authority.slew_n_m_s=800.0', 'engine_authority.lag_s=0.03')),
+    ],
+    ids=['free', 'little authority'],
+)
+def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
+    tmp_path: Path, controller: str, changes: tuple[str, ...]
+) -> None:
+    bags = []
+    for layout in LAYOUTS:
+        run = plan(controller, layout, changes=changes)
+        folder = tmp_path / layout
+        recording = record(run, folder)
+        trajectory = recording.trajectory
+        assert trajectory.sha256() == expected(run).sha256(), layout
+        assert trajectory.engine_torque_request is not None
+        assert np.ptp(trajectory.engine_torque - trajectory.torque_demand) > 10.0
+        bags.append(bag_bytes(folder))
+    assert all(bag == bags[0] for bag in bags)
+
+
+def test_an_engine_that_does_not_expect_requests_says_so(graph_of: GraphOf) -> None:
+    graph = graph_of(plan('mpc4'))
+    graph.add('engine', {'two_input': False})
+    graph.add_all(without=['recorder'])
+    node, complaint = graph.first_failure()
+    assert node == 'engine'
+    for words in ('engine/torque_request arrived', 'follows the demand alone', 'two_input:=true'):
+        assert words in complaint
+
+
+@pytest.mark.parametrize(('name', 'other'), [('engine', 'true'), ('recorder', 'false')])
+def test_nodes_that_differ_about_the_second_input_are_named(
+    graph_of: GraphOf, name: str, other: str
+) -> None:
+    graph = graph_of(plan('ls8'))
+    graph.add(name, {'two_input': True})
+    graph.add_all()
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert f'runs with two_input {other} and the recorder with' in complaint
+    assert 'start engine and recorder with the two_input of the controller' in complaint
+
+
+class _Listener(Node):
+    """Keeps the engine's torques by topic and step."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__('listener', **options)
+        self.demands: dict[int, float] = {}
+        self.torques: dict[int, float] = {}
+        for topic, torques in (('torque_demand', self.demands), ('torque', self.torques)):
+            keep = partial(self._keep, torques)
+            self.create_subscription(WrenchStamped, f'engine/{topic}', keep, RECORDER_QOS)
+
+    def has_come_to(self, step: int) -> bool:
+        """Say whether the engine has answered this step or one after it."""
+        return max(self.torques, default=-1) >= step
+
+    @staticmethod
+    def _keep(torques: dict[int, float], message: WrenchStamped) -> None:
+        torques[step_of_stamp(stamp_ns(message))] = torque_of(message)
+
+
+def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop(
+    graph_of: GraphOf, programs: Programs
+) -> None:
+    run = plan('mpc4', mode='realtime', duration_s=1.8, changes=(LITTLE_SLEW,))
+    for _ in range(3):
+        with graph_of(run) as graph:
+            demands, torques = _run_until_silent(graph, programs)
+        gaps = [
+            (last, first)
+            for last, first in pairwise(sorted(torques))
+            if first - last > TIMEOUT_STEPS and last >= SILENT_AT_STEP
+        ]
+        # A busy machine makes gaps of its own; the controller's end makes the last one.
+        if gaps and abs(torques[gaps[-1][0]] - demands[gaps[-1][0]]) > 10.0:
+            break
+    else:
+        raise AssertionError('no requests that moved the engine, or a machine too busy')
+    last, first = gaps[-1]
+    alone = [step for step in sorted(torques) if step >= first]
+    before = torques[last] - demands[last]
+    deviations = np.array([torques[step] - demands[step] for step in alone])
+    most_change = SLEW_N_M_S * PERIOD_S
+    assert np.abs(np.diff([before, *deviations])).max() <= most_change + 1e-9
+    back = int(np.flatnonzero(deviations == 0.0)[0])
+    assert back <= np.ceil(abs(before) / most_change)
+    assert np.all(deviations[back:] == 0.0)
+
+
+class _Driver(Node):
+    """Stands in for driveline and controller, and keeps what the engine answers, in order."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__('driver', **options)
+        self.answers: list[tuple[int, float]] = []
+        self._joints = self.create_publisher(JointState, 'driveline/joint_states', LOOP_QOS)
+        self._request = self.create_publisher(WrenchStamped, 'engine/torque_request', LOOP_QOS)
+        self.create_subscription(WrenchStamped, 'engine/torque', self._on_torque, LOOP_QOS)
+
+    def tick(self, step: int) -> None:
+        """Publish the tick of a step."""
+        zero = [0.0] * 4
+        self._joints.publish(joint_states_message(stamp_of_step(step), zero, zero, zero))
+
+    def ask(self, step: int, torque: float) -> None:
+        """Publish the request of a step."""
+        self._request.publish(torque_message(stamp_of_step(step), torque))
+
+    def connected(self) -> bool:
+        """Say whether the engine is there."""
+        publishers = (self._joints, self._request)
+        heard = all(each.get_subscription_count() for each in publishers)
+        return heard and self.count_publishers('engine/torque') > 0
+
+    def _on_torque(self, message: WrenchStamped) -> None:
+        self.answers.append((step_of_stamp(stamp_ns(message)), torque_of(message)))
+
+
+def test_in_real_time_a_step_is_answered_alone_once_and_a_late_request_changes_nothing(
+    graph_of: GraphOf,
+) -> None:
+    demand = ('engine.time_s=[0.0]', 'engine.torque_n_m=[308.0]')
+    graph = graph_of(plan('mpc4', mode='realtime', changes=(LITTLE_SLEW, *demand)))
+    graph.add('engine')
+    driver = _Driver(context=graph.context)
+    graph.add_other(driver)
+    graph.spin_until(driver.connected, 'the engine', START_S)
+
+    def answered(count: int) -> bool:
+        return len(driver.answers) == count
+
+    driver.tick(0)
+    driver.ask(0, 320.0)
+    graph.spin_until(partial(answered, 1), 'the answer to a request')
+    first, second = TIMEOUT_STEPS + 1, TIMEOUT_STEPS + 2
+    for step in range(1, second + 1):
+        driver.tick(step)
+    graph.spin_until(partial(answered, 3), 'two answers without a request')
+    driver.tick(second)
+    graph.spin_until(partial(answered, 4), 'the answer to a tick that comes again')
+    for step in (first, second, second + 1):
+        driver.ask(step, 400.0)
+    driver.tick(second + 1)
+    graph.spin_until(partial(answered, 5), 'the answer to a request in time')
+    assert driver.answers == [
+        (0, 313.0),
+        (first, 308.0),
+        (second, 308.0),
+        (second, 308.0),
+        (second + 1, 313.0),
+    ]
+
+
+def _run_until_silent(
+    graph: InProcessGraph, programs: Programs
+) -> tuple[dict[int, float], dict[int, float]]:
+    """Run, kill the controller on the way, and return demands and torques by step."""
+    shared = graph.parameters['*'] | graph.parameters['controller']
+    controller = programs.start_node('ddct_controllers.controller_node', shared)
+    listener = _Listener(context=graph.context)
+    graph.add_other(listener)
+    graph.add_all(without=['controller'])
+    come = partial(listener.has_come_to, SILENT_AT_STEP)
+    graph.spin_until(come, f'step {SILENT_AT_STEP}', START_S)
+    controller.send(signal.SIGKILL)
+    graph.run()
+    return listener.demands, listener.torques

@@ -1,0 +1,53 @@
+"""The commands and links of the documentation."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md')))
+_FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
+_INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
+_LINK = re.compile(r'\[[^\]]*\]\(([^)#\s]+)[^)]*\)')
+_COMMAND = re.compile(r'^(ros2|make|\.|colcon|sudo|rosdep|python3?|install/|cc|git|pip) ?\S')
+
+
+@dataclass(frozen=True)
+class Block:
+    """Text of one code block."""
+
+    page: str
+    """Relative to the root of the repository."""
+    language: str
+    text: str
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The commands, continued lines joined."""
+        joined = self.text.replace('\\\n', ' ')
+        return tuple(' '.join(line.split()) for line in joined.splitlines() if line.strip())
+
+    @property
+    def is_shell(self) -> bool:
+        """Whether every line is a command."""
+        return bool(self.lines) and all(_COMMAND.match(line) for line in self.lines)
+
+
+def blocks() -> Iterator[Block]:
+    """Yield the code blocks of every page, fenced and indented."""
+    for page in PAGES:
+        text = page.read_text(encoding='utf-8')
+        name = str(page.relative_to(ROOT))
+        for match in _FENCE.finditer(text):
+            yield Block(name, match[2], match[3])
+        for match in _INDENTED.finditer(_FENCE.sub('\n', text)):
+            dedented = re.sub('^    ', '', match[0], flags=re.MULTILINE)
+            yield Block(name, '', dedented)
+
+
+def links(page: Path) -> list[Path]:
+    """Return the files that a page links to within the repository."""
+    text = _FENCE.sub('', page.read_text(encoding='utf-8'))
+    targets = [target for target in _LINK.findall(text) if '://' not in target]
+    return [(page.parent / target).resolve() for target in targets]
