@@ -51,7 +51,6 @@ class Measurement:
         """Reference less slip speed, in the rpm that the thesis's controllers act on."""
         return rpm_from_rad_s(self.slip_reference[0] - self.slip_speed)
 
-
     def within(self, load_torque: float, open_loop_torque: float) -> 'Measurement':
         """Return the same with what the architecture fills in, both in N m."""
         # dataclasses.replace takes three times as long, at every step of every controller.

@@ -11,6 +11,7 @@ from ddct_controllers.linear import LinearController
 from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
 from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.run_settings import RunSettings
@@ -61,7 +62,7 @@ def _load_designed(file: str) -> DesignedController:
 def _own_factories() -> Mapping[str, Factory]:
     printed = {name: _linear_factory(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
     synthesised = {name: _synthesised_factory(name) for name in SYNTHESISED}
-    return {'pi': make_pi, **printed, **synthesised, **PREDICTIVE}
+    return {'pi': make_pi, **printed, **synthesised, **PREDICTIVE, **STATE_OF_ART}
 
 
 def _synthesised_factory(name: str) -> Factory:

@@ -6,6 +6,7 @@ from typing import Any
 
 from ddct_plant.checks import require_choice, require_number
 from ddct_plant.engine import EngineAuthority, TorqueProfile
+from ddct_plant.engine_speed_reference import EngineSpeedReference
 from ddct_plant.errors import ParameterError
 from ddct_plant.load import LoadParameters
 from ddct_plant.parameters import DrivelineParameters
@@ -66,6 +67,9 @@ class Scenario:
     """First and last time of the samples that standard deviations are taken over."""
     engine: TorqueProfile
     engine_authority: EngineAuthority = EngineAuthority()
+    engine_speed_reference: EngineSpeedReference = EngineSpeedReference()
+    pedal_position: float = 0.5
+    """x_p, the accelerator pedal from 0 to 1 (Section 1.3); only `pedal_mpc` reads it."""
     initial: InitialSpeeds = InitialSpeeds()
     reference: ReferenceParameters = ReferenceParameters()
     load: LoadParameters = LoadParameters()
@@ -75,9 +79,10 @@ class Scenario:
     """Gains and options by controller name, checked by the controller that takes them."""
 
     def __post_init__(self) -> None:
-        """Check the times; raise ParameterError that names a bad one."""
+        """Check times and pedal; raise ParameterError that names a bad one."""
         require_number('duration_s', self.duration_s, above=0.0, at_most=3600.0)
         require_number('control_start_s', self.control_start_s, at_least=0.0, at_most=3600.0)
+        require_number('pedal_position', self.pedal_position, at_least=0.0, at_most=1.0)
         steps_in('duration_s', self.duration_s)
         steps_in('control_start_s', self.control_start_s)
         if len(self.score_window_s) != 2:

@@ -5,6 +5,7 @@ import difflib
 import hashlib
 import importlib.resources
 import json
+import re
 import typing
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -15,7 +16,26 @@ import yaml
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.scenario import Scenario
 
-_PARTS = ('engine', 'engine_authority', 'initial', 'reference', 'load', 'vehicle', 'driveline')
+
+class _Loader(yaml.SafeLoader):
+    """Reads 1e-3 as a number, as YAML 1.2 does; PyYAML follows 1.1, for which it is text."""
+
+
+_Loader.add_implicit_resolver(
+    'tag:yaml.org,2002:float',
+    re.compile(r'[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$'),
+    list('-+.0123456789'),
+)
+_PARTS = (
+    'engine',
+    'engine_authority',
+    'engine_speed_reference',
+    'initial',
+    'reference',
+    'load',
+    'vehicle',
+    'driveline',
+)
 
 
 def scenario_names() -> list[str]:
@@ -35,7 +55,7 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     """
     text, default_name = _read(name_or_file)
     try:
-        content = yaml.safe_load(text)
+        content = yaml.load(text, _Loader)
     except yaml.YAMLError as error:
         where = ' '.join(str(error).split())
         raise DdctError(f'scenario {name_or_file}: not valid YAML: {where}') from error
@@ -96,7 +116,7 @@ def _apply(content: dict[str, Any], override: str) -> None:
     if not equals or not key:
         raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
     try:
-        value = yaml.safe_load(text)
+        value = yaml.load(text, _Loader)
     except yaml.YAMLError as error:
         raise ParameterError(f'--set {override}: the value is not valid YAML') from error
     *folders, leaf = key.split('.')

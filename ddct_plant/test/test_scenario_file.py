@@ -110,3 +110,13 @@ def test_an_unknown_scenario_is_refused(name):
 def test_a_bad_run_setting_is_named(setting, value):
     with pytest.raises(ParameterError, match=setting):
         RunSettings(load_scenario('thesis'), **{setting: value})
+
+
+@pytest.mark.parametrize('text', ['1e-3', '1E-3', '.1e-2', '+10e-4', '1.0e-3', '0.001'])
+def test_exponents_are_numbers_as_people_write_them(text):
+    assert load_scenario('thesis', [f'load.slope_rad={text}']).load.slope_rad == 0.001
+
+
+def test_text_that_only_looks_like_an_exponent_stays_text():
+    with pytest.raises(ParameterError, match='give a number'):
+        load_scenario('thesis', ['load.slope_rad=1e'])

@@ -1,0 +1,81 @@
+"""Decoupled PID control of engine speed and slip speed, after [3] of the thesis (Section 1.3)."""
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.state_of_art.engine_share import EngineShare
+from ddct_controllers.state_of_art.number_options import NumberOption, number_options
+from ddct_controllers.state_of_art.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.speed_plan import SpeedPlan
+from ddct_controllers.state_of_art.speeds import measured_speeds
+
+NAME = 'decoupled_pid'
+OPTIONS = {
+    'engine_bandwidth_rad_s': NumberOption(0.5, 0.1, 1.0),
+    'slip_bandwidth_rad_s': NumberOption(10.0, 5.0, 20.0),
+}
+"""Of the two loops; docs/state_of_art.md has the argument."""
+
+
+class DecoupledPid(Controller):
+    """
+    Two PIDs whose outputs are the accelerations of engine and slip, and a decoupler.
+
+    a_m = dw_m*/dt + PID(w_m* - w_m) and a_d = dw_d*/dt + PID(w_d* - w_d). The clutch gives the
+    shaft a_m - dw_d*/dt, as far as `SlowClutch` passes it, and the engine gives the slip a_d:
+    C_m = C_f + J_m ((C_f - C_load/tau)/J_eq + a_d), with the C_f that the actuator's model gives
+    for the period. So the first PID does not move the slip, and the lag of the clutch neither.
+    What the second does to the engine speed the first makes good; it waits while the engine is at
+    its limit.
+    """
+
+    commands_engine = True
+
+    def __init__(self, context: ControllerContext) -> None:
+        """Tune the loops; raise ParameterError for a bad option."""
+        options = number_options(NAME, context, OPTIONS)
+        scenario = context.settings.scenario
+        authority = scenario.engine_authority
+        transmission = self._transmission = RigidTransmission(scenario.driveline)
+        self._plan = SpeedPlan(transmission, scenario.engine_speed_reference)
+        self._clutch = SlowClutch(context, transmission)
+        slip_gains = placed_gains(options['slip_bandwidth_rad_s'], authority.lag_s)
+        self._engine = EngineShare(transmission, authority, slip_gains)
+        self._engine_pid = Pid(placed_gains(options['engine_bandwidth_rad_s'], self._clutch.lag_s))
+
+    def reset(self) -> None:
+        """Forget the plan, empty both integrals, put actuator and engine to rest."""
+        for part in (self._plan, self._clutch, self._engine, self._engine_pid):
+            part.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        """Let the models of actuator and engine follow the open-loop torque and the demand."""
+        measured_speeds(measurement)
+        self._clutch.hold(measurement)
+        self._engine.hold(measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return both torques of the coming period."""
+        engine_speed, _, _ = measured_speeds(measurement)
+        if self._engine.at_its_limit:
+            self._plan.reset()
+        planned_speed, engine_rate = self._plan.update(measurement)
+        if not self._engine.at_its_limit:
+            engine_rate += self._engine_pid.update(planned_speed - engine_speed)
+        slip_rate = measurement.slip_reference_rate[0]
+        torque = self._clutch.torque(measurement, engine_rate - slip_rate)
+        torque += self._engine.clutch_torque
+        request = max(torque, 0.0)
+        self._engine_pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        slip_error = measurement.slip_reference[0] - measurement.slip_speed
+        engine_request, _ = self._engine.update(
+            measurement, self._clutch.nominal(request), slip_error, slip_rate
+        )
+        return Command(
+            request - measurement.open_loop_torque,
+            (
+                ('engine_speed_reference_rad_s', repr(planned_speed)),
+                ('engine_at_its_limit', str(self._engine.at_its_limit).lower()),
+            ),
+            engine_request,
+        )

@@ -1,0 +1,82 @@
+"""The finite-horizon optimal control problem of an engagement, condensed for each horizon."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.mpc.qp.backend import QpBackend
+from ddct_controllers.mpc.qp.factory import DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    REQUEST,
+    SLIP_SPEED,
+    TransmissionModel,
+)
+from ddct_plant.timebase import PERIOD_S
+
+MOVES = 10
+"""Spread evenly over the horizon, with a constant request between them."""
+SLIP_WEIGHT = 100.0
+"""Of the slip at the end, in N m per rad/s: 0.1 rad/s costs as much as a move of 10 N m."""
+ACCELERATION_WEIGHT = 5.0
+"""Of the slip acceleration at the end, in N m per rad/s^2: 2 rad/s^2 cost as much as 10 N m."""
+
+
+@dataclass(frozen=True, eq=False)
+class EngagementProgram:
+    """
+    Minimise the squared moves of the request plus the squared weighted deviations at the end.
+
+    The deviations are those of the slip from what is wanted and of its rate over the last period
+    from zero. With v = (state, request before, C_m, C_load, slip wanted), f = gradient @ v; the
+    constrained rows are the request's levels less the request before.
+    """
+
+    gradient: np.ndarray
+    """(MOVES, states + 4)."""
+    solver: QpBackend
+
+
+def engagement_programs(
+    model: TransmissionModel, shortest: int, longest: int
+) -> dict[int, EngagementProgram]:
+    """Return the programs for horizons of `shortest` (MOVES or more) to `longest` periods."""
+    c = model.c[SLIP_SPEED]
+    states, held = np.eye(len(model.a)), np.zeros((len(model.a), 3))
+    free, steps = [c @ states], [c @ held]
+    for _ in range(longest):
+        states, held = model.a @ states, model.a @ held + model.b
+        free.append(c @ states)
+        steps.append(c @ held)
+    return {
+        horizon: _program(np.array(free[: horizon + 1]), np.array(steps[: horizon + 1]))
+        for horizon in range(shortest, longest + 1)
+    }
+
+
+def _program(free: np.ndarray, steps: np.ndarray) -> EngagementProgram:
+    """
+    Condense one horizon of p periods.
+
+    `free` (p + 1, n) is the slip's response to the state at periods 0..p, `steps` (p + 1, 3) that
+    to unit steps of the inputs from period 0 on.
+    """
+    horizon = len(steps) - 1
+    starts = [move * horizon // MOVES for move in range(MOVES)]
+    ends = np.array([[0.0, SLIP_WEIGHT], [-1.0, 1.0]])
+    ends[1] *= ACCELERATION_WEIGHT / PERIOD_S
+    delayed = np.array([_from(start, steps[:, REQUEST]) for start in starts]).T
+    response = ends @ delayed[-2:]
+    inputs = steps[-2:, [REQUEST, ENGINE_TORQUE, LOAD_TORQUE]]
+    known = np.hstack([ends @ free[-2:], ends @ inputs, [[-SLIP_WEIGHT], [0.0]]])
+    levels = np.tril(np.ones((MOVES, MOVES)))
+    structure = QpStructure(np.eye(MOVES) + response.T @ response, levels)
+    solver = make_backend(DEFAULT_BACKEND, structure)
+    return EngagementProgram(response.T @ known, solver)
+
+
+def _from(start: int, step_response: np.ndarray) -> np.ndarray:
+    """Return the response to a step that begins at period `start`."""
+    return np.concatenate([np.zeros(start), step_response[: len(step_response) - start]])

@@ -1,0 +1,132 @@
+"""LQ control with the integral of the slip error, a Kalman filter and a Smith predictor."""
+
+import math
+
+import numpy as np
+
+from ddct_controllers.interface import ControllerContext
+from ddct_controllers.linear import LinearController
+from ddct_controllers.mpc.observer import NoiseLevels
+from ddct_controllers.state_of_art.number_options import NumberOption, number_options
+from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.slip_model import CLUTCH, ENGINE, LOAD, slip_model
+from ddct_plant.errors import ParameterError
+from ddct_plant.lti import StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.printed import ACTUATOR
+from ddct_plant.timebase import PERIOD_S
+from ddct_plant.units import RAD_S_PER_RPM
+
+NAME = 'lqi'
+OPTIONS = {'natural_frequency_rad_s': NumberOption(4.0, 1.0, 8.0)}
+"""Of the double pole that the weights give a rigid driveline without lag."""
+NOISE = NoiseLevels(engine_torque_n_m=30.0, clutch_torque_n_m=30.0)
+"""Both torques are known to a tenth of 300 N m; a filter that trusts them more is fragile."""
+
+
+def make_lqi(context: ControllerContext) -> LinearController:
+    """Build `lqi`; raise ParameterError for an option that it does not take."""
+    options = number_options(NAME, context, OPTIONS)
+    return LinearController(
+        lqi_model(context.settings.scenario.driveline, options['natural_frequency_rad_s'])
+    )
+
+
+def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) -> StateSpace:
+    """
+    Return the controller from slip error in rpm to torque in N m, sampled.
+
+    States: the filter's prediction of x (7,), the integral of the error in rad, and the request
+    that is being delayed. With y = -e the deviation of the slip from its reference,
+
+        filtered: x_(k|k) = x_(k|k-1) + l (y_k - c x_(k|k-1)),
+        predicted over the delay: x_(k+1|k) = a x_(k|k) + b u_(k-1), q_(k+1) = q_k + T e_k,
+        fed back: u_k = -K [x_(k+1|k), q_(k+1)].
+
+    u_k reaches the actuator in period k + 1, whose state is known exactly but for noise. So K is
+    that of a plant without the delay: the Smith predictor in its state form, which the form with
+    two plant models is not fit for, as this plant integrates.
+    """
+    plant = _plant(driveline)
+    gain = _feedback_gain(plant, driveline, natural_frequency_rad_s)
+    filter_gain = _filter_gain(plant, driveline)
+    states = len(plant.a)
+    integral, request = states, states + 1
+    a, b = np.zeros((states + 2, states + 2)), np.zeros((states + 2, 1))
+    a[:states, :states] = plant.a @ (np.eye(states) - filter_gain @ plant.c)
+    a[:states, request] = plant.b[:, 0]
+    b[:states] = -plant.a @ filter_gain * RAD_S_PER_RPM
+    a[integral, integral] = 1.0
+    b[integral] = PERIOD_S * RAD_S_PER_RPM
+    a[request] = -gain @ a[:request]
+    b[request] = -gain @ b[:request]
+    return StateSpace(a, b, a[request:], b[request:], PERIOD_S)
+
+
+def _plant(driveline: DrivelineParameters) -> StateSpace:
+    """Return G_a and the slip model, sampled, without the delay: torque in N m to w_d in rad/s."""
+    slip, actuator = slip_model(driveline), ACTUATOR.to_state_space()
+    clutch = slip.b[:, CLUTCH : CLUTCH + 1]
+    a = np.block(
+        [[slip.a, clutch @ actuator.c], [np.zeros((len(actuator.a), len(slip.a))), actuator.a]]
+    )
+    b = np.vstack([np.zeros((len(slip.a), 1)), actuator.b])
+    c = np.eye(1, len(a))
+    return discretise_zoh(StateSpace(a, b, c, np.zeros((1, 1))), PERIOD_S)
+
+
+def _feedback_gain(
+    plant: StateSpace, driveline: DrivelineParameters, natural_frequency_rad_s: float
+) -> np.ndarray:
+    """
+    Return K (8,) that minimises the sum of u^2 + q_y w_d^2 + q_q q^2, q the error's integral.
+
+    On the rigid driveline without lag, dw_d/dt = -g u, q_y = 2 (w/g)^2 and q_q = (w^2/g)^2 give
+    the closed-loop polynomial (s + w)^2.
+    """
+    states = len(plant.a)
+    a = np.zeros((states + 1, states + 1))
+    a[:states, :states], a[states, states] = plant.a, 1.0
+    a[states, :states] = -PERIOD_S * plant.c[0]
+    b = np.append(plant.b[:, 0], 0.0)[:, None]
+    slip_gain = RigidTransmission(driveline).slip_gain
+    weights = np.zeros((states + 1, states + 1))
+    weights[:states, :states] = (
+        2.0 * (natural_frequency_rad_s / slip_gain) ** 2 * (plant.c.T @ plant.c)
+    )
+    weights[states, states] = (natural_frequency_rad_s**2 / slip_gain) ** 2
+    cost = _riccati(a, b, weights, 1.0)
+    return np.linalg.solve(1.0 + b.T @ cost @ b, b.T @ cost @ a)[0]
+
+
+def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarray:
+    """
+    Return the stationary Kalman gain l (7, 1) for the levels NOISE.
+
+    Torque noise is held over a period; two measured speeds make the slip.
+    """
+    torques = discretise_zoh(slip_model(driveline), PERIOD_S).b
+    levels = np.zeros(3)
+    levels[[ENGINE, CLUTCH, LOAD]] = (
+        NOISE.engine_torque_n_m,
+        NOISE.clutch_torque_n_m,
+        NOISE.load_torque_n_m,
+    )
+    driven = np.zeros((len(plant.a), 3))
+    driven[: len(torques)] = torques * levels
+    error = (math.sqrt(2.0) * NOISE.speed_rad_s) ** 2
+    covariance = _riccati(plant.a.T, plant.c.T, driven @ driven.T, error)
+    innovation = plant.c @ covariance @ plant.c.T + error
+    gain: np.ndarray = covariance @ plant.c.T / innovation
+    return gain
+
+
+def _riccati(a: np.ndarray, b: np.ndarray, q: np.ndarray, r: float) -> np.ndarray:
+    # Imported here: only runs with this controller need it.
+    from scipy.linalg import solve_discrete_are
+
+    try:
+        solution: np.ndarray = solve_discrete_are(a, b, q, np.array([[r]]))
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        raise ParameterError(f'{NAME}: no gain for this driveline ({failure})') from failure
+    return solution

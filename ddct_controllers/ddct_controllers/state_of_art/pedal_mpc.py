@@ -1,0 +1,119 @@
+"""Finite-horizon control of the clutch torque, as long as the pedal asks, after [4]."""
+
+import numpy as np
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.disturbances import offset_free_model, offset_free_noise
+from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
+from ddct_controllers.state_of_art.number_options import NumberOption, number_options
+from ddct_controllers.state_of_art.speeds import measured_speeds
+from ddct_plant.errors import ParameterError
+from ddct_plant.timebase import PERIOD_S
+
+NAME = 'pedal_mpc'
+OPTIONS = {
+    'slowest_engagement_s': NumberOption(1.2, 0.3, 5.0),
+    'fastest_engagement_s': NumberOption(0.4, 0.3, 5.0),
+}
+"""t_f with the pedal at 0 and at 1; 0.3 s is seven times what delay and actuator take."""
+SHORTEST_SHARE = 3
+"""The horizon shrinks to this part of the engagement time and then stays."""
+
+
+class PedalMpc(Controller):
+    """
+    The request that engages within the pedal's time with the least squared moves.
+
+    The horizon t_r begins as the engagement time t_f(x_p), shrinks with the time that is left
+    down to t_f/3, and then recedes. At its end slip and its rate shall be zero. C_m is known and
+    left alone; it, C_load and two estimated disturbances are taken as constant. Until control
+    starts the slip wanted is the reference's, over the shortest horizon; then the reference has no
+    say.
+    """
+
+    def __init__(self, context: ControllerContext) -> None:
+        """Condense the programs; raise ParameterError for a bad option."""
+        settings = context.settings
+        model = offset_free_model(settings.scenario.driveline)
+        self._observer = make_observer(settings, model, offset_free_noise())
+        self._start_step = settings.scenario.control_start_step
+        self._longest = round(engagement_time_s(context) / PERIOD_S)
+        self._shortest = self._longest // SHORTEST_SHARE
+        self._programs = engagement_programs(model, self._shortest, self._longest)
+        self._unlimited = np.full(MOVES, np.inf)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the estimate, the last request and every warm start."""
+        self._observer.reset()
+        self._request: float | None = None
+        self._fallbacks = 0
+        for program in self._programs.values():
+            program.solver.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        """Let the observer follow the plant under the open-loop torque alone."""
+        self._correct(measurement)
+        self._advance(measurement, max(measurement.open_loop_torque, 0.0))
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return the first move of the best request."""
+        state = self._correct(measurement)
+        horizon, slip = self._horizon_and_slip(measurement)
+        before = self._request
+        if before is None:
+            before = max(measurement.open_loop_torque, 0.0)
+        program = self._programs[horizon]
+        known = (before, measurement.engine_torque, measurement.load_torque, slip)
+        solution = program.solver.solve(
+            program.gradient @ np.concatenate((state, known)),
+            np.full(MOVES, -before),
+            self._unlimited,
+        )
+        if solution.status == 'solved':
+            request = max(before + float(solution.z[0]), 0.0)
+        else:
+            self._fallbacks += 1
+            request = before
+        self._advance(measurement, request)
+        return Command(
+            request - measurement.open_loop_torque,
+            (
+                ('horizon_s', repr(horizon * PERIOD_S)),
+                ('qp_status', solution.status),
+                ('qp_iterations', str(solution.iterations)),
+                ('fallbacks', str(self._fallbacks)),
+            ),
+        )
+
+    def _horizon_and_slip(self, measurement: Measurement) -> tuple[int, float]:
+        """Return t_r in periods and the slip wanted at its end in rad/s."""
+        since_start = measurement.step - self._start_step
+        if since_start < 0:
+            return self._shortest, measurement.slip_reference[0]
+        return max(self._longest - since_start, self._shortest), 0.0
+
+    def _correct(self, measurement: Measurement) -> np.ndarray:
+        return self._observer.correct(measured_speeds(measurement), measurement.load_torque)
+
+    def _advance(self, measurement: Measurement, request: float) -> None:
+        self._request = request
+        self._observer.predict((request, measurement.engine_torque, measurement.load_torque))
+
+
+def engagement_time_s(context: ControllerContext) -> float:
+    """
+    Return t_f(x_p) = slowest + x_p (fastest - slowest) in s, x_p the scenario's pedal position.
+
+    The thesis says that t_r is a function of the engagement time and this of the pedal, and gives
+    neither: this line, and t_r above, are assumptions.
+    """
+    options = number_options(NAME, context, OPTIONS)
+    slowest, fastest = options['slowest_engagement_s'], options['fastest_engagement_s']
+    if fastest > slowest:
+        raise ParameterError(
+            f'controllers.{NAME}.fastest_engagement_s is {fastest:g} s: it must be at most '
+            f'slowest_engagement_s, {slowest:g} s'
+        )
+    return slowest + context.settings.scenario.pedal_position * (fastest - slowest)

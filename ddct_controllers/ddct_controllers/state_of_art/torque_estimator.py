@@ -1,0 +1,92 @@
+"""Control of both speeds with an estimate of the clutch torque, after [2] (Section 1.3)."""
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.state_of_art.clutch_torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.engine_share import EngineShare
+from ddct_controllers.state_of_art.number_options import NumberOption, number_options
+from ddct_controllers.state_of_art.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.speed_plan import SpeedPlan
+from ddct_controllers.state_of_art.speeds import measured_speeds
+
+NAME = 'torque_estimator'
+OPTIONS = {
+    'shaft_bandwidth_rad_s': NumberOption(0.5, 0.1, 1.0),
+    'engine_bandwidth_rad_s': NumberOption(10.0, 5.0, 20.0),
+    'estimator_bandwidth_rad_s': NumberOption(30.0, 10.0, 60.0),
+}
+"""Of the two loops and the estimator; docs/state_of_art.md has the argument."""
+
+
+class TorqueEstimatorControl(Controller):
+    """
+    Clutch and engine speed follow references, each with a torque of its own.
+
+    The shaft follows w_p* = w_m* - w_d*: C_f = C_load/tau + J_eq (dw_p*/dt + PID(w_p* - w_p)),
+    less what the clutch is estimated to transmit beyond the actuator's model, as far as
+    `SlowClutch` passes it. The engine follows w_p + w_d*: its loop gives the difference
+    C_m - C_f = J_m (dw_p/dt + dw_d*/dt + PID(w_p + w_d* - w_m)), which is added to the estimated
+    C_f; dw_p/dt is that of the rigid transmission with this C_f. The shaft's loop waits while the
+    engine is at its limit.
+    """
+
+    commands_engine = True
+
+    def __init__(self, context: ControllerContext) -> None:
+        """Tune loops and estimator; raise ParameterError for a bad option."""
+        options = number_options(NAME, context, OPTIONS)
+        scenario = context.settings.scenario
+        authority = scenario.engine_authority
+        self._transmission = RigidTransmission(scenario.driveline)
+        self._plan = SpeedPlan(self._transmission, scenario.engine_speed_reference)
+        self._clutch = SlowClutch(context, self._transmission)
+        engine_gains = placed_gains(options['engine_bandwidth_rad_s'], authority.lag_s)
+        self._engine = EngineShare(self._transmission, authority, engine_gains)
+        self._shaft_pid = Pid(placed_gains(options['shaft_bandwidth_rad_s'], self._clutch.lag_s))
+        self._estimator = ClutchTorqueEstimator(
+            self._transmission.engine_inertia, options['estimator_bandwidth_rad_s']
+        )
+
+    def reset(self) -> None:
+        """Forget plan and estimate, empty both integrals, put actuator and engine to rest."""
+        parts = self._plan, self._clutch, self._engine, self._shaft_pid, self._estimator
+        for part in parts:
+            part.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        """Let the estimator follow the clutch under the open-loop torque."""
+        engine_speed, _, _ = measured_speeds(measurement)
+        self._estimator.correct(engine_speed)
+        self._estimator.predict(self._engine.hold(measurement), self._clutch.hold(measurement))
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return both torques of the coming period."""
+        engine_speed, shaft_speed, _ = measured_speeds(measurement)
+        deviation = self._estimator.correct(engine_speed)
+        if self._engine.at_its_limit:
+            self._plan.reset()
+        planned_speed, planned_rate = self._plan.update(measurement)
+        slip, slip_rate = measurement.slip_reference[0], measurement.slip_reference_rate[0]
+        shaft_rate = planned_rate - slip_rate
+        if not self._engine.at_its_limit:
+            shaft_rate += self._shaft_pid.update(planned_speed - slip - shaft_speed)
+        shaft_rate -= deviation / self._transmission.vehicle_inertia
+        torque = self._clutch.torque(measurement, shaft_rate) + self._engine.clutch_torque
+        request = max(torque, 0.0)
+        self._shaft_pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        nominal = self._clutch.nominal(request)
+        estimate = nominal + deviation
+        engine_request, delivered = self._engine.update(
+            measurement, estimate, shaft_speed + slip - engine_speed, slip_rate
+        )
+        self._estimator.predict(delivered, nominal)
+        return Command(
+            request - measurement.open_loop_torque,
+            (
+                ('engine_speed_reference_rad_s', repr(planned_speed)),
+                ('clutch_torque_estimate_n_m', repr(estimate)),
+                ('engine_at_its_limit', str(self._engine.at_its_limit).lower()),
+            ),
+            engine_request,
+        )

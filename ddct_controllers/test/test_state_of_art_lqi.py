@@ -1,0 +1,136 @@
+"""LQI: an exact predictor, margins that hold for a worn clutch, and no error at rest."""
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_discrete_are
+
+from ddct_controllers.design.loops import sampled_loop, sampled_plant
+from ddct_controllers.design.margins import loop_margins
+from ddct_controllers.design.plant_corners import PlantCorners
+from ddct_controllers.design.worst_corner import worst_corner
+from ddct_controllers.interface import ControllerContext
+from ddct_controllers.registry import make_controller
+from ddct_controllers.state_of_art import lqi
+from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.slip_model import slip_model
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.errors import ParameterError
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.timebase import PERIOD_S
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+DRIVELINE = DrivelineParameters()
+MODEL = lqi.lqi_model(DRIVELINE, lqi.OPTIONS['natural_frequency_rad_s'].default)
+
+
+def response(model, omega, column):
+    """Return the slip's response to one input."""
+    identity = np.eye(len(model.a))
+    return np.array(
+        [
+            model.c[0] @ np.linalg.solve(1j * w * identity - model.a, model.b[:, column])
+            for w in omega
+        ]
+    )
+
+
+@pytest.mark.parametrize('column', [0, 1, 2])
+def test_the_slip_model_is_the_driveline_but_for_the_drag(column):
+    omega = np.geomspace(0.5, 300.0, 50)
+    ours = response(slip_model(DRIVELINE), omega, column)
+    whole = response(driveline_matrices(DRIVELINE), omega, column)
+    assert np.abs(ours / whole - 1.0).max() < 0.02
+
+
+def test_it_is_linear_and_says_so():
+    model = make_controller('lqi', SETTINGS).linear_model()
+    assert np.array_equal(model.a, MODEL.a)
+    assert np.linalg.matrix_rank(MODEL.a) <= len(MODEL.a) == 9
+    assert 1.0 in np.linalg.eigvals(MODEL.a).real.round(9), 'the integral'
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+def test_the_sampled_loop_keeps_its_margins_with_wear(wear_gain):
+    margins = loop_margins(sampled_loop(MODEL, wear_gain=wear_gain))
+    assert margins.stable
+    assert margins.sensitivity_peak < 1.55
+    assert margins.phase_margin_deg > 50.0
+    assert margins.gain_margin_db > 10.0
+
+
+def test_no_corner_of_the_driveline_is_unstable():
+    worst = worst_corner(MODEL, PlantCorners())
+    assert worst.unstable_corners == 0
+    assert worst.sensitivity_peak < 3.0
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+@pytest.mark.parametrize('option', ['lowest', 'highest'])
+def test_every_frequency_that_it_takes_is_stable(option, wear_gain):
+    frequency = getattr(lqi.OPTIONS['natural_frequency_rad_s'], option)
+    loop = sampled_loop(lqi.lqi_model(DRIVELINE, frequency), wear_gain=wear_gain)
+    assert loop_margins(loop).sensitivity_peak < 2.0
+
+
+def test_the_predictor_is_exact():
+    """The gain with prediction over the delay is that of LQ with the delay as a state."""
+    plant = lqi._plant(DRIVELINE)
+    states = len(plant.a)
+    gain = lqi._feedback_gain(plant, DRIVELINE, 5.0)
+    # x, integral of the error, delayed request; the cost sees x and the integral one step later.
+    a = np.zeros((states + 2, states + 2))
+    a[:states, :states], a[:states, -1] = plant.a, plant.b[:, 0]
+    a[states, states], a[states, :states] = 1.0, -PERIOD_S * plant.c[0]
+    b = np.zeros((states + 2, 1))
+    b[-1] = 1.0
+    ratio = 5.0 / RigidTransmission(DRIVELINE).slip_gain
+    weights = np.zeros((states + 2, states + 2))
+    weights[:states, :states] = 2.0 * ratio**2 * plant.c.T @ plant.c
+    weights[states, states] = (5.0 * ratio) ** 2
+    cost = solve_discrete_are(a, b, weights, np.eye(1))
+    with_delay = np.linalg.solve(1.0 + b.T @ cost @ b, b.T @ cost @ a)[0]
+    predicted = gain @ np.hstack([a[:-1, :-1], a[:-1, -1:]])
+    assert with_delay == pytest.approx(predicted, rel=1e-5, abs=1e-6)
+
+
+def test_on_a_rigid_driveline_the_weights_give_the_double_pole(monkeypatch):
+    from ddct_plant.lti import StateSpace, discretise_zoh
+
+    slip_gain = RigidTransmission(DRIVELINE).slip_gain
+    rigid = StateSpace(np.zeros((1, 1)), [[-slip_gain]], np.eye(1), np.zeros((1, 1)))
+    plant = discretise_zoh(rigid, PERIOD_S)
+    gain = lqi._feedback_gain(plant, DRIVELINE, 5.0)
+    a = np.array([[1.0, 0.0], [-PERIOD_S, 1.0]])
+    closed = a - np.append(plant.b[:, 0], 0.0)[:, None] * gain
+    poles = np.log(np.linalg.eigvals(closed)) / PERIOD_S
+    assert poles.real == pytest.approx([-5.0, -5.0], rel=0.05)
+    assert np.abs(poles.imag).max() < 1.0
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+def test_a_constant_torque_error_leaves_no_slip(wear_gain):
+    plant = sampled_plant(DRIVELINE, wear_gain)
+    state, own = np.zeros(len(plant.a)), np.zeros(len(MODEL.a))
+    for _ in range(1000):
+        error = -(plant.c @ state)
+        torque = MODEL.c @ own + MODEL.d @ error
+        own = MODEL.a @ own + MODEL.b @ error
+        state = plant.a @ state + plant.b @ (torque + 50.0)
+    assert abs((plant.c @ state)[0]) < 0.05
+
+
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        ({'bandwidth': 3.0}, 'controllers.lqi.bandwidth is not a key of lqi: it has natural_fr'),
+        ({'natural_frequency_rad_s': 0.0}, 'controllers.lqi.natural_frequency_rad_s is 0'),
+        ({'natural_frequency_rad_s': 50.0}, 'it must be at most 8'),
+        ({'natural_frequency_rad_s': 'high'}, "is 'high'"),
+    ],
+)
+def test_a_bad_option_is_named(options, complaint):
+    with pytest.raises(ParameterError) as caught:
+        lqi.make_lqi(ControllerContext(SETTINGS, options))
+    assert complaint in str(caught.value)
