@@ -9,18 +9,23 @@ import pytest
 from matplotlib.axes import Axes
 
 from ddct_bringup.headless import run_headless
-from ddct_bringup.scores.metrics import compute_metrics
+from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis import run_figures as thesis_run_figures
 from ddct_bringup.thesis import scenario_figures as thesis_scenario_figures
-from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.thesis.table import thesis_row
 from ddct_controllers.design.thesis_figures.collect import (
     ENTRY_POINT_GROUP,
     OWN_FIGURES,
     collect_figures,
     figures_not_drawn,
 )
-from ddct_controllers.design.thesis_figures.gallery import DrawnFigure, page_tables
-from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, figure_order
+from ddct_controllers.design.thesis_figures.figure_tables import page_tables
+from ddct_controllers.design.thesis_figures.thesis_figure import (
+    Drawing,
+    DrawnFigure,
+    figure_order,
+)
 from ddct_plant.page_tables import fill_tables, read_page
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.units import rpm_from_rad_s
@@ -32,6 +37,7 @@ FIGURES = {
         key=lambda figure: figure_order(figure.number),
     )
 }
+LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 PAGE = Path(__file__).parents[2] / 'docs' / 'figures.md'
 SETUP = Path(__file__).parents[1] / 'setup.py'
 
@@ -46,25 +52,27 @@ def lines(axes: Axes) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    ('number', 'architecture', 'wear', 'unit'),
+    ('number', 'architecture', 'shown', 'unit'),
     [
-        ('2.26', 'detailed', 1.0, 'w_d, rpm'),
-        ('2.15', 'feedforward', 1.0, 'w_sr, rpm'),
-        ('2.22', 'feedforward_tanh', 1.0, 'A_x, m/s²'),
+        ('2.26', 'detailed', (*LS4_TO_9, 'pi'), 'w_d, rpm'),
+        ('2.15', 'feedforward', LS4_TO_9, 'w_sr, rpm'),
+        ('2.22', 'feedforward_tanh', LS4_TO_9, 'A_x, m/s²'),
+        ('4.3', 'detailed', ('mpc3', 'mpc2', 'mpc1'), 'w_d, rpm'),
+        ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
     ],
 )
-def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, wear, unit):
+def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number).figure.axes[0]
-    run = run_headless(RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear), 'ls8')
+    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
     signals = {
         'w_d, rpm': rpm_from_rad_s(run.slip_speed),
         'w_sr, rpm': rpm_from_rad_s(run.joint_speed[:, 3]),
         'A_x, m/s²': run.vehicle_accel,
     }
-    np.testing.assert_array_equal(lines(axes)['LS8'], (run.time_s[50:], signals[unit][50:]))
+    drawn = lines(axes)[shown[0].upper()]
+    np.testing.assert_array_equal(drawn, (run.time_s[50:], signals[unit][50:]))
     assert (axes.get_xlabel(), axes.get_ylabel()) == ('Time, s', unit)
-    names = {'LS4', 'LS5', 'LS6', 'LS7', 'LS8', 'LS9'}
-    names |= {'PI'} if architecture == 'detailed' else set()
+    names = {name.upper() for name in shown}
     assert set(lines(axes)) == names | ({'reference'} if unit == 'w_d, rpm' else set())
 
 
@@ -80,11 +88,7 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
 
 def torsion_std_rpm(controller: str, architecture: str) -> float:
     run = thesis_run(controller, architecture, 1.0)
-    return compute_metrics(
-        run,
-        control_start_s=THESIS_SCENARIO.control_start_s,
-        score_window_s=THESIS_SCENARIO.score_window_s,
-    ).torsion_speed_std_rpm
+    return thesis_metrics(run).torsion_speed_std_rpm
 
 
 def test_verdicts_on_the_h_infinity_figures_hold():
@@ -108,6 +112,41 @@ def test_verdicts_on_the_loop_shaping_figures_hold():
     assert lowest_rpm['ls1'] < -100.0 < -20.0 < lowest_rpm['pi']
     pi = torsion_std_rpm('pi', 'detailed')
     assert all(torsion_std_rpm(name, 'detailed') > pi for name in ('ls2', 'ls3', 'ls8', 'ls9'))
+
+
+def metrics(controller: str) -> Metrics:
+    return thesis_metrics(thesis_run(controller, 'detailed', 1.0))
+
+
+def test_verdicts_on_the_predictive_figures_hold():
+    previous = [metrics(name) for name in ('ls8', 'hinf1')]
+    for name in ('mpc1', 'mpc2', 'mpc3'):
+        for other in previous:
+            assert metrics(name).slip_rmse_rpm < other.slip_rmse_rpm
+            assert metrics(name).torsion_speed_std_rpm > other.torsion_speed_std_rpm
+            assert metrics(name).acceleration_std_m_s2 > other.acceleration_std_m_s2
+    mpc3, hinf1 = thesis_row('mpc3'), thesis_row('hinf1')
+    assert mpc3.torsion_speed_std_rpm > hinf1.torsion_speed_std_rpm
+    assert mpc3.acceleration_std_m_s2 > hinf1.acceleration_std_m_s2
+
+
+def test_verdict_on_the_figures_of_mpc4_holds():
+    run = thesis_run('mpc4', 'detailed', 1.0)
+    controlled = rpm_from_rad_s(run.slip_speed[THESIS_SCENARIO.control_start_step :])
+    assert controlled.min() > 0.0
+    near = np.flatnonzero(controlled < 10.0)
+    assert near[0] == 46
+    np.testing.assert_array_equal(np.diff(near), 1)
+    times = [metrics(name).engagement_time_s for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
+    assert min(times) > 0.46
+    torsion = rpm_from_rad_s(run.joint_speed[:, 3])
+    assert np.abs(torsion[np.isclose(run.time_s, 0.8).argmax() :]).max() < 0.25
+    assert 'MPC4 none (for comparison MPC3 0.56)' in drawing('4.6').remark
+
+
+def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():
+    assert drawing('2.27').remark.endswith('used in the calibration: LS8 1.15, PI 0.70.')
+    assert drawing('4.4').remark.endswith('not used in the calibration: MPC3 0.90.')
 
 
 def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():

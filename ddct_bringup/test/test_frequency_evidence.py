@@ -9,6 +9,7 @@ import pytest
 from ddct_bringup import compare
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_controllers.design.evidence import frequency_evidence
 from ddct_controllers.design.loops import sampled_loop
 from ddct_controllers.design.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement
@@ -80,6 +81,16 @@ def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
         assert entry['linear']
         assert [point['wear_gain'] for point in entry['wear']] == [0.7, 0.8, 1.0, 1.3]
         assert entry['nominal']['stable']
+
+
+@pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
+def test_a_predictive_controller_has_no_frequency_response(name):
+    (entry,) = frequency_evidence([name], RunSettings(SCENARIO))['controllers']
+    assert entry == {
+        'controller': name,
+        'linear': False,
+        **dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners')),
+    }
 
 
 def test_the_evidence_of_a_repeated_run_is_the_same(tmp_path):

@@ -138,6 +138,13 @@ def test_a_controller_that_is_not_linear_is_refused_with_the_reason(stub, capsys
     assert 'ls1 is not linear: it has no frequency response' in capsys.readouterr().err
 
 
+def test_controllers_that_are_not_linear_are_named_below_the_table(monkeypatch, capsys):
+    monkeypatch.setattr(margins_command, 'controller_names', lambda: ['ls8', 'mpc3', 'mpc4'])
+    assert run() == 0
+    *_, last = capsys.readouterr().out.splitlines()
+    assert last == 'Not linear, without a frequency response: mpc3, mpc4'
+
+
 def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
     one = [[1.0]]
     stub(StateSpace(one, one, one, one))

@@ -20,7 +20,12 @@ from ddct_controllers.design.thesis_figures.collect import (
     OWN_FIGURES,
     collect_figures,
 )
-from ddct_controllers.design.thesis_figures.thesis_figure import Drawing
+from ddct_controllers.design.thesis_figures.gallery import gallery_page
+from ddct_controllers.design.thesis_figures.thesis_figure import (
+    Drawing,
+    DrawnFigure,
+    ThesisFigure,
+)
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.lti import FactoredTransferFunction
@@ -235,6 +240,48 @@ def test_figures_are_collected_once_and_in_order():
     numbers = [figure.number for figure in collect_figures()]
     assert len(numbers) == len(set(numbers))
     assert numbers.index('2.9') < numbers.index('2.10')
+
+
+def gallery(drawn: list[str], not_drawn: dict[str, str]) -> str:
+    entries = [
+        DrawnFigure(ThesisFigure(number, 'w_d & <A_x>', drawing), 'W_s^-1 agrees.')
+        for number in drawn
+    ]
+    return gallery_page(entries, not_drawn)
+
+
+def test_gallery_has_drawn_and_other_figures_in_order_by_chapter():
+    reasons = {'1.1': 'a scheme', '1.2': 'a scheme', '1.10': 'a table', '2.1': 'a scheme'}
+    page = gallery(['1.4', '2.3', '2.20'], {**reasons, '1.9': 'a scheme'})
+    found = re.findall(r'id="((?:chapter|figure)-[\d.]+)"|class="absent">(.*?)</p>', page)
+    assert [identity or text for identity, text in found] == [
+        'chapter-1',
+        '<b>Figures 1.1 to 1.2:</b> a scheme.',
+        'figure-1.4',
+        '<b>Figure 1.9:</b> a scheme.',
+        '<b>Figure 1.10:</b> a table.',
+        'chapter-2',
+        '<b>Figure 2.1:</b> a scheme.',
+        'figure-2.3',
+        'figure-2.20',
+    ]
+    assert '3 of 8 figures are drawn' in page
+    assert re.findall(r'href="#(chapter-\d)"', page) == ['chapter-1', 'chapter-2']
+
+
+def test_gallery_typesets_symbols_and_escapes_text():
+    page = gallery(['2.3'], {})
+    assert '<i>w</i><sub>d</sub> &amp; &lt;<i>A</i><sub>x</sub>&gt;' in page
+    assert '<i>W</i><sub>s</sub><sup>-1</sup> agrees.' in page
+    assert 'alt="Figure 2.3: w_d &amp; &lt;A_x&gt;"' in page
+
+
+def test_gallery_needs_nothing_but_the_pictures_beside_it():
+    page = gallery(['2.3'], {'2.4': 'a scheme'})
+    assert re.findall(r'(?:src|href)="([^#"]+)"', page) == ['figure_2_3.png'] * 2
+    assert not re.search(r'https?:|<script|@import|url\(', page)
+    for query in ('prefers-color-scheme: dark', 'print', 'min-width'):
+        assert f'@media {query}' in page or f'@media ({query}' in page
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_computed_value_that_the_list_does_not_ask_for_is_refused():
         ({'id': None}, 'verdict reproduced needs id'),
         ({'tolerance': None}, 'a computed number needs a tolerance'),
         ({'printed': 'negative'}, 'a word has none'),
-        ({'verdict': 'pending'}, 'verdict pending has no id'),
+        ({'verdict': 'not_reproducible'}, 'verdict not_reproducible has no id'),
         ({'verdict': 'erratum'}, 'give `ours` with an erratum'),
         ({'ours': '0.6'}, 'not otherwise'),
         ({'reason': ' '}, 'give a reason'),
@@ -154,4 +154,4 @@ def test_page_has_every_number_in_the_table_of_its_chapter_and_errata_twice():
     tables = page_tables(rows)
     assert [cells[1] for cells in tables['chapter_2'].rows] == ['zeta', 'other']
     assert [cells[1] for cells in tables['errata'].rows] == ['other']
-    assert tables['summary'].rows[-1] == ('all', '1', '0', '0', '1', '0', '0')
+    assert tables['summary'].rows[-1] == ('all', '1', '0', '0', '1', '0')

@@ -1,12 +1,11 @@
-"""Figures 2.11 to 2.28, 3.10 to 3.19 and 5.1: w_d, w_sr and A_x of each group in each loop."""
+"""Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.scores.metrics import compute_metrics
 from ddct_bringup.thesis.groups import RUN_GROUPS, RunGroup
-from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.thesis.table import thesis_row
+from ddct_bringup.thesis.runs import thesis_metrics, thesis_run
+from ddct_bringup.thesis.table import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.chart_style import BLACK, REFERENCE_LINE, line_styles, new_chart
 from ddct_controllers.design.charts import label_time_axis
 from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, ThesisFigure
@@ -69,40 +68,54 @@ def _draw(heading: str, group: RunGroup, quantity: str) -> Drawing:
         reference = rpm_from_rad_s(run.slip_reference[shown, 0])
         axes.plot(run.time_s[shown], reference, label='reference', **REFERENCE_LINE)
     label_time_axis(axes, _LABELS[quantity], (_FIRST_S, run.time_s[-1]))
-    remark = f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(runs, quantity)}'
-    return Drawing(figure, remark + _table_5_1(group, quantity))
+    return Drawing(
+        figure,
+        f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
+        + _table_5_1(group, quantity),
+    )
 
 
-def _scores(runs: dict[str, Trajectory], quantity: str) -> str:
+def _scores(group: RunGroup, runs: dict[str, Trajectory], quantity: str) -> str:
     """Return the score of the quantity, run by run."""
-    control_start_s, window = THESIS_SCENARIO.control_start_s, THESIS_SCENARIO.score_window_s
-    metrics = {
-        name: compute_metrics(run, control_start_s=control_start_s, score_window_s=window)
-        for name, run in runs.items()
+    beside = {
+        thesis_label(name): thesis_run(name, group.architecture, 1.0) for name in group.compared
     }
     parts = []
     for what, metric, form in _SCORES[quantity]:
-        values = [(name, getattr(found, metric)) for name, found in metrics.items()]
-        texts = [
-            f'{name} {"-" if value is None else format(value, form)}' for name, value in values
-        ]
-        parts.append(f'{what}: {", ".join(texts)}')
-    return f'{"; ".join(parts)}.'
+        part = f'{what}: {_texts(runs, metric, form)}'
+        if beside:
+            part += f' (for comparison {_texts(beside, metric, form)})'
+        parts.append(part)
+    return '; '.join(parts)
+
+
+def _texts(runs: dict[str, Trajectory], metric: str, form: str) -> str:
+    values = {name: getattr(thesis_metrics(run), metric) for name, run in runs.items()}
+    return ', '.join(
+        f'{name} {"none" if value is None else format(value, form)}'
+        for name, value in values.items()
+    )
 
 
 def _table_5_1(group: RunGroup, quantity: str) -> str:
     """Return what Table 5.1 prints of these runs, which are those of the detailed model."""
     metric = _SCORES[quantity][0][1]
     rows = [thesis_row(name) for name in group.controllers if group.architecture == 'detailed']
-    printed = [
-        f'{thesis_label(row.controller)} {row.figures()[metric]:.2f}' for row in rows if row
-    ]
-    return f' Table 5.1, used in the calibration: {", ".join(printed)}.' if printed else ''
+    found = ''
+    for use, kind in ((CALIBRATED, 'used'), (PREDICTED, 'not used')):
+        printed = [
+            f'{thesis_label(row.controller)} {row.figures()[metric]:.2f}'
+            for row in rows
+            if row and row.use == use
+        ]
+        if printed:
+            found += f' Table 5.1, {kind} in the calibration: {", ".join(printed)}.'
+    return found
 
 
 def _names(controllers: tuple[str, ...]) -> str:
     labels = [thesis_label(name) for name in controllers if name != 'pi']
-    several = f'{labels[0]}-{labels[-1].lstrip("LSH∞")}' if len(labels) > 1 else labels[0]
+    several = f'{labels[0]}-{labels[-1].lstrip("LSH∞MPC")}' if len(labels) > 1 else labels[0]
     return f'{several} and PI' if 'pi' in controllers else several
 
 

@@ -4,6 +4,7 @@ from functools import cache
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 
@@ -15,3 +16,12 @@ def thesis_run(controller: str, architecture: str, wear_gain: float) -> Trajecto
     """Return the headless run of a controller of the registry."""
     settings = RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain)
     return run_headless(settings, controller)
+
+
+def thesis_metrics(trajectory: Trajectory) -> Metrics:
+    """Return the metrics of such a run."""
+    return compute_metrics(
+        trajectory,
+        control_start_s=THESIS_SCENARIO.control_start_s,
+        score_window_s=THESIS_SCENARIO.score_window_s,
+    )

@@ -30,7 +30,7 @@ REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth'
 """How what should be followed is drawn."""
 BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
 """How what should not be exceeded is drawn."""
-_INDEXED = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
+INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """A symbol with its index and perhaps a power, such as W_s^-1."""
 _STYLE: dict[Any, Any] = {
     'figure.figsize': (8.0, 5.0),
@@ -92,7 +92,7 @@ def save_chart(figure: Figure, path: Path) -> None:
 
 def typeset(text: str) -> str:
     """Return the text with its indexed symbols as Matplotlib's mathematics."""
-    return text if '$' in text else _INDEXED.sub(_mathematics, text)
+    return text if '$' in text else INDEXED_SYMBOL.sub(_mathematics, text)
 
 
 def _mathematics(symbol: re.Match[str]) -> str:

@@ -10,10 +10,10 @@ from ddct_plant.output_file import write_text
 from ddct_plant.page_tables import fill_tables, read_page
 
 _DESCRIPTION = """\
-Draw the figures of the thesis's Chapters 1 to 3 and Figure 5.1 that can be computed,
-as figure_<chapter>_<number>.png, with a page index.html that shows those just drawn and
-tells what agrees with the thesis and what does not. Closed-loop figures come from
-ddct_bringup: they need the installed workspace."""
+Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png, with
+a page index.html that shows them in order and tells what agrees with the thesis and what
+does not, and of the others why they are not drawn. With --only the page shows just
+those. Closed-loop figures come from ddct_bringup: they need the installed workspace."""
 _EXAMPLES = """\
 examples:
   design figures --out figures
@@ -45,7 +45,8 @@ def run(options: argparse.Namespace) -> int:
     # Matplotlib takes half a second to import: the other subcommands do without.
     try:
         from ddct_controllers.design.chart_style import chart_style, save_chart
-        from ddct_controllers.design.thesis_figures import collect, gallery
+        from ddct_controllers.design.thesis_figures import collect, figure_tables, gallery
+        from ddct_controllers.design.thesis_figures.thesis_figure import DrawnFigure
     except ModuleNotFoundError as error:
         raise DdctError(f'figures: Python package {error.name} is missing: install it') from None
 
@@ -58,6 +59,7 @@ def run(options: argparse.Namespace) -> int:
     if options.only:
         wanted = _wanted(options.only, numbers, not_drawn)
         figures = [figure for figure in figures if figure.number in wanted]
+        not_drawn = {}
     folder = Path(options.out)
     pictures = [folder / gallery.picture_name(figure.number) for figure in figures]
     _make_room(folder, [*pictures, folder / _PAGE], gallery.GENERATOR, options.overwrite)
@@ -67,10 +69,10 @@ def run(options: argparse.Namespace) -> int:
         with chart_style():
             drawing = figure.draw(figure.heading)
             save_chart(drawing.figure, picture)
-        drawn.append(gallery.DrawnFigure(figure, drawing.remark))
+        drawn.append(DrawnFigure(figure, drawing.remark))
     write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
     if options.write_doc:
-        tables = gallery.page_tables(drawn, not_drawn)
+        tables = figure_tables.page_tables(drawn, not_drawn)
         write_text(options.write_doc, fill_tables(page, 'figures', tables))
     print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
     return 0

@@ -86,6 +86,9 @@ def run(options: argparse.Namespace) -> int:
             ),
             [_row(entry, settings.wear_gain) for entry in linear],
         )
+        others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
+        if others:
+            print(f'Not linear, without a frequency response: {", ".join(others)}')
     if options.json:
         write_json(options.json, evidence)
     return 0

@@ -21,8 +21,8 @@ from ddct_plant.table import print_table
 
 _DESCRIPTION = """\
 Compute every number that the thesis prints and hold it against the print:
-reproduced, calibrated (fitted to), predicted, erratum (with our value),
-not_reproducible (with the reason) or pending (still to be built)."""
+reproduced, calibrated (fitted to), predicted, erratum (with our value)
+or not_reproducible (with the reason)."""
 _EPILOG = """\
 examples:
   design thesis
@@ -32,7 +32,7 @@ examples:
 
 The exit code is 0 when every claim holds: what is called reproduced or calibrated is
 within its tolerance, and every erratum differs from the print and is the value given
-as ours. Chapter 5 needs the closed loop of ddct_bringup."""
+as ours. Chapters 4 and 5 need the closed loop of ddct_bringup."""
 _SHOWN_COMPLAINTS = 3
 
 

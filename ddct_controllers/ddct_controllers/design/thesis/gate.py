@@ -16,7 +16,7 @@ from ddct_controllers.design.thesis.thesis_number import (
 )
 from ddct_plant.errors import ParameterError
 
-_UNCOMPUTED = 'nothing was computed for it (Chapter 5 is computed where ddct_bringup is installed)'
+_UNCOMPUTED = 'nothing was computed for it (closed loops need ddct_bringup, installed)'
 _ROUNDING = Tolerance(half_units=1.0)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from ddct_controllers.design.thesis.h_infinity_values import h_infinity_values
 from ddct_controllers.design.thesis.loop_shaping_values import loop_shaping_values
 from ddct_controllers.design.thesis.plant_values import plant_values
+from ddct_controllers.design.thesis.predictive_values import predictive_values
 from ddct_controllers.design.thesis.thesis_number import Value
 from ddct_controllers.entry_points import load_entry_point
 from ddct_plant.errors import ParameterError
@@ -20,6 +21,7 @@ OWN_SOURCES: Mapping[str, Source] = {
     'plant': plant_values,
     'loop shaping': loop_shaping_values,
     'H-infinity': h_infinity_values,
+    'predictive control': predictive_values,
 }
 
 

@@ -14,15 +14,14 @@ CALIBRATED = 'calibrated'
 PREDICTED = 'predicted'
 ERRATUM = 'erratum'
 NOT_REPRODUCIBLE = 'not_reproducible'
-PENDING = 'pending'
-VERDICTS = (REPRODUCED, CALIBRATED, PREDICTED, ERRATUM, NOT_REPRODUCIBLE, PENDING)
+VERDICTS = (REPRODUCED, CALIBRATED, PREDICTED, ERRATUM, NOT_REPRODUCIBLE)
 """
 What can be said of a printed number.
 
 `reproduced`: computed here from other numbers. `calibrated`: parameters were fitted to it.
 `predicted`: it comes from what was fitted to other numbers. `erratum`: the computation confirms
 another value. `not_reproducible`: nothing computes it, it is an input of the thesis or has no
-defined scale. `pending`: what computes it is still to be built.
+defined scale.
 """
 COMPUTED_VERDICTS = (REPRODUCED, CALIBRATED, PREDICTED, ERRATUM)
 

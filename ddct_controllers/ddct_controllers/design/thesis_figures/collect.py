@@ -18,7 +18,6 @@ _LAST_FIGURES = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
 """Number of figures by chapter."""
 _PICTURE = 'a photograph or a scheme: nothing to compute'
 _DIAGRAM = 'a block diagram: nothing to compute'
-_PREDICTIVE = 'needs the predictive controllers of Chapter 4, which are yet to be built'
 _NOT_DRAWN = {
     **{f'1.{place}': _PICTURE for place in range(1, 9)},
     **{f'1.{place}': _DIAGRAM for place in (9, 10, 11, 13, 15, 16, 17, *range(20, 23))},
@@ -27,7 +26,6 @@ _NOT_DRAWN = {
     '1.19': 'a table that names the driveline parameters without their values',
     **dict.fromkeys(('2.1', '3.1', '3.2', '3.4', '4.2'), _DIAGRAM),
     '4.1': 'explains the horizons: nothing to compute',
-    **{f'4.{place}': _PREDICTIVE for place in range(3, 9)},
 }
 _LEFT_OUT = 'its package is not installed: build the workspace and source install/setup.bash'
 

@@ -1,39 +1,28 @@
-"""What shows the figures: a gallery beside the pictures, and the tables of docs/figures.md."""
+"""The page that shows the figures in the order of the thesis, with reasons for what is missing."""
 
 import html
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 
-from ddct_controllers.design.thesis_figures.thesis_figure import ThesisFigure
+from ddct_controllers.design.chart_style import INDEXED_SYMBOL
+from ddct_controllers.design.thesis_figures.gallery_style import STYLE
+from ddct_controllers.design.thesis_figures.thesis_figure import DrawnFigure, figure_order
 
 GENERATOR = '<meta name="generator" content="design figures">'
 """Marks a page as written here, so that it may be replaced."""
+CHAPTERS = {
+    1: 'The transmission and its models',
+    2: 'Loop shaping',
+    3: 'H-infinity',
+    4: 'Predictive control',
+    5: 'Comparison',
+}
+"""Subjects of the thesis's chapters that have figures."""
 _INTRODUCTION = (
-    'The figures of the thesis that can be computed, drawn from the identified driveline and the '
-    'calibrated scenario. The thesis prints few numbers beside its figures: where it does, they '
-    'stand here next to ours.'
+    'Drawn from the identified driveline and the calibrated scenario. Below each figure stands '
+    'what agrees with the thesis and what does not. The thesis prints few numbers beside its '
+    'figures; where it does, they stand next to ours.'
 )
-_STYLE = (
-    'body{font-family:sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#111}'
-    'figure{margin:2.5rem 0}img{max-width:100%;height:auto}'
-    'figcaption{line-height:1.4}td,th{text-align:left;padding:.15rem .8rem .15rem 0}'
-)
-
-
-@dataclass(frozen=True)
-class DrawnFigure:
-    """A figure with what its drawing found out."""
-
-    figure: ThesisFigure
-    remark: str
-
-
-@dataclass(frozen=True)
-class FigureTable:
-    """A table of the documentation."""
-
-    headers: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
 
 
 def picture_name(number: str) -> str:
@@ -42,50 +31,76 @@ def picture_name(number: str) -> str:
 
 
 def gallery_page(drawn: Sequence[DrawnFigure], not_drawn: Mapping[str, str]) -> str:
-    """Return the HTML of the gallery; pictures are linked relative to it."""
-    rows = [
-        f'<tr><td>{numbers}</td><td>{html.escape(reason)}</td></tr>'
-        for numbers, reason in _by_reason(not_drawn)
+    """
+    Return the HTML of the gallery; pictures are linked relative to it.
+
+    `not_drawn` has the reasons by number. The page shows what is in either, in order.
+    """
+    entries = {entry.figure.number: _picture(entry) for entry in drawn}
+    numbers = sorted((*entries, *not_drawn), key=figure_order)
+    chapters = {
+        chapter: list(found)
+        for chapter, found in groupby(numbers, key=lambda number: figure_order(number)[0])
+    }
+    links = [
+        f'<a href="#chapter-{chapter}">{chapter} {CHAPTERS[chapter]}</a>' for chapter in chapters
     ]
-    table = ['<h2>Not drawn</h2>', '<table>', *rows, '</table>'] if rows else []
+    sections = [
+        part
+        for chapter, found in chapters.items()
+        for part in (
+            f'<section id="chapter-{chapter}"><h2>Chapter {chapter}: {CHAPTERS[chapter]}</h2>',
+            *_entries(found, entries, not_drawn),
+            '</section>',
+        )
+    ]
     return '\n'.join(
         (
             '<!doctype html>',
             '<html lang="en"><head><meta charset="utf-8">',
             GENERATOR,
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f'<title>Figures of the thesis</title><style>{_STYLE}</style></head><body>',
-            '<h1>Figures of the thesis, computed</h1>',
-            f'<p>{_INTRODUCTION}</p>',
-            *(_picture(entry) for entry in drawn),
-            *table,
-            '</body></html>\n',
+            f'<title>Figures of the thesis</title><style>{STYLE}</style></head><body>',
+            '<header><h1>Figures of the thesis, computed</h1>',
+            f'<p>{len(drawn)} of {len(numbers)} figures are drawn. {_INTRODUCTION}</p>',
+            f'<nav>{" ".join(links)}</nav></header>',
+            '<main>',
+            *sections,
+            '</main></body></html>\n',
         )
     )
 
 
-def page_tables(
-    drawn: Sequence[DrawnFigure], not_drawn: Mapping[str, str]
-) -> dict[str, FigureTable]:
-    """Return the tables of docs/figures.md by name."""
-    rows = tuple((entry.figure.number, entry.figure.title, entry.remark) for entry in drawn)
-    return {
-        'drawn': FigureTable(('figure', 'shows', 'what agrees, what does not'), rows),
-        'not_drawn': FigureTable(('figures', 'reason'), _by_reason(not_drawn)),
-    }
+def _entries(
+    numbers: Sequence[str], drawn: Mapping[str, str], not_drawn: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the HTML of figures in order; neighbours with the same reason share one line."""
+    for reason, found in groupby(numbers, key=lambda number: not_drawn.get(number, '')):
+        if not reason:
+            yield from (drawn[number] for number in found)
+            continue
+        first, *others = found
+        which = f'Figures {first} to {others[-1]}' if others else f'Figure {first}'
+        yield f'<p class="absent"><b>{which}:</b> {_text(reason)}.</p>'
 
 
 def _picture(entry: DrawnFigure) -> str:
-    name, heading = picture_name(entry.figure.number), html.escape(entry.figure.heading)
+    figure, name = entry.figure, picture_name(entry.figure.number)
     return (
-        f'<figure id="f{entry.figure.number}"><img src="{name}" alt="{heading}" loading="lazy">'
-        f'<figcaption><b>{heading}.</b> {html.escape(entry.remark)}</figcaption></figure>'
+        f'<figure id="figure-{figure.number}">'
+        f'<a href="{name}"><img src="{name}" alt="{html.escape(figure.heading)}" loading="lazy" '
+        'width="1040" height="650"></a>'
+        f'<figcaption><b>Figure {figure.number}: {_text(figure.title)}.</b> {_text(entry.remark)}'
+        '</figcaption></figure>'
     )
 
 
-def _by_reason(not_drawn: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Return the numbers that share a reason, and the reason."""
-    shared: dict[str, list[str]] = {}
-    for number, reason in not_drawn.items():
-        shared.setdefault(reason, []).append(number)
-    return tuple((', '.join(numbers), reason) for reason, numbers in shared.items())
+def _text(text: str) -> str:
+    """Return text as HTML, symbols such as w_sr or W_s^-1 with their indices and powers."""
+    return INDEXED_SYMBOL.sub(
+        lambda symbol: (
+            f'<i>{symbol[1]}</i><sub>{symbol[2]}</sub>'
+            + (f'<sup>{symbol[3]}</sup>' if symbol[3] else '')
+        ),
+        html.escape(text),
+    )

@@ -35,6 +35,14 @@ class ThesisFigure:
         return f'Figure {self.number}: {self.title}'
 
 
+@dataclass(frozen=True)
+class DrawnFigure:
+    """A figure with what its drawing found out."""
+
+    figure: ThesisFigure
+    remark: str
+
+
 def figure_order(number: str) -> tuple[int, int]:
     """Return the chapter and the place of a number such as '2.10'; raise ParameterError."""
     chapter, _, place = number.partition('.')
