@@ -1,7 +1,6 @@
 """Run one node, or several in one process, until done or asked to stop."""
 
 import gc
-import signal
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -14,6 +13,8 @@ from rclpy.task import Future
 
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.node_help import help_asked, node_help
+from ddct_plant.stop_signals import stop_signals
 
 SLICE_S = 0.1
 """How often signals are looked at, and the longest time the executor is left alone."""
@@ -70,14 +71,6 @@ def spin_until(executor: Executor, over: Future) -> None:
         executor.spin_until_future_complete(over, SLICE_S)
 
 
-def stop_signals() -> list[int]:
-    """Catch SIGINT and SIGTERM from now on, and return the list that they are put into."""
-    received: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda caught, _frame: received.append(caught))
-    return received
-
-
 def finish_node(executor: Executor, node: GraphNode) -> None:
     """Let the node take in what has already reached it, then flush it."""
     if not node.done.done():
@@ -97,18 +90,31 @@ def run_node(
     """
     Run the node that `factory` builds and return the exit code of its program.
 
-    0 after its work is done or after SIGINT or SIGTERM; 1, with one line on standard error, after
-    a DdctError.
+    0 after its work is done, after SIGINT or SIGTERM, or after `--help`; 1, with one line on
+    standard error, after a DdctError.
     """
-    stops = stop_signals()
+    if help_asked(sys.argv[1:] if arguments is None else arguments):
+        print(node_help(name, factory))
+        return 0
+    with stop_signals() as stops:
+        error = _run(factory, arguments, lambda: bool(stops))
+    if error is None:
+        return 0
+    print(f'{name}: {error}', file=sys.stderr, flush=True)
+    return 1
+
+
+def _run(
+    factory: Callable[[], GraphNode], arguments: list[str] | None, stopped: Callable[[], bool]
+) -> DdctError | None:
     try:
         _init(arguments)
         node = factory()
         executor = make_executor()
         executor.add_node(node)
-        spin_until(executor, end_of([node], lambda: bool(stops)))
+        spin_until(executor, end_of([node], stopped))
         finish_node(executor, node)
-        error = node.done.result() if node.done.done() else None
+        error: DdctError | None = node.done.result() if node.done.done() else None
         node.destroy_node()
     except DdctError as failure:
         error = failure
@@ -116,10 +122,7 @@ def run_node(
         error = None
     finally:
         rclpy.try_shutdown()
-    if error is None:
-        return 0
-    print(f'{name}: {error}', file=sys.stderr, flush=True)
-    return 1
+    return error
 
 
 def _init(arguments: list[str] | None) -> None:

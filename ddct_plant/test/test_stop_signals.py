@@ -1,0 +1,22 @@
+"""Signals are caught for as long as work lasts, and not a moment longer."""
+
+import os
+import signal
+
+import pytest
+
+from ddct_plant.stop_signals import stop_signals
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_is_noted_and_its_handler_comes_back(number):
+    heard = []
+    before = signal.signal(number, lambda *_: heard.append('before'))
+    try:
+        with stop_signals() as stops:
+            os.kill(os.getpid(), number)
+        assert (stops, heard) == ([number], [])
+        os.kill(os.getpid(), number)
+        assert (stops, heard) == ([number], ['before'])
+    finally:
+        signal.signal(number, before)
