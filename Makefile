@@ -22,7 +22,7 @@ BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/config ddct_
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))
-NEEDED_AT_RUN := control, daqp, matplotlib, osqp, scipy.signal, yaml, rich, mcap_ros2.decoder, rclpy, \
+NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, yaml, rich, mcap_ros2.decoder, rclpy, \
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
@@ -64,7 +64,7 @@ $(WORKSPACE_BUILT): $(VENV_MADE) $(BUILD_INPUTS)
 
 demo: setup
 	@$(SOURCED) install/ddct_bringup/lib/ddct_bringup/compare \
-	    --controllers pi,ls8,hinf1 --out runs/demo --overwrite
+	    --controllers pi,ls8,hinf1,mpc3,mpc4 --out runs/demo --overwrite
 
 # Both runs always take place. A package whose tests colcon did not find counts as a failure.
 TEST_FOLDERS := $(wildcard ddct_*/test tests)

@@ -10,7 +10,7 @@ MPC_STUDIES = {
     'engine_authority': ['engine_authority'],
     'mpc4_readings': ['mpc4_readings'],
     'readings': ['readings'],
-    'state_of_art': ['state_of_art'],
+    'state_of_art': ['state_of_art', 'pedal_positions'],
     'torque_level': ['torque_level'],
     'torsion_weight': ['torsion_weight'],
     'two_input_wear': ['two_input_wear'],
@@ -23,6 +23,7 @@ setup(
     name=PACKAGE,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
+    package_data={f'{PACKAGE}.report_page': ['*.j2', '*.css', '*.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -42,6 +43,7 @@ setup(
             'calibrate = ddct_bringup.calibrate:main',
             'compare = ddct_bringup.compare:main',
             'recorder = ddct_bringup.recorder_node:main',
+            'report = ddct_bringup.report:main',
             'score = ddct_bringup.score:main',
         ],
         'ddct.mpc_studies': [

@@ -4,6 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from ddct_bringup.report import REPORT_FILE, write_report
+from ddct_bringup.report_page.output import require_chart_library
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
@@ -26,9 +28,9 @@ examples:
   compare --controllers all --wear-gain 0.7 --out runs/worn
   compare --controllers pi,mine --headless --json - --out runs/mine
 
-Writes one bag per controller, DIR/scores.json, and DIR/frequency.json with the margins of
-the linear ones. Either every run is valid, or DIR is not touched, what was recorded stays in
-DIR.partial, and the exit code is 1.
+Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
+linear ones, and DIR/report.html, a page that shows all of it. Either every run is valid, or DIR
+is not touched, what was recorded stays in DIR.partial, and the exit code is 1.
 """
 
 
@@ -44,6 +46,7 @@ def _compare(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bags')
+    require_chart_library()
     settings = settings_of(options)
     plans = [RunPlan(settings, name, options.layout) for name in _controllers(options.controllers)]
     folder = StagedFolder(options.out, overwrite=options.overwrite)
@@ -57,9 +60,11 @@ def _compare(argv: list[str]) -> int:
     if failed:
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
     write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
+    write_report([folder.path], str(folder.path / REPORT_FILE))
     folder.commit()
     print(
-        f'{PROGRAM}: bags, {SCORES_FILE} and {FREQUENCY_FILE} are in {folder.final}',
+        f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
+        f'{folder.final}',
         file=sys.stderr,
     )
     return 0

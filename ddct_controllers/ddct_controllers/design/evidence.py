@@ -15,6 +15,7 @@ from ddct_plant.errors import DdctError
 from ddct_plant.lti import StateSpace
 from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import scenario_digest
 from ddct_plant.timebase import PERIOD_S
 
 Evidence = dict[str, Any]
@@ -33,6 +34,7 @@ def frequency_evidence(names: Sequence[str], settings: RunSettings) -> Evidence:
     return {
         'conditions': {
             'scenario': settings.scenario.name,
+            'scenario_digest': scenario_digest(settings.scenario),
             'period_s': PERIOD_S,
             'delay_s': PERIOD_S,
             'wear_gain_range': [WEAR_GAINS[0], WEAR_GAINS[-1]],

@@ -1,0 +1,1 @@
+"""The page that `report` writes: what is on it, and how it looks."""

@@ -1,0 +1,38 @@
+"""Where a page may go, and what it takes to make one."""
+
+import importlib.util
+from pathlib import Path
+
+from ddct_plant.errors import DdctError
+from ddct_plant.output_file import STDOUT
+
+MARKER = '<meta name="generator" content="ddct_bringup report">'
+"""Tells a page that this program wrote, and may replace, from other files."""
+
+_HEAD_BYTES = 1000
+"""The marker stands within these."""
+
+
+def require_chart_library() -> None:
+    """Raise DdctError where the package that draws the charts is not installed."""
+    if importlib.util.find_spec('bokeh') is None:
+        raise DdctError('the report needs the Python package bokeh: pip install bokeh')
+
+
+def require_writable(out: str) -> None:
+    """Raise DdctError where the page cannot go, or would replace what is no page of ours."""
+    if out == STDOUT:
+        return
+    path = Path(out)
+    if path.is_dir():
+        raise DdctError(f'--out {out} is a folder: name a file, such as {path / "report.html"}')
+    if not path.parent.is_dir():
+        raise DdctError(f'--out {out}: there is no folder {path.parent}: make it first')
+    try:
+        if path.is_file() and path.stat().st_size:
+            with path.open('rb') as file:
+                ours = MARKER.encode() in file.read(_HEAD_BYTES)
+            if not ours:
+                raise DdctError(f'--out {out} is a file that is not ours: choose another name')
+    except OSError as error:
+        raise DdctError(f'--out {out}: cannot be read ({error.strerror})') from error

@@ -1,0 +1,55 @@
+"""Labels of the report tell runs apart and say no more than needed."""
+
+from ddct_bringup.report_page.labels import common_conditions, run_labels
+
+
+def entry(controller='pi', bag=None, **changes):
+    conditions = {
+        'architecture': 'detailed',
+        'clutch': 'linear',
+        'wear_gain': 1.0,
+        'mode': 'lockstep',
+        'seed': 0,
+    }
+    return {'controller': controller, 'bag': bag or controller, **conditions, **changes}
+
+
+def test_controllers_in_the_same_conditions_go_by_their_names():
+    entries = [entry('pi'), entry('ls8')]
+    assert run_labels(entries) == ['pi', 'ls8']
+    assert common_conditions(entries) == [
+        'detailed',
+        'linear clutch',
+        'wear 1',
+        'lockstep',
+        'seed 0',
+    ]
+
+
+def test_wear_gains_and_architectures_are_named_where_runs_differ_in_them():
+    entries = [
+        entry(wear_gain=0.7),
+        entry(wear_gain=1.3),
+        entry(wear_gain=1.3, architecture='feedforward'),
+    ]
+    assert run_labels(entries) == [
+        'pi, detailed, wear 0.7',
+        'pi, detailed, wear 1.3',
+        'pi, feedforward, wear 1.3',
+    ]
+    assert common_conditions(entries) == ['linear clutch', 'lockstep', 'seed 0']
+
+
+def test_the_same_run_twice_is_told_apart_by_the_bag():
+    entries = [entry(bag='new/pi'), entry(bag='old/pi'), entry('ls8')]
+    assert run_labels(entries) == ['pi (new/pi)', 'pi (old/pi)', 'ls8']
+
+
+def test_labels_are_never_the_same():
+    assert run_labels([entry(bag='a')] * 3) == ['pi (a)', 'pi (a) #2', 'pi (a) #3']
+
+
+def test_a_bag_that_tells_nothing_goes_by_its_name():
+    unknown = dict.fromkeys(entry(), None) | {'bag': 'broken/pi'}
+    assert run_labels([entry('ls8'), unknown]) == ['ls8', 'broken/pi']
+    assert common_conditions([unknown]) == []

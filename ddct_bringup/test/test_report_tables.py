@@ -1,0 +1,110 @@
+"""Cells of the report's tables, from entries and timing alone."""
+
+import dataclasses
+
+import pytest
+
+from ddct_bringup.report_page.evidence import LoopEvidence
+from ddct_bringup.report_page.loop_table import (
+    LOOP_COLUMNS,
+    NOT_LINEAR,
+    loop_rows,
+    without_evidence,
+)
+from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.report_page.summary import TABLE_5_1, comparable_rows, metric_cells
+from ddct_bringup.report_page.update_times import TICKS, update_times
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+THESIS = load_scenario('thesis')
+
+
+def run(controller='ls8', settings=None, timing=None, **metrics):
+    entry = {
+        'bag': controller,
+        'controller': controller,
+        'metrics': dict.fromkeys(METRIC_NAMES) | metrics,
+    }
+    return ReportRun(entry, timing=timing, settings=settings)
+
+
+@pytest.mark.parametrize(
+    'settings',
+    [
+        RunSettings(THESIS, wear_gain=0.7),
+        RunSettings(THESIS, architecture='feedforward'),
+        RunSettings(dataclasses.replace(THESIS, duration_s=4.0)),
+        None,
+    ],
+)
+def test_other_conditions_than_the_thesis_s_are_not_set_beside_it(settings):
+    assert comparable_rows([run(settings=settings)]) == [None]
+
+
+def test_the_thesis_s_conditions_are():
+    rows = comparable_rows([run('ls8', RunSettings(THESIS)), run('ls1', RunSettings(THESIS))])
+    assert [row and row.label for row in rows] == ['LS8', None]
+
+
+def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
+    runs = [
+        run('ls8', RunSettings(THESIS), engagement_time_s=0.781),
+        run('ls1', RunSettings(THESIS), engagement_time_s=1.562),
+        run('pi'),
+    ]
+    cells = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
+    assert (cells[0].value, cells[0].text, cells[0].share) == (0.781, '0.781', 0.5)
+    assert (cells[0].thesis_text, cells[0].difference) == ('0.71', '+10 %')
+    assert cells[0].thesis_share == pytest.approx(0.71 / 1.562)
+    assert (cells[1].share, cells[1].thesis) == (1.0, None)
+    assert (cells[2].value, cells[2].text, cells[2].share) == (None, '–', 0.0)
+
+
+def test_update_times_lie_on_a_logarithmic_scale():
+    timing = RunTiming([10.0, 100.0, 20000.0], missed_steps=1, resends=2)
+    times = update_times(
+        run(timing=timing, update_time_median_us=100.0, update_time_p99_us=10000.0)
+    )
+    assert times is not None
+    assert times.median_place == pytest.approx(0.4)
+    assert times.p99_place == pytest.approx(TICKS[-1][1])
+    assert (times.largest_us, times.over_period, times.missed_steps) == (20000.0, 1, 1)
+
+
+def test_a_run_without_update_times_has_none():
+    assert update_times(run()) is None
+    assert update_times(run(timing=RunTiming())) is None
+
+
+def test_evidence_is_shown_at_the_wear_gain_of_the_run():
+    figures = {key: 1.0 for key, *_ in LOOP_COLUMNS}
+    entry = {
+        'linear': True,
+        'wear': [
+            {'wear_gain': 0.7, 'stable': True, **figures},
+            {'wear_gain': 1.0, 'stable': False, **dict.fromkeys(figures)},
+        ],
+        'stable_wear_gain': {'lowest': 0.0, 'highest': 0.9},
+        'corners': {'sensitivity_peak': None, 'unstable': 3},
+    }
+    worn, new = loop_rows([LoopEvidence('pi', 0.7, entry), LoopEvidence('pi', 1.0, entry)])
+    assert (worn.stable, worn.cells[0]) == (True, (1.0, '1.0'))
+    assert (new.stable, new.cells[0]) == (False, (None, '–'))
+    assert (new.stable_wear, new.corner_peak, new.corners_unstable) == ('0.00 to 0.90', '–', '3')
+
+
+def test_controllers_without_evidence_are_named_with_the_reason():
+    evidence = [
+        LoopEvidence('mpc3', 0.7, {'linear': False, 'wear': None}),
+        LoopEvidence('mpc3', 1.0, {'linear': False, 'wear': None}),
+        LoopEvidence('mpc4', 1.0, {'linear': False, 'wear': None}),
+        LoopEvidence('mine', 1.0, None, 'unknown controller'),
+    ]
+    assert loop_rows(evidence) == []
+    assert without_evidence(evidence) == {
+        NOT_LINEAR: ['mpc3', 'mpc4'],
+        'unknown controller': ['mine'],
+    }

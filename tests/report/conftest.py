@@ -1,0 +1,36 @@
+"""Headless runs of the thesis's scenario, and the page over them."""
+
+import json
+from pathlib import Path
+
+import pytest
+from support.runs import plan, record
+
+from ddct_bringup.report import main
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_controllers.design.evidence import frequency_evidence
+from ddct_plant.scenario_file import scenario_digest
+
+CONTROLLERS = ('pi', 'ls8', 'hinf1')
+
+
+@pytest.fixture(scope='session')
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with one whole run per controller, and their frequency evidence."""
+    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
+    folder = tmp_path_factory.mktemp('runs') / 'demo'
+    for name in CONTROLLERS:
+        record(plan(name, 'headless', duration_s=3.0), folder / name)
+    settings = plan(duration_s=3.0).settings
+    evidence = frequency_evidence(CONTROLLERS, settings)
+    evidence['conditions']['scenario_digest'] = scenario_digest(settings.scenario)
+    (folder / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
+    return folder
+
+
+@pytest.fixture(scope='session')
+def page(demo: Path) -> Path:
+    """Return the report over `demo`."""
+    out = demo.parent / 'report.html'
+    assert main([str(demo), '--out', str(out)]) == 0
+    return out

@@ -1,0 +1,24 @@
+"""Measure how long a browser takes to draw all of a report: python load_times.py PAGE..."""
+
+import statistics
+import sys
+from pathlib import Path
+
+from headless_chromium import visit
+
+REPEATS = 5
+
+
+def main() -> None:
+    """Print size and load time of each page that the command line names."""
+    for name in sys.argv[1:]:
+        page = Path(name)
+        times = [visit(page).ready_ms for _ in range(REPEATS)]
+        print(
+            f'{name}: {page.stat().st_size / 1e6:.2f} MB, drawn after '
+            f'{statistics.median(times):.0f} ms ({min(times):.0f} to {max(times):.0f})'
+        )
+
+
+if __name__ == '__main__':
+    main()

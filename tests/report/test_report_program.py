@@ -1,0 +1,219 @@
+"""The program `report`: the numbers on its page, and what it says of bad input."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from page_reader import PageReader
+from support.processes import Programs
+from support.runs import plan, record
+
+from ddct_bringup.bag.reader import mcap_of
+from ddct_bringup.report import main
+from ddct_bringup.score import main as score
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_plant.run_settings import RunSettings
+
+
+def scores_of(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict]:
+    score([str(folder), '--json', '-'])
+    return json.loads(capsys.readouterr().out)['runs']
+
+
+def read(page: Path) -> PageReader:
+    return PageReader(page.read_text(encoding='utf-8'))
+
+
+def test_the_page_has_every_metric_of_scores_json_to_the_last_bit(
+    demo: Path, page: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    by_controller = {run['controller']: run['metrics'] for run in scores_of(demo, capsys)}
+    metrics = [by_controller[name] for name in ('pi', 'ls8', 'hinf1')]
+    shown: dict[str, list[float | None]] = {}
+    for name, value, _ in read(page).metrics:
+        shown.setdefault(name, []).append(value)
+    assert shown == {name: [each[name] for each in metrics] for name in metrics[0]}
+
+
+def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None:
+    reader = read(page)
+    for name, value, text in reader.metrics:
+        assert value is not None, name
+        decimals = len(text.partition('.')[2])
+        assert float(text.replace('−', '-')) == pytest.approx(value, abs=0.51 * 10.0**-decimals)
+    for printed in ('0.88', '0.71', '0.79', '1.15', '0.87', 'calibrated'):
+        assert printed in reader.text
+
+
+def test_the_page_says_where_it_comes_from(page: Path) -> None:
+    text = read(page).text
+    for told in ('thesis', '0.1.0', 'halfshaft_stiffness: 6716.3112', 'detailed', 'lockstep'):
+        assert told in text
+    assert 'gains.proportional_gain = 0.103' in text
+
+
+def test_nothing_on_the_page_comes_from_elsewhere(page: Path) -> None:
+    reader = read(page)
+    assert {link for link in reader.links if not link.startswith('#')} == {'data:,'}
+    assert 'url(' not in reader.styles
+    assert '@import' not in reader.styles
+
+
+def test_the_page_of_the_same_runs_is_the_same_file(
+    demo: Path, programs: Programs, tmp_path: Path
+) -> None:
+    pages = []
+    for name in ('first.html', 'second.html'):
+        arguments = [str(demo / 'pi'), '--out', str(tmp_path / name)]
+        program = programs.start_module('ddct_bringup.report', *arguments)
+        assert program.wait() == 0, program.errors()
+        pages.append((tmp_path / name).read_bytes())
+    assert pages[0] == pages[1]
+
+
+def test_a_damaged_bag_is_marked_and_the_others_stay(
+    demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs = tmp_path / 'demo'
+    shutil.copytree(demo, runs)
+    file = mcap_of(runs / 'ls8')
+    file.write_bytes(file.read_bytes()[:-10])
+    out = tmp_path / 'report.html'
+    assert main([str(runs), '--out', str(out)]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('report: ls8: ')
+    assert 'unfinished' in error
+    reader = read(out)
+    assert '1 of 3 runs is invalid' in reader.text
+    assert 'the recording is unfinished' in reader.text
+    engagement = [value for name, value, _ in reader.metrics if name == 'engagement_time_s']
+    assert [value is None for value in engagement] == [False, True, False]
+
+
+def test_a_run_that_ended_early_is_marked(demo: Path, tmp_path: Path) -> None:
+    from ddct_bringup.bag.trajectory_bag import write_trajectory
+    from ddct_bringup.headless import run_headless
+    from ddct_bringup.run.record import custom_data
+
+    whole, short = plan('pi', 'headless', duration_s=3.0), plan('pi', 'headless', duration_s=1.0)
+    write_trajectory(
+        run_headless(short.settings, 'pi'),
+        tmp_path / 'pi',
+        'pi',
+        custom_data(whole.settings, 'pi', whole.steps),
+        {'load': (('version', '0.1.0'),)},
+    )
+    out = tmp_path / 'report.html'
+    assert main([str(tmp_path / 'pi'), str(demo / 'ls8'), '--out', str(out)]) == 1
+    assert 'ended early: 100 of 300 steps' in read(out).text
+
+
+def test_runs_of_several_scenarios_are_refused_and_named(
+    demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    steep = plan('pi', 'headless', duration_s=3.0, changes=('load.slope_rad=0.05',))
+    record(steep, tmp_path / 'steep')
+    out = tmp_path / 'report.html'
+    assert main([str(demo), str(tmp_path / 'steep'), '--out', str(out)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith('report: the runs are of 2 scenarios')
+    assert 'steep' in line
+    assert 'ls8' in line
+    assert not out.exists()
+
+
+def test_wear_gains_and_architectures_of_one_scenario_are_told_apart(
+    demo: Path, tmp_path: Path
+) -> None:
+    worn = plan('ls8', 'headless', duration_s=3.0, wear_gain=0.7)
+    record(worn, tmp_path / 'worn')
+    other = plan('ls8', 'headless', duration_s=3.0)
+    settings = RunSettings(other.settings.scenario, 'feedforward')
+    record(type(other)(settings, 'ls8', 'headless'), tmp_path / 'other')
+    out = tmp_path / 'report.html'
+    bags = [str(folder) for folder in (demo / 'ls8', tmp_path / 'worn', tmp_path / 'other')]
+    assert main([*bags, '--out', str(out)]) == 0
+    text = read(out).text
+    for label in ('ls8, detailed, wear 1', 'ls8, detailed, wear 0.7', 'ls8, feedforward, wear 1'):
+        assert label in text
+
+
+def test_the_same_bag_named_twice_is_one_run(demo: Path, tmp_path: Path) -> None:
+    out = tmp_path / 'report.html'
+    assert main([str(demo / 'pi'), str(mcap_of(demo / 'pi').parent), '--out', str(out)]) == 0
+    assert '1 run' in read(out).text
+
+
+def test_evidence_beside_the_bags_is_taken_only_when_it_is_of_their_scenario(
+    demo: Path, page: Path, tmp_path: Path
+) -> None:
+    assert 'Computed for this page' not in read(page).text
+    shutil.copytree(demo / 'pi', tmp_path / 'pi')
+    evidence = json.loads((demo / FREQUENCY_FILE).read_text(encoding='utf-8'))
+    evidence['conditions']['scenario_digest'] = 'another'
+    evidence['controllers'][0]['wear'] = []
+    (tmp_path / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
+    out = tmp_path / 'report.html'
+    assert main([str(tmp_path / 'pi'), '--out', str(out)]) == 0
+    assert 'Computed for this page' in read(out).text
+    assert re.search(r'pi\s*1\s*yes\s*9\.7\s*75\.6', read(out).text)
+
+
+@pytest.mark.parametrize(
+    ('out', 'says'),
+    [
+        ('missing/report.html', 'there is no folder'),
+        ('notes.txt', 'is a file that is not ours'),
+        ('.', 'is a folder'),
+    ],
+)
+def test_a_page_that_cannot_go_there_is_refused_before_work(
+    out: str, says: str, demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'notes.txt').write_text('mine', encoding='utf-8')
+    assert main([str(demo), '--out', str(tmp_path / out)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert says in line
+    assert (tmp_path / 'notes.txt').read_text(encoding='utf-8') == 'mine'
+
+
+def test_an_earlier_page_of_ours_is_replaced(demo: Path, page: Path, tmp_path: Path) -> None:
+    out = tmp_path / 'report.html'
+    shutil.copy(page, out)
+    assert main([str(demo / 'pi'), '--out', str(out)]) == 0
+    assert 'hinf1' not in read(out).text
+
+
+def test_no_runs_or_no_readable_one_is_an_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main([])
+    assert ended.value.code == 2
+    out = tmp_path / 'report.html'
+    (tmp_path / 'empty').mkdir()
+    assert main([str(tmp_path / 'empty'), '--out', str(out)]) == 1
+    assert 'no .mcap file in this folder or below it' in capsys.readouterr().err
+    (tmp_path / 'empty' / 'pi.mcap').write_bytes(b'')
+    assert main([str(tmp_path / 'empty'), '--out', str(out)]) == 1
+    assert 'none of the 1 bags can be read' in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_without_the_chart_library_the_program_says_what_to_install(
+    demo: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
+    assert main([str(demo)]) == 1
+    assert capsys.readouterr().err == (
+        'report: the report needs the Python package bokeh: pip install bokeh\n'
+    )
+
+
+def test_the_page_goes_to_standard_output_on_request(
+    demo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([str(demo / 'pi'), '--out', '-']) == 0
+    assert capsys.readouterr().out.startswith('<!DOCTYPE html>')
