@@ -19,12 +19,12 @@ class TorqueProfile:
     time_s: tuple[float, ...]
     """Scenario times in s, strictly increasing."""
     torque_n_m: tuple[float, ...]
-    """C_m in N m at those times, not negative."""
+    """C_m in N m at those times, from 0 to 10 kN m."""
 
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
-        _require_points('engine.time_s', self.time_s, at_least=None)
-        _require_points('engine.torque_n_m', self.torque_n_m, at_least=0.0)
+        _require_points('engine.time_s', self.time_s)
+        _require_points('engine.torque_n_m', self.torque_n_m, at_least=0.0, at_most=1e4)
         if len(self.time_s) != len(self.torque_n_m):
             raise ParameterError(
                 f'engine has {len(self.time_s)} times and {len(self.torque_n_m)} torques: '
@@ -37,11 +37,16 @@ class TorqueProfile:
                 )
 
 
-def _require_points(name: str, values: Sequence[float], at_least: float | None) -> None:
+def _require_points(
+    name: str,
+    values: Sequence[float],
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> None:
     if not values:
         raise ParameterError(f'{name} is empty: give at least one point')
     for index, value in enumerate(values):
-        require_number(f'{name}[{index}]', value, at_least=at_least)
+        require_number(f'{name}[{index}]', value, at_least=at_least, at_most=at_most)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from bare_chain import WIRING
+from exported_mpc import measure as measure_exported
+from exported_mpc import print_table as print_exported
 from mpc_step import measure as measure_mpc_step
 from mpc_step import print_table as print_mpc_step
 from qp import measure as measure_qp
@@ -63,6 +65,8 @@ def main() -> int:
     print_qp(programs)
     mpc_step = measure_mpc_step()
     print_mpc_step(mpc_step)
+    exported = measure_exported()
+    print_exported(exported)
     if options.json:
         figures = {
             **results,
@@ -70,6 +74,7 @@ def main() -> int:
             'synthesis': synthesis,
             'quadratic_programs': programs,
             'mpc_step': mpc_step,
+            'exported_mpc': exported,
         }
         write_json(options.json, figures)
     return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1

@@ -23,6 +23,7 @@ _NOTE = (
     'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '
     'fit residual;\npredicted: the row took no part in the fit.'
 )
+_NO_CROSSING = "t_a '-': after control start w_d never changed its sign."
 
 
 def print_comparison(
@@ -55,6 +56,8 @@ def print_comparison(
     print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
     if like_thesis and any(thesis_row(run['controller']) for run in runs):
         print(_NOTE, file=stream)
+    if any(run['valid'] and run['metrics']['engagement_time_s'] is None for run in runs):
+        print(_NO_CROSSING, file=stream)
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:

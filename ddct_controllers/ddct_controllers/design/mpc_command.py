@@ -4,6 +4,11 @@ import argparse
 import sys
 from typing import Any
 
+from ddct_controllers.design.mpc_export import (
+    add_options,
+    require_no_export_options,
+    run_export,
+)
 from ddct_controllers.design.study import Study, all_studies
 from ddct_plant.checks import require_choice
 from ddct_plant.errors import DdctError
@@ -20,6 +25,7 @@ examples:
   design mpc --study readings             MPC1-3 under the readings of Table 4.1
   design mpc --study wear --json wear.json
   design mpc --write-doc docs/mpc.md      fill in the tables that the page marks
+  design mpc --export control_unit --controller mpc_offset_free
 
 The studies need the closed loop of ddct_bringup."""
 
@@ -36,11 +42,15 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
     parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    add_options(parser)
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Make the tables, print them or write them where asked for, and return the exit code."""
+    if options.export:
+        return run_export(options)
+    require_no_export_options(options)
     page = read_page(options.write_doc) if options.write_doc else ''
     functions = all_studies()
     if not functions:

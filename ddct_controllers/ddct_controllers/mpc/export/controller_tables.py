@@ -1,0 +1,136 @@
+"""Everything that the exported C needs to know of one predictive controller, as numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.export.dual_form import DualForm, dual_form
+from ddct_controllers.mpc.export.known_columns import known_columns
+from ddct_controllers.mpc.observer import Observer
+from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.mpc.transmission_model import MEASURED
+from ddct_controllers.mpc.two_input_mpc import ENGINE, TwoInputController
+from ddct_plant.errors import ParameterError
+from ddct_plant.timebase import PERIOD_S
+
+CHANGES_PER_ROW = 10
+"""Changes of the active set allowed for each row that can be active, if no limit is given."""
+
+
+@dataclass(frozen=True, eq=False)
+class ControllerTables:
+    """Macros and constant arrays of the exported C, by their names there."""
+
+    public: dict[str, int | float]
+    """For the header; the prefix DDCT_MPC_ is left out."""
+    private: dict[str, int | float]
+    arrays: dict[str, np.ndarray]
+    """Vectors and matrices."""
+
+
+def exportable(controller: Controller, name: str) -> tuple[PredictiveController, Observer]:
+    """Return controller and observer; raise ParameterError when they do what the C does not."""
+    if not isinstance(controller, PredictiveController):
+        raise ParameterError(
+            f'{name} cannot be exported: it is not a predictive controller; choose one, as mpc3 is'
+        )
+    observer = controller.observer
+    # Classes made from these do something else, which would be missing in C without a word.
+    expected = TwoInputController if controller.commands_engine else PredictiveController
+    if type(controller) is not expected or type(observer) is not Observer:
+        raise ParameterError(
+            f'{name} cannot be exported: {type(controller).__name__} with its '
+            f'{type(observer).__name__} does more than there is in C; choose another, such as mpc3'
+        )
+    return controller, observer
+
+
+def controller_tables(controller: PredictiveController, observer: Observer) -> ControllerTables:
+    """Return the tables of what `exportable` has returned."""
+    settings, program, model = controller.settings, controller.program, observer.model
+    form = dual_form(program.structure)
+    columns = known_columns(program, len(model.a), settings)
+    at_rest = observer.first_estimate((0.0, 0.0, 0.0), 0.0)
+    clutch = settings.inputs[0]
+    engine = _engine_macros(controller) if isinstance(controller, TwoInputController) else {}
+    return ControllerTables(
+        public={
+            'PERIOD_S': PERIOD_S,
+            'COMMANDS_ENGINE': int(controller.commands_engine),
+            'REFERENCES': controller.preview_steps + 1,
+            'READS_REFERENCE_RATE': int(columns.rate_references > 0),
+            'STATES': len(model.a),
+            'MOVES': len(form.moves),
+            'ITERATIONS': _iterations(settings, form),
+        },
+        private={
+            'INPUTS': len(settings.inputs),
+            'MEASURED': MEASURED,
+            'FIRST_REFERENCE': int(settings.preview),
+            'SLIP_REFERENCES': columns.slip_references,
+            'RATE_REFERENCES': columns.rate_references,
+            'ROWS': max(len(form.kept), 1),
+            'ACTIVE': form.capacity,
+            'LEAST_CLUTCH': clutch.lowest,
+            'MOST_CLUTCH': clutch.highest,
+            'CLUTCH_CHANGE': clutch.rate_n_m_s * PERIOD_S,
+            **engine,
+        },
+        arrays={
+            'A': model.a,
+            'B': model.b,
+            'GAIN': observer.gain,
+            'AT_REST': at_rest,
+            'AT_REST_PER_LOAD': observer.first_estimate((0.0, 0.0, 0.0), 1.0) - at_rest,
+            'GRADIENT': form.to_dual @ columns.gradient,
+            'MOVES': form.moves,
+            **_rows(controller, form, columns.shift),
+        },
+    )
+
+
+def _rows(
+    controller: PredictiveController, form: DualForm, shift: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return the tables that have one entry or row for each constraint."""
+    settings, program, scale = controller.settings, controller.program, form.scale
+    rows = {
+        'NORMAL': form.normals,
+        'RELAXATION': form.relaxation,
+        'LOWER': program.lower[form.kept] * scale,
+        'UPPER': program.upper[form.kept] * scale,
+        'SHIFT': shift[form.kept] * scale[:, None],
+    }
+    if controller.commands_engine:
+        # Bounds that each period sets, of the deviation 1, 2, ... periods ahead.
+        limited = program.lower == settings.inputs[ENGINE].lowest
+        rows['PERIODS_AHEAD'] = np.where(limited, np.cumsum(limited), 0.0)[form.kept]
+        rows['SCALE'] = scale
+    if len(form.kept):
+        return rows
+    # C has no empty arrays: a row that restricts nothing.
+    restricts_nothing = {'LOWER': -np.inf, 'UPPER': np.inf}
+    return {
+        name: np.full((1, *table.shape[1:]), restricts_nothing.get(name, 0.0))
+        for name, table in rows.items()
+    }
+
+
+def _engine_macros(controller: TwoInputController) -> dict[str, float]:
+    authority = controller.authority
+    return {
+        'MOST_DEVIATION': authority.deviation_n_m,
+        'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,
+        'LAG_SHARE': authority.lag_share,
+        'LEAST_TORQUE': authority.minimum_torque_n_m,
+        'MOST_TORQUE': authority.maximum_torque_n_m,
+    }
+
+
+def _iterations(settings: MpcSettings, form: DualForm) -> int:
+    """Return how often the solver may change its active set in one call."""
+    if settings.iteration_limit is not None and settings.backend == 'daqp':
+        return settings.iteration_limit  # counted in the same unit
+    return CHANGES_PER_ROW * form.capacity

@@ -1,0 +1,112 @@
+"""Write a predictive controller and its observer as self-contained C99."""
+
+from pathlib import Path
+
+from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.export.c_text import c_part, constants, macros, remark
+from ddct_controllers.mpc.export.controller_tables import (
+    ControllerTables,
+    controller_tables,
+    exportable,
+)
+from ddct_controllers.mpc.settings import MpcSettings
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.run_info import package_version
+from ddct_plant.output_file import write_text
+from ddct_plant.run_settings import RunSettings
+
+HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
+_PREFIX = 'DDCT_MPC_'
+_MARK = 'Made by design mpc --export; make it again instead of editing it.'
+
+
+def export_controller(
+    controller: Controller,
+    name: str,
+    settings: RunSettings,
+    folder: Path,
+    *,
+    overwrite: bool = False,
+) -> list[Path]:
+    """
+    Write header, source and example of `controller`, which `settings` built, into `folder`.
+
+    Return their paths; docs/control_unit.md says what they are. Raise ParameterError when the C
+    cannot do what the controller does, DdctError when the folder holds anything (with `overwrite`:
+    a file in the way that is not such an export) or cannot be written.
+    """
+    predictive, observer = exportable(controller, name)
+    _require_free(folder, overwrite=overwrite)
+    tables = controller_tables(predictive, observer)
+    texts = _texts(tables, _about(name, settings, predictive.settings))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DdctError(f'--export {folder}: cannot be made ({error.strerror})') from error
+    for file, text in texts.items():
+        write_text(str(folder / file), text)
+    return [folder / file for file in texts]
+
+
+def _require_free(folder: Path, *, overwrite: bool) -> None:
+    try:
+        present = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
+        if present and not overwrite:
+            raise DdctError(
+                f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite'
+            )
+        for file in {HEADER, SOURCE, EXAMPLE} & set(present):
+            if _MARK not in (folder / file).read_text(encoding='utf-8', errors='replace'):
+                raise DdctError(
+                    f'--export {folder}: {file} is no such export; choose another folder'
+                )
+    except OSError as error:
+        raise DdctError(
+            f'--export {folder}: cannot be read ({error.strerror}); choose another folder'
+        ) from error
+
+
+def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
+    note = remark(about)
+    return {
+        HEADER: f'{note}\n'
+        + c_part('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),
+        SOURCE: '\n\n'.join(
+            [
+                note,
+                f'#include <limits.h>\n#include <math.h>\n\n#include "{HEADER}"',
+                macros(tables.private),
+                constants(tables.arrays),
+                '\n'.join(c_part(part) for part in _parts(tables)),
+            ]
+        ),
+        EXAMPLE: f'{note}\n{c_part("example.c")}',
+    }
+
+
+def _parts(tables: ControllerTables) -> list[str]:
+    """Return the files of functions that the controller needs, in the order of their use."""
+    engine = ['engine.c'] if tables.public['COMMANDS_ENGINE'] else []
+    return ['solver.c', *engine, 'controller.c']
+
+
+def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
+    """Return what is written above every file."""
+    clutch = chosen.inputs[0]
+    return [
+        f'Predictive slip controller {name} with its observer, for a dry dual clutch.',
+        _MARK,
+        '',
+        f'ddct {package_version()}, scenario {settings.scenario.name}, '
+        f'architecture {settings.architecture}.',
+        f'Prediction over {chosen.prediction_steps} periods, moves over {chosen.control_steps}.',
+        f'Clutch torque {clutch.lowest:g} to {clutch.highest:g} N m, its rate at most '
+        f'{clutch.rate_n_m_s:g} N m/s (inf is none).',
+        '',
+        'Call it every 10 ms (100 Hz). Units are SI: rad/s, rad/s^2, N m. C_load is a torque on',
+        'the wheel, all others are on the engine side; a clutch torque above 0 slows the engine',
+        'and drives the car. C99, no allocation, no library functions; reentrant. Doubles must be',
+        'those of IEEE 754: do not compile it with -ffast-math.',
+        '',
+        'SPDX-License-Identifier: Apache-2.0',
+    ]

@@ -1,0 +1,200 @@
+"""One step of exported controllers as C, against the Python controllers that they come from."""
+
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.headless import run_headless
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.mpc.export.c_text import constants, macros
+from ddct_controllers.mpc.export.export_controller import export_controller
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+CASES = {
+    'mpc3': ('mpc3', ()),
+    'mpc3, torque and rate limited': (
+        'mpc3',
+        ('controllers.mpc3.highest_torque_n_m=200', 'controllers.mpc3.torque_rate_n_m_s=300'),
+    ),
+    'mpc2': ('mpc2', ()),
+    'mpc_offset_free': ('mpc_offset_free', ()),
+}
+"""
+Registry name and changes of the scenario. Not mpc4: alone, without the plant that it commands, it
+is unstable, so that measurements that come from a file soon lead it astray.
+"""
+_ROUNDS = 20
+_FLAGS = ('-std=c99', '-O2', '-fstack-usage')
+_MAIN = """\
+#define _POSIX_C_SOURCE 199309L
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include "ddct_mpc.h"
+@DATA@
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
+}
+
+int main(void)
+{
+    ddct_mpc controller;
+    printf("%zu\\n", sizeof controller);
+    for (int round = 0; round < ROUNDS; ++round) {
+        ddct_mpc_reset(&controller);
+        for (int step = 0; step < STEPS; ++step) {
+            ddct_mpc_measurement m;
+            memcpy(&m, VALUES[step], sizeof m);
+            if (step < HELD) {
+                ddct_mpc_hold(&controller, &m);
+                continue;
+            }
+            const double started = now();
+            const ddct_mpc_command command = ddct_mpc_update(&controller, &m);
+            const double ended = now();
+            printf("%.9g %d\\n", ended - started, command.iterations);
+        }
+    }
+    return 0;
+}
+"""
+
+
+class _Recorder(Controller):
+    """Passes on what it is asked and keeps it."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._controller = controller
+        self.preview_steps = controller.preview_steps
+        self.commands_engine = controller.commands_engine
+        self.held: list[Measurement] = []
+        self.updated: list[Measurement] = []
+
+    def reset(self) -> None:
+        self._controller.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        self.held.append(measurement)
+        self._controller.hold(measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        self.updated.append(measurement)
+        return self._controller.update(measurement)
+
+
+def measure() -> dict[str, Any]:
+    """
+    Return for each case median and p99 per step of both in us, the C's sizes and iterations.
+
+    Both answer the measurements of one closed-loop run; the C's time includes reading the clock.
+    Sizes are those of this machine's code: flash is code and tables, ram the state, stack the sum
+    of all frames. Without cc there is nothing but `skipped`.
+    """
+    compiler = shutil.which('cc')
+    if compiler is None:
+        return {'skipped': 'there is no C compiler cc'}
+    return {case: _measure(compiler, *what) for case, what in CASES.items()}
+
+
+def print_table(figures: dict[str, Any]) -> None:
+    """Print what `measure` returned."""
+    if 'skipped' in figures:
+        print(f'exported controllers not measured: {figures["skipped"]}')
+        return
+    print('exported controllers, one step:')
+    for case, row in figures.items():
+        print(
+            f'  {case}: C median {row["c_us"][0]:.2f} us, p99 {row["c_us"][1]:.2f} us; Python '
+            f'{row["python_us"][0]:.1f} us, {row["python_us"][1]:.1f} us '
+            f'({row["ratio"]:.0f}x); flash {row["flash_bytes"]} B, ram {row["ram_bytes"]} B, '
+            f'stack {row["stack_bytes"]} B; iterations at most {row["iterations"]} '
+            f'of {row["iteration_bound"]}'
+        )
+
+
+def _measure(compiler: str, name: str, changes: tuple[str, ...]) -> dict[str, Any]:
+    settings = RunSettings(load_scenario('thesis', list(changes)))
+    recorder = _Recorder(make_controller(name, settings))
+    run_headless(settings, recorder)
+    held, updated = recorder.held, recorder.updated
+    original = make_controller(name, settings)
+    times_us: list[float] = []
+    for _ in range(_ROUNDS):
+        original.reset()
+        times_us += _replay(original, held, updated)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        export_controller(original, name, settings, folder)
+        rows, sizes = _run_c(compiler, folder, held, updated)
+    python_us, c_us = (np.percentile(times, [50, 99]) for times in (times_us, rows[:, 0]))
+    return {
+        'c_us': c_us.tolist(),
+        'python_us': python_us.tolist(),
+        'ratio': python_us[0] / c_us[0],
+        'iterations': int(rows[:, 1].max()),
+        **sizes,
+    }
+
+
+def _replay(
+    controller: Controller, held: list[Measurement], updated: list[Measurement]
+) -> list[float]:
+    """Return the times of the updates in us."""
+    for measurement in held:
+        controller.hold(measurement)
+    times_us = []
+    for measurement in updated:
+        started = time.perf_counter()
+        controller.update(measurement)
+        times_us.append(1e6 * (time.perf_counter() - started))
+    return times_us
+
+
+def _run_c(
+    compiler: str, folder: Path, held: list[Measurement], updated: list[Measurement]
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Return rows of time in us and iterations, and the sizes."""
+    values = np.array([_values(measurement) for measurement in (*held, *updated)])
+    sizes = {'ROUNDS': _ROUNDS, 'STEPS': len(values), 'HELD': len(held)}
+    data = f'{macros(sizes)}\n{constants({"VALUES": values})}'
+    (folder / 'main.c').write_text(_MAIN.replace('@DATA@', data))
+    build = [compiler, *_FLAGS, '-c', 'ddct_mpc.c', 'main.c']
+    subprocess.run(build, cwd=folder, check=True)
+    subprocess.run([compiler, 'ddct_mpc.o', 'main.o', '-o', 'main'], cwd=folder, check=True)
+    first, *lines = subprocess.check_output(['./main'], cwd=folder, text=True).splitlines()
+    listed = subprocess.check_output(['size', 'ddct_mpc.o'], cwd=folder, text=True)
+    bound = re.search(r'DDCT_MPC_ITERATIONS (\d+)', (folder / 'ddct_mpc.h').read_text())
+    assert bound is not None
+    return np.array([[float(word) for word in line.split()] for line in lines]), {
+        'flash_bytes': int(listed.splitlines()[1].split()[0]),
+        'ram_bytes': int(first),
+        'stack_bytes': _stack_bytes(folder / 'ddct_mpc.su'),
+        'iteration_bound': int(bound[1]),
+    }
+
+
+def _values(measurement: Measurement) -> list[float]:
+    """Return the fields of ddct_mpc_measurement in their order."""
+    names = ('engine_speed', 'shaft_speed', 'wheel_speed', 'engine_torque', 'load_torque')
+    scalars = [getattr(measurement, name) for name in (*names, 'open_loop_torque')]
+    return [*scalars, *measurement.slip_reference, *measurement.slip_reference_rate]
+
+
+def _stack_bytes(usage: Path) -> int:
+    """Return the sum of all frames: calls without recursion need no more."""
+    return sum(int(line.split('\t')[1]) for line in usage.read_text().splitlines())
+
+
+if __name__ == '__main__':
+    print_table(measure())

@@ -1,0 +1,150 @@
+"""Exported predictive controllers in the loop, in place of their Python originals."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from support.exported_mpc import NOT_IN_C, exported, run_settings
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.headless import run_headless
+from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.registry import make_controller
+from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+
+TOLERANCE_N_M = 1e-6
+"""Both solvers leave about 1e-9, DAQP by its tolerance."""
+CONTROL_STARTS = 60
+"""The first step under feedback in the detailed architecture."""
+EXPORTABLE = sorted(set(PREDICTIVE) - NOT_IN_C)
+
+
+def pairs(run: Trajectory, key: str) -> list[str | None]:
+    """Return one value of the controller's status at every step."""
+    return [dict(status).get(key) for status in run.status]
+
+
+def compare_loops(original: Controller, in_c: Controller, settings: RunSettings) -> Trajectory:
+    """Run both controllers in loops of their own; return the original's run."""
+    expected, found = run_headless(settings, original), run_headless(settings, in_c)
+    error = np.abs(found.torque_request - expected.torque_request)
+    assert error.max() <= TOLERANCE_N_M, f'{error.max():g} N m at step {error.argmax()}'
+    if original.commands_engine:
+        for mine, other in zip(
+            found.engine_torque_request, expected.engine_torque_request, strict=True
+        ):
+            assert mine == pytest.approx(other, abs=TOLERANCE_N_M)
+    assert pairs(found, 'qp_status') == pairs(expected, 'qp_status')
+    assert pairs(found, 'fallbacks') == pairs(expected, 'fallbacks')
+    assert np.ptp(expected.torque_request[-150:]) > 1.0, 'this run asks nothing of the controller'
+    return expected
+
+
+@pytest.mark.parametrize('name', EXPORTABLE)
+def test_the_c_gives_the_torques_of_the_original(tmp_path, name):
+    settings = run_settings()
+    original = make_controller(name, settings)
+    in_c = exported(original, name, settings, tmp_path / 'c')
+    for wear in (0.7, 1.0, 1.3):
+        for controller in (original, in_c):
+            controller.reset()
+        compare_loops(original, in_c, dataclasses.replace(settings, wear_gain=wear))
+
+
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+def test_it_does_so_in_every_architecture(tmp_path, architecture):
+    settings = run_settings(architecture=architecture)
+    original = make_controller('mpc3', settings)
+    compare_loops(original, exported(original, 'mpc3', settings, tmp_path / 'c'), settings)
+
+
+@pytest.mark.parametrize('name', EXPORTABLE)
+def test_binding_limits_of_torque_and_rate_give_the_same_torques(tmp_path, name):
+    free = run_headless(run_settings(), name).torque_request[CONTROL_STARTS:]
+    highest = float(np.quantile(free, 0.9))
+    rate = 0.5 * 100.0 * float(np.abs(np.diff(free)).max())
+    section = f'controllers.{name}'
+    settings = run_settings(
+        f'{section}.highest_torque_n_m={highest}', f'{section}.torque_rate_n_m_s={rate}'
+    )
+    original = make_controller(name, settings)
+    in_c = exported(original, name, settings, tmp_path / 'c')
+    request = compare_loops(original, in_c, settings).torque_request[CONTROL_STARTS:]
+    at_highest = np.isclose(request, highest, atol=1e-6)
+    at_rate = np.isclose(np.abs(np.diff(request)), rate / 100.0, atol=1e-6)
+    assert at_highest.any()
+    assert at_rate.any()
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        ('engine_authority.deviation_n_m=20', 'engine_authority.slew_n_m_s=300'),
+        ('engine_authority.lag_s=0.1', 'engine_authority.minimum_torque_n_m=100'),
+        ('controllers.mpc4.control_steps=3', 'engine_authority.slew_n_m_s=100'),
+        ('engine_authority.slew_n_m_s=50', 'controllers.mpc4.torque_rate_n_m_s=40'),
+    ],
+)
+def test_the_engines_authority_is_exported(tmp_path, changes):
+    settings = run_settings(*changes)
+    original = make_controller('mpc4', settings)
+    run = compare_loops(original, exported(original, 'mpc4', settings, tmp_path / 'c'), settings)
+    free = run_headless(run_settings(), 'mpc4')
+    assert np.abs(run.engine_torque - free.engine_torque).max() > 1.0
+
+
+@pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': False}, {'limits': True}])
+def test_short_plans_no_preview_and_soft_limits_are_exported(tmp_path, changes):
+    settings = run_settings()
+    original = make_controller('mpc3', settings)
+    chosen = original.settings
+    if changes.pop('limits', False):
+        # Slip may not fall below 30 rad/s, which costs against the reference that goes to 0.
+        outputs = (dataclasses.replace(chosen.outputs[0], lowest=30.0, highest=200.0),)
+        changes = {'outputs': outputs, 'soft_limit_weight': 50.0}
+    changed = rebuilt(original, dataclasses.replace(chosen, **changes))
+    run = compare_loops(changed, exported(changed, 'mpc3', settings, tmp_path / 'c'), settings)
+    other = run_headless(settings, make_controller('mpc3', settings))
+    assert np.abs(run.torque_request - other.torque_request).max() > 1.0
+
+
+def rebuilt(controller: PredictiveController, settings: MpcSettings) -> PredictiveController:
+    """Return the controller with other settings and the same observer."""
+    observer = controller.observer
+    return PredictiveController(observer.model, observer, settings)
+
+
+def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path):
+    """The open loop starts above the highest torque, farther than the rate leads back at once."""
+    section = 'controllers.mpc3'
+    settings = run_settings(f'{section}.highest_torque_n_m=30', f'{section}.torque_rate_n_m_s=100')
+    original = make_controller('mpc3', settings)
+    in_c = exported(original, 'mpc3', settings, tmp_path / 'c')
+    run = compare_loops(original, in_c, settings)
+    assert 'infeasible' in pairs(run, 'qp_status')
+    assert int(pairs(run, 'fallbacks')[-1]) == in_c.fallbacks > 0
+
+
+def test_the_iteration_limit_is_the_static_bound(tmp_path):
+    """With a limit of one change the bound holds, and the plan keeps to the rate."""
+    section = 'controllers.mpc3'
+    settings = run_settings(f'{section}.iteration_limit=1', f'{section}.torque_rate_n_m_s=100')
+    original = make_controller('mpc3', settings)
+    in_c = exported(original, 'mpc3', settings, tmp_path / 'c')
+    assert '#define DDCT_MPC_ITERATIONS 1\n' in (tmp_path / 'c' / 'ddct_mpc.h').read_text()
+    run = run_headless(settings, in_c)
+    assert 'iteration limit' in pairs(run, 'qp_status')
+    assert set(pairs(run, 'qp_iterations')) <= {None, '0', '1'}
+    assert np.abs(np.diff(run.torque_request[CONTROL_STARTS:])).max() <= 1.0 + 1e-9
+    assert np.isfinite(run.torque_request).all()
+
+
+def test_a_reset_controller_repeats_a_new_one_to_the_bit(tmp_path):
+    settings = run_settings()
+    in_c = exported(make_controller('mpc3', settings), 'mpc3', settings, tmp_path / 'c')
+    first = run_headless(settings, in_c).torque_request
+    in_c.reset()
+    assert run_headless(settings, in_c).torque_request.tobytes() == first.tobytes()
