@@ -51,6 +51,24 @@ def label(block: Block) -> str:
     return f'{block.page}: {first[:60]}'
 
 
+def install_example(site: Path) -> None:
+    """Make the package of docs/writing_a_controller.md out of the code that the page shows."""
+    code = next(
+        block.text
+        for block in blocks()
+        if block.page == 'docs/writing_a_controller.md' and block.language == 'python'
+    )
+    package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
+    for folder in (package, record):
+        folder.mkdir(parents=True)
+    (package / '__init__.py').touch()
+    (package / 'control.py').write_text(code)
+    (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n')
+    (record / 'entry_points.txt').write_text(
+        '[ddct.controllers]\nproportional = my_package.control:make_proportional\n'
+    )
+
+
 @pytest.fixture
 def workplace(tmp_path: Path) -> Path:
     """Return a folder with what commands read and write, and a `ros2` that finds our programs."""
@@ -64,6 +82,7 @@ def workplace(tmp_path: Path) -> Path:
     scenarios = Path('ddct_plant') / 'ddct_plant' / 'scenarios'
     shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
     (tmp_path / 'install').symlink_to(install)
+    install_example(tmp_path / 'site')
     ros2 = tmp_path / 'bin' / 'ros2'
     ros2.parent.mkdir()
     ros2.write_text(ROS2.format(shell=shutil.which('bash'), install=install))
@@ -85,7 +104,11 @@ def test_commands_run(block, workplace):
     script = '\n'.join(
         ['set -e', "trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT", *commands]
     )
-    environment = {**os.environ, 'PATH': f'{workplace / "bin"}:{os.environ["PATH"]}'}
+    environment = {
+        **os.environ,
+        'PATH': f'{workplace / "bin"}:{os.environ["PATH"]}',
+        'PYTHONPATH': f'{workplace / "site"}:{os.environ.get("PYTHONPATH", "")}',
+    }
     done = subprocess.run(
         [shutil.which('bash') or 'bash', '-c', script],
         cwd=workplace,
@@ -98,6 +121,18 @@ def test_commands_run(block, workplace):
     )
     assert done.returncode == 0, f'{script}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
     DONE.update(line for line in commands if line.startswith(ONCE))
+
+
+def test_commands_say_where_their_program_is():
+    """A bare program name works in no shell, and would slip through the test above."""
+    names = {'bringup', 'compare', 'score', 'report', 'live', 'calibrate', 'design', 'identify'}
+    bare = [
+        (block.page, line)
+        for block in blocks()
+        for line in block.lines
+        if line.split()[0] in names and block.language == ''
+    ]
+    assert bare == []
 
 
 def test_there_are_commands_to_run():

@@ -21,6 +21,7 @@ from ddct_plant.errors import DdctError
 
 METADATA_FILE = 'metadata.yaml'
 
+_LATER_THAN_ALL_NS = 2**63
 _CHUNK_BYTES = 64 * 1024
 """About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
 
@@ -54,7 +55,7 @@ class McapFile:
         self._custom_data = dict(custom_data)
         self._counts = [0] * len(channels)
         self._schemas: dict[str, int] = {}
-        self._first_ns: int | None = None
+        self._first_ns = _LATER_THAN_ALL_NS
         self._last_ns = 0
         self._sink = _Sink(path)
         self._writer = Writer(
@@ -71,10 +72,10 @@ class McapFile:
         """Append a message to the channel with this index; raise DdctError when it fails."""
         if self._sink.closed:
             raise DdctError(f'{self._path}: the recording is already closed')
-        if self._first_ns is None:
-            self._first_ns = self._last_ns = stamp_ns
-        self._first_ns = min(self._first_ns, stamp_ns)
-        self._last_ns = max(self._last_ns, stamp_ns)
+        if stamp_ns < self._first_ns:
+            self._first_ns = stamp_ns
+        if stamp_ns > self._last_ns:
+            self._last_ns = stamp_ns
         self._counts[channel] += 1
         self._writer.add_message(self._ids[channel], stamp_ns, data, stamp_ns)
 
@@ -108,7 +109,7 @@ class McapFile:
                 TopicCount(each.topic, each.type_name, each.type_hash, each.qos, count)
                 for each, count in zip(self._channels, self._counts, strict=True)
             ],
-            self._first_ns or 0,
+            self._first_ns if self._last_ns else 0,
             self._last_ns,
             self._custom_data,
         )
@@ -140,6 +141,7 @@ class _Sink:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._written = 0
+        self.closed = False
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open('xb', buffering=0)
@@ -167,9 +169,6 @@ class _Sink:
     def flush(self) -> None:
         pass
 
-    @property
-    def closed(self) -> bool:
-        return self._file.closed
-
     def close(self) -> None:
+        self.closed = True
         self._file.close()
