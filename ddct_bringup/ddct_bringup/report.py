@@ -12,11 +12,11 @@ from ddct_bringup.report_page.evidence import evidence_of
 from ddct_bringup.report_page.output import require_chart_library, require_writable
 from ddct_bringup.report_page.runs import (
     ReportRun,
-    bags_in,
     in_order,
     read_run,
     require_one_scenario,
 )
+from ddct_bringup.scores.scoring import bags_in
 from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import write_text

@@ -16,7 +16,7 @@ from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.scores.scoring import (
     Entry,
     bag_name,
-    find_bags,
+    bags_in,
     flat,
     score_recording,
     scores_document,
@@ -56,7 +56,7 @@ def _score(argv: list[str]) -> int:
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
     runs = []
-    for folder, bag in _progress(_bags(options.bags)):
+    for bag, folder in _progress(bags_in(options.bags)):
         try:
             runs.append(_score_one(bag, folder, options))
         except DdctError as error:
@@ -93,16 +93,7 @@ def _write_signals(folder: Path, name: str, text: str) -> None:
     write_text(str(folder / f'{file}.csv'), text)
 
 
-def _bags(paths: Sequence[Path]) -> list[tuple[Path | None, Path]]:
-    """Return (searched folder or None, bag) for every bag found, each once."""
-    found: dict[Path, Path | None] = {}
-    for path in paths:
-        for bag in find_bags(path):
-            found.setdefault(bag, None if bag == path else path)
-    return [(folder, bag) for bag, folder in found.items()]
-
-
-def _progress(bags: Sequence[tuple[Path | None, Path]]) -> Iterable[tuple[Path | None, Path]]:
+def _progress(bags: Sequence[tuple[Path, Path | None]]) -> Iterable[tuple[Path, Path | None]]:
     """Show progress on standard error while many bags are read, on a terminal only."""
     console = Console(stderr=True)
     return track(

@@ -10,7 +10,7 @@ from ddct_bringup.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE
 from ddct_bringup.calibration.problem import Problem, fit, row_figures
 from ddct_bringup.calibration.record import check_frozen, values_of
 from ddct_bringup.headless import run_headless
-from ddct_bringup.thesis.table import PREDICTED, THESIS_TABLE, thesis_row
+from ddct_bringup.scores.thesis_table import PREDICTED, THESIS_TABLE, thesis_row
 from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_bringup.thesis import run_figures as thesis_run_figures
 from ddct_bringup.thesis import scenario_figures as thesis_scenario_figures
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
-from ddct_bringup.thesis.table import thesis_row
 from ddct_controllers.design.thesis_figures.collect import (
     ENTRY_POINT_GROUP,
     OWN_FIGURES,

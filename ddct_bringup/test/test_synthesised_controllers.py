@@ -4,7 +4,7 @@ import pytest
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_bringup.thesis.table import FIGURES, thesis_row
+from ddct_bringup.scores.thesis_table import FIGURES, thesis_row
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support.third_party import install
 
-from ddct_bringup.thesis.table import THESIS_TABLE
+from ddct_bringup.scores.thesis_table import THESIS_TABLE
 from ddct_bringup.thesis.values import closed_loop_values
 from ddct_controllers import design_program
 from ddct_controllers.design.thesis.gate import GateRow, judge

@@ -22,7 +22,7 @@ from ddct_bringup.report_page.output import MARKER
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.report_page.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
 from ddct_bringup.report_page.update_times import TICKS, update_times
-from ddct_bringup.thesis.table import THESIS_TABLE
+from ddct_bringup.scores.thesis_table import THESIS_TABLE
 from ddct_plant.graph.run_info import package_version
 
 SHOWN_AT_FIRST = 12

@@ -1,6 +1,6 @@
 """The runs that a report shows, read from their bags; a bag that cannot be read stays in."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,6 @@ from ddct_bringup.run.timing_file import read_timing
 from ddct_bringup.scores.scoring import (
     Entry,
     bag_name,
-    find_bags,
     score_recording,
     unreadable_entry,
 )
@@ -52,19 +51,6 @@ class ReportRun:
             return scenario_digest(self.settings.scenario)
         nodes = self.recording.run_info.values() if self.recording else ()
         return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
-
-
-def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
-    """
-    Return (bag, the folder that was searched or None) for every bag at the paths, each once.
-
-    Raise DdctError for a path without any.
-    """
-    found: dict[Path, tuple[Path, Path | None]] = {}
-    for path in paths:
-        for bag in find_bags(path):
-            found.setdefault(bag.resolve(), (bag, None if bag == path else path))
-    return list(found.values())
 
 
 def read_run(bag: Path, folder: Path | None) -> ReportRun:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
-from ddct_bringup.thesis.table import ThesisRow, thesis_row
+from ddct_bringup.scores.thesis_table import ThesisRow, thesis_row
 from ddct_plant.scenario_file import load_scenario, scenario_digest
 
 

@@ -16,7 +16,7 @@ from ddct_bringup.scores.tables import (
     Column,
     print_runs,
 )
-from ddct_bringup.thesis.table import thesis_row
+from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_plant.run_settings import RunSettings
 
 _NOTE = (

@@ -92,6 +92,19 @@ def why_invalid(trajectory: Trajectory, steps: int) -> str:
     return '; '.join(reasons)
 
 
+def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
+    """
+    Return (bag, the folder that was searched or None) for every bag at the paths, each once.
+
+    Raise DdctError for a path without any.
+    """
+    found: dict[Path, tuple[Path, Path | None]] = {}
+    for path in paths:
+        for bag in find_bags(path):
+            found.setdefault(bag.resolve(), (bag, None if bag == path else path))
+    return list(found.values())
+
+
 def bag_name(path: Path, relative_to: Path | None) -> str:
     """Return the path as scores name it, with forward slashes."""
     if relative_to is not None and path.is_relative_to(relative_to):

@@ -7,9 +7,9 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.thesis_table import THESIS_TABLE, ThesisRow
 from ddct_bringup.studies.scored_run import metrics_of, text
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.thesis.table import THESIS_TABLE, ThesisRow
 from ddct_controllers.design.study import Study
 from ddct_controllers.mpc.qp.factory import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure

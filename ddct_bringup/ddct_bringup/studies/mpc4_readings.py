@@ -8,10 +8,10 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless, run_loop
+from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_bringup.studies.actuator_left_out import LoopWithoutActuator, model_without_actuator
 from ddct_bringup.studies.two_input_figures import HEADERS, cells
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.thesis.table import thesis_row
 from ddct_controllers.design.study import Study
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.build import make_observer

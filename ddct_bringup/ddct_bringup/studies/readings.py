@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_bringup.studies.open_loop_readings import OpenLoopOff, OpenLoopUnknown
 from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, scored_run
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
-from ddct_bringup.thesis.table import thesis_row
 from ddct_controllers.design.study import Study
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.build import make_observer

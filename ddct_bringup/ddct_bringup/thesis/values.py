@@ -7,8 +7,8 @@ the closed loop is no part of ddct_controllers.
 
 import math
 
+from ddct_bringup.scores.thesis_table import THESIS_TABLE, ThesisRow, thesis_row
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
-from ddct_bringup.thesis.table import THESIS_TABLE, ThesisRow, thesis_row
 from ddct_bringup.thesis.words import oscillation_word, slip_word
 from ddct_plant.timebase import steps_in
 
