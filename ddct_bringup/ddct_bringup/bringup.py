@@ -1,8 +1,10 @@
 """Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
 
 import argparse
+from contextlib import nullcontext
 from pathlib import Path
 
+from ddct_bringup.run.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
@@ -20,6 +22,7 @@ examples:
   bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
   bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
   bringup --headless --out runs/quick               the same numbers without a graph
+  bringup --mode realtime --live --out runs/live    watch it in Foxglove
 
 The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
 in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.
@@ -39,9 +42,12 @@ def _bringup(argv: list[str]) -> int:
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
     plan = RunPlan(settings_of(options), options.controller, options.layout)
+    if options.live is not None and plan.layout != 'processes':
+        raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
     mark_folder(options.out)
     folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
-    run_with_progress(plan, folder.path)
+    with nullcontext() if options.live is None else live_view(options.live) as live:
+        run_with_progress(plan, folder.path, live=live)
     entry = score_bag(folder.path)
     if not entry['valid']:
         raise DdctError(f'{folder.path}: {entry["reason"]}')
@@ -59,6 +65,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('--controller', default='pi', metavar='NAME|FILE')
     parser.add_argument('--out', type=Path, metavar='DIR')
+    parser.add_argument(
+        '--live',
+        nargs='?',
+        type=int,
+        const=DEFAULT_PORT,
+        metavar='PORT',
+        help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
+    )
     add_run_options(parser)
     return parser
 

@@ -11,6 +11,7 @@ from std_msgs.msg import Header
 
 from ddct_bringup.bag.cdr import CdrNormaliser
 from ddct_bringup.bag.message_definitions import load_definition
+from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
 from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
 from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
@@ -190,7 +191,7 @@ class RecorderNode(GraphNode):
         self._bag = BagWriter(
             self._folder, self._bag_name, self._topics, custom_data(self.settings, name, steps)
         )
-        for node in sorted(self._run_info):
+        for node in run_info_order(self._run_info):
             self._bag.write(RUN_INFO_TOPIC, START_NS, self._run_info[node][0])
         for topic, stamp, cdr in self._unordered:
             self._bag.write(topic, stamp, cdr)

@@ -18,6 +18,11 @@ NOT_RUN_HERE = {
     '. /opt/ros': "needs apt's ROS 2",
     'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
     'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
+    'python -m pip': 'would change the environment of the tests',
+    'ros2 run ddct_bringup bringup --mode realtime --controller ls8 --live': (
+        'waits for a viewer; tests/live gives it one'
+    ),
+    'ros2 run ddct_bringup live': 'serves until Ctrl-C; tests/live stops it',
     'ros2 run ddct_bringup calibrate': 'takes minutes; ddct_bringup/test runs it with --quick',
 }
 """First words of commands and why no test runs them."""

@@ -11,7 +11,7 @@ from ddct_bringup.run.graph_nodes import GRAPH_NODES
 
 PROGRAMS = [
     *((spec.package, spec.name) for spec in GRAPH_NODES),
-    *(('ddct_bringup', name) for name in ('bringup', 'compare', 'report', 'score')),
+    *(('ddct_bringup', name) for name in ('bringup', 'compare', 'live', 'report', 'score')),
     ('ddct_plant', 'identify'),
 ]
 RUN = plan('ls8', 'headless', duration_s=3.0)

@@ -6,6 +6,7 @@ from typing import Any
 
 from rclpy.serialization import serialize_message
 
+from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_bringup.bag.topics import recorded_topics
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
@@ -34,8 +35,8 @@ def write_trajectory(
     two_input = trajectory.engine_torque_request is not None
     topics = recorded_topics(lockstep=True, two_input=two_input)
     with BagWriter(folder, name, topics, custom_data) as bag:
-        for node, pairs in sorted(run_info.items()):
-            message = messages.status_message(START_NS, node, pairs)
+        for node in run_info_order(run_info):
+            message = messages.status_message(START_NS, node, run_info[node])
             bag.write('run_info', START_NS, serialize_message(message))
         order = [topic.name for topic in topics if topic.every_tick]
         for stamp, tick in _ticks(trajectory):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.thesis.table import CALIBRATED, FIGURES, THESIS_TABLE
+from ddct_bringup.scores.thesis_table import CALIBRATED, FIGURES, THESIS_TABLE
 from ddct_plant.engine import TorqueProfile
 from ddct_plant.scenario import Scenario
 

@@ -25,7 +25,7 @@ from ddct_bringup.calibration.parameters import (
 )
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.thesis.table import FIGURES
+from ddct_bringup.scores.thesis_table import FIGURES
 from ddct_plant.engine import TorqueProfile
 from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings

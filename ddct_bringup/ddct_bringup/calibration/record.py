@@ -15,7 +15,7 @@ from ddct_bringup.calibration.analysis import (
 from ddct_bringup.calibration.parameters import BASE, LOWER, PARAMETERS, RANGE, TARGETS, TOLERANCES
 from ddct_bringup.calibration.problem import Fit, Problem, fit
 from ddct_bringup.calibration.search import LocalOptimum, Progress, rounded, search
-from ddct_bringup.thesis.table import FIGURES
+from ddct_bringup.scores.thesis_table import FIGURES
 from ddct_plant.errors import ParameterError
 from ddct_plant.scenario import Scenario
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_bringup.calibration.record import NAMES, Record
-from ddct_bringup.thesis.table import thesis_row
+from ddct_bringup.scores.thesis_table import thesis_row
 
 _FIGURE_LABELS = {
     'engagement_time_s': 't_a, s',

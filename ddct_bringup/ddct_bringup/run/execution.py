@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.run.live_process import LiveView
 from ddct_bringup.run.node_processes import NodeProcesses
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.record import custom_data, run_info_of
@@ -18,10 +19,16 @@ WORK_FOLDER = 'work'
 """Scenario, parameters and logs of a run; kept only when it fails."""
 
 
-def execute(plan: RunPlan, folder: Path, stopped: Callable[[], bool] = lambda: False) -> None:
+def execute(
+    plan: RunPlan,
+    folder: Path,
+    stopped: Callable[[], bool] = lambda: False,
+    live: LiveView | None = None,
+) -> None:
     """
     Run `plan` and write its bag and `timing.json` into the existing `folder`.
 
+    A run of separate processes begins once `live` hears them.
     Raise DdctError with the reason when the run does not end well, KeyboardInterrupt when
     `stopped()` becomes true; what was recorded until then stays in the folder.
     """
@@ -33,7 +40,7 @@ def execute(plan: RunPlan, folder: Path, stopped: Callable[[], bool] = lambda: F
         work.mkdir()
         with own_domain():
             if plan.layout == 'processes':
-                _execute_processes(plan, folder, work, stopped)
+                _execute_processes(plan, folder, work, stopped, live)
             else:
                 _execute_single_process(plan, folder, work, stopped)
         shutil.rmtree(work)
@@ -42,10 +49,18 @@ def execute(plan: RunPlan, folder: Path, stopped: Callable[[], bool] = lambda: F
 
 
 def _execute_processes(
-    plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
+    plan: RunPlan,
+    folder: Path,
+    work: Path,
+    stopped: Callable[[], bool],
+    live: LiveView | None,
 ) -> None:
     with NodeProcesses(work, plan.write_parameter_file(folder, work)) as processes:
-        processes.start(GRAPH_NODES)
+        processes.start([node for node in GRAPH_NODES if node.name != 'recorder' or not live])
+        if live:
+            # Without its recorder the graph stays at t_0 and sends it again and again.
+            live.wait_until_heard(stopped)
+            processes.start([node for node in GRAPH_NODES if node.name == 'recorder'])
         try:
             processes.wait_for('driveline', stopped)
         finally:

@@ -88,7 +88,7 @@ class NodeProcesses:
                 stdout=printed,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_end_with_parent,
+                preexec_fn=end_with_parent,
             )
             log = self._logs / f'{spec.name}.log'
             self._nodes.append(NodeProcess(spec.name, process, printed, log))
@@ -136,6 +136,6 @@ def _culprit(ended: Sequence[NodeProcess]) -> NodeProcess:
     return min(ended, key=lambda node: (node.process.returncode == 0, node.name == 'driveline'))
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """Let the kernel end this node should the supervisor itself be killed (Linux)."""
     ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGTERM)

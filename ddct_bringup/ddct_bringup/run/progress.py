@@ -7,11 +7,14 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.run.execution import execute
+from ddct_bringup.run.live_process import LiveView
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.stop_signals import stop_signals
 
 
-def run_with_progress(plan: RunPlan, folder: Path, label: str = '') -> None:
+def run_with_progress(
+    plan: RunPlan, folder: Path, label: str = '', live: LiveView | None = None
+) -> None:
     """
     Carry out `plan` into `folder`, saying what runs and how fast it went.
 
@@ -21,7 +24,7 @@ def run_with_progress(plan: RunPlan, folder: Path, label: str = '') -> None:
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.monotonic()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
-        execute(plan, folder, lambda: bool(stops))
+        execute(plan, folder, lambda: bool(stops), live)
     if stops:
         # It came when the run had ended already: whatever would follow is not wanted.
         raise KeyboardInterrupt

@@ -1,0 +1,24 @@
+"""Bags of short runs, as the layout is checked against them."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from layout_checks import Messages, read_messages
+
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
+
+
+@pytest.fixture
+def record(tmp_path: Path) -> Callable[[RunPlan], Messages]:
+    """Return a function that carries out a run and returns what its bag holds."""
+    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
+
+    def carry_out(run: RunPlan) -> Messages:
+        folder = tmp_path / 'bag'
+        folder.mkdir()
+        execute(run, folder)
+        return read_messages(folder)
+
+    return carry_out

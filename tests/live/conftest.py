@@ -1,0 +1,30 @@
+"""A running `live`, and a reason to skip where it cannot run."""
+
+from collections.abc import Callable
+
+import pytest
+from support.processes import Program, Programs
+from support.waiting import wait_until
+from viewer import address_in
+
+
+@pytest.fixture
+def extras() -> None:
+    """Skip where the optional packages are absent."""
+    pytest.importorskip('foxglove.websocket', reason='foxglove-sdk, an optional extra, is absent')
+    pytest.importorskip('websockets', reason='the viewer of these tests needs websockets')
+
+
+@pytest.fixture
+def live(extras: None, programs: Programs) -> Callable[..., tuple[Program, str]]:
+    """Return a function that starts `live` and returns it with its address."""
+
+    def start(*arguments: str) -> tuple[Program, str]:
+        program = programs.start_module('ddct_bringup.live', '--port', '0', *arguments)
+        wait_until(
+            lambda: 'ws://' in program.output() or program.process.poll() is not None,
+            'the address of live',
+        )
+        return program, address_in(program.output())
+
+    return start

@@ -1,0 +1,129 @@
+"""The node behind `live`, fed by hand: runs that follow one another, and no run at all."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.context import Context
+from rclpy.executors import Executor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.task import Future
+from rosgraph_msgs.msg import Clock
+from support.waiting import wait_until
+from viewer import Viewer
+
+from ddct_bringup.live_view import live_node
+from ddct_plant.graph.message_values import status_name_of
+from ddct_plant.graph.messages import clock_message, status_message
+from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
+from ddct_plant.graph.spin import make_executor
+from ddct_plant.timebase import START_NS, stamp_of_step
+
+pytestmark = pytest.mark.usefixtures('extras')
+
+
+class Served:
+    """A node `live` and another that plays the graph, in this process."""
+
+    def __init__(self, context: Context) -> None:
+        """Serve on a free port; what `live` says goes to `said`."""
+        self.said: list[str] = []
+        self.node = live_node.LiveNode('127.0.0.1', 0, self.said.append, context=context)
+        self.graph = Node('graph', context=context)
+        self.executor: Executor = make_executor(context)
+        for node in (self.node, self.graph):
+            self.executor.add_node(node)
+
+    @property
+    def url(self) -> str:
+        return self.said[0].split()[-1]
+
+    def spin(self) -> bool:
+        """Let the nodes work for a moment; True, so that it fits into a condition."""
+        self.executor.spin_until_future_complete(Future(), 0.02)
+        return True
+
+
+@contextmanager
+def served() -> Iterator[Served]:
+    context = Context()
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    both = Served(context)
+    try:
+        yield both
+    finally:
+        both.node.close()
+        both.executor.shutdown()
+        for node in (both.node, both.graph):
+            node.destroy_node()
+        context.try_shutdown()
+
+
+def test_the_time_goes_back_when_the_next_run_begins() -> None:
+    with served() as both:
+        clock = both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
+        with Viewer(both.url) as viewer:
+            wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
+            for step in (0, 100, 200, 0, 1):
+                stamp = stamp_of_step(step)
+                clock.publish(clock_message(stamp))
+                wait_until(
+                    lambda stamp=stamp: both.spin() and viewer.times[-1:] == [stamp], f'{stamp} ns'
+                )
+    shown = [
+        time for time, last in zip(viewer.times, [0, *viewer.times], strict=False) if time != last
+    ]
+    assert shown == [stamp_of_step(step) for step in (0, 100, 200, 0, 1)]
+
+
+def test_a_late_viewer_gets_the_time_and_what_is_latched_the_controller_last() -> None:
+    now = stamp_of_step(300)
+    with served() as both:
+        clock = both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
+        latched = []
+        for name in ('engine', 'controller', 'recorder'):
+            latched.append(both.graph.create_publisher(DiagnosticArray, 'run_info', LATCHED_QOS))
+            latched[-1].publish(status_message(START_NS, name, [('version', '1')]))
+        with Viewer(both.url) as early:
+            wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
+            clock.publish(clock_message(now))
+            wait_until(lambda: both.spin() and len(early.messages['/run_info']) >= 3, 'run_info')
+            wait_until(lambda: both.spin() and early.times[-1:] == [now], 'the time')
+        with Viewer(both.url) as late:
+            wait_until(lambda: both.spin() and len(late.messages['/run_info']) >= 3, 'run_info')
+    assert late.times[0] == now
+    seen = [(stamp, status_name_of(message)) for stamp, message in late.decoded('/run_info')]
+    assert seen == [(START_NS, name) for name in ('engine', 'recorder', 'controller')]
+
+
+def test_a_graph_sends_nothing_as_long_as_nobody_looks() -> None:
+    with served() as both:
+        clock = both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
+        run_info = both.graph.create_publisher(DiagnosticArray, 'run_info', LATCHED_QOS)
+        wait_until(lambda: both.spin() and run_info.get_subscription_count() == 1, 'the match')
+        assert clock.get_subscription_count() == 0
+        with Viewer(both.url):
+            wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
+
+
+def test_a_domain_without_a_graph_is_said_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_node, '_PATIENCE_S', 0.05)
+    with served() as both:
+        wait_until(lambda: both.spin() and len(both.said) > 1, 'the remark')
+        for _ in range(10):
+            both.spin()
+    assert len(both.said) == 2
+    assert 'no graph in ROS domain' in both.said[1]
+    assert 'ROS_DOMAIN_ID' in both.said[1]
+
+
+def test_a_graph_that_is_there_is_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_node, '_PATIENCE_S', 0.5)
+    with served() as both:
+        both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
+        for _ in range(50):
+            both.spin()
+    assert len(both.said) == 1

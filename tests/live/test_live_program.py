@@ -1,0 +1,56 @@
+"""What `live` says and how it ends when something is not as it should be."""
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import Program, Programs
+
+Start = Callable[..., tuple[Program, str]]
+LIVE = 'ddct_bringup.live'
+
+
+def test_a_taken_port_is_named(extras: None, programs: Programs) -> None:
+    with socket.create_server(('127.0.0.1', 0)) as taken:
+        port = str(taken.getsockname()[1])
+        program = programs.start_module(LIVE, '--port', port)
+        assert program.wait() == 1
+    assert_one_line(program.errors(), 'live', f'port {port}', 'in use', '--port')
+    assert not program.output()
+
+
+def test_a_host_that_is_not_there_is_named(extras: None, programs: Programs) -> None:
+    program = programs.start_module(LIVE, '--port', '0', '--host', 'no-such-host.invalid')
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'live', 'no-such-host.invalid', '--host')
+
+
+@pytest.mark.parametrize('port', ['-1', '65536'])
+def test_a_port_out_of_range_is_named(programs: Programs, port: str) -> None:
+    program = programs.start_module(LIVE, '--port', port)
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'live', f'--port is {port}', '65535')
+
+
+def test_without_the_extra_it_says_what_to_install(
+    programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / 'foxglove.py').write_text('raise ImportError("No module named foxglove")')
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path), prepend=':')
+    program = programs.start_module(LIVE, '--port', '0')
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'live', 'foxglove-sdk', 'pip install foxglove-sdk')
+
+
+def test_it_ends_with_code_0_when_stopped(live: Start) -> None:
+    program, _ = live()
+    program.stop()
+    assert not program.errors()
+
+
+def test_help_ends_with_code_0(programs: Programs) -> None:
+    program = programs.start_module(LIVE, '--help')
+    assert program.wait() == 0
+    assert 'Foxglove' in program.output()
