@@ -77,7 +77,7 @@ test: setup
 	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
 	$(BIN)/colcon test --event-handlers console_cohesion+ --return-code-on-test-failure \
 	    || status=1; \
-	$(BIN)/python -m pytest tests --junit-xml=build/tests/pytest.xml || status=1; \
+	$(BIN)/python -m pytest tests -n 2 --dist loadfile --junit-xml=build/tests/pytest.xml || status=1; \
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \
 	exit $$status

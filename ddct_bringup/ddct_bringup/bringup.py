@@ -10,7 +10,8 @@ from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.progress import run_with_progress
 from ddct_bringup.scores.scoring import score_bag
-from ddct_plant.cli import run_program
+from ddct_controllers.registry import controller_label
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError, ParameterError
 
 PROGRAM = 'bringup'
@@ -41,7 +42,8 @@ def _bringup(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
-    plan = RunPlan(settings_of(options), options.controller, options.layout)
+    settings = settings_of(options, [controller_label(options.controller)])
+    plan = RunPlan(settings, options.controller, options.layout)
     if options.live is not None and plan.layout != 'processes':
         raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
     mark_folder(options.out)
@@ -57,14 +59,20 @@ def _bringup(argv: list[str]) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Run one controller in the closed loop and record it as a bag.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument('--controller', default='pi', metavar='NAME|FILE')
-    parser.add_argument('--out', type=Path, metavar='DIR')
+    parser.add_argument(
+        '--controller',
+        default='pi',
+        metavar='NAME|FILE',
+        help='one of --list, or a file that `design` wrote; default: %(default)s',
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='the bag goes to DIR/<controller>/'
+    )
     parser.add_argument(
         '--live',
         nargs='?',

@@ -14,7 +14,7 @@ from ddct_bringup.calibration.record import (
     outside_tolerance,
 )
 from ddct_bringup.calibration.tables import CalibrationTable, all_tables, check_tables
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text
 from ddct_plant.page_tables import read_page
@@ -106,11 +106,10 @@ def _require_writable(output: str | None) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description=_DESCRIPTION,
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--quick', action='store_true', help='check the frozen scenario only')
     parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")

@@ -14,9 +14,9 @@ from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
 from ddct_bringup.scores.scoring import Entry, score_bag, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.output_file import STDOUT, write_json
+from ddct_plant.output_file import STDOUT, require_place, write_json
 from ddct_plant.run_settings import RunSettings
 
 PROGRAM = 'compare'
@@ -47,8 +47,11 @@ def _compare(argv: list[str]) -> int:
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bags')
     require_chart_library()
-    settings = settings_of(options)
-    plans = [RunPlan(settings, name, options.layout) for name in _controllers(options.controllers)]
+    if options.json:
+        require_place('--json', options.json)
+    names = _controllers(options.controllers)
+    settings = settings_of(options, [controller_label(name) for name in names])
+    plans = [RunPlan(settings, name, options.layout) for name in names]
     folder = StagedFolder(options.out, overwrite=options.overwrite)
     entries = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ')
@@ -104,14 +107,18 @@ def _controllers(text: str) -> list[str]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Run controllers in the same closed loop and compare their scores.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument('--controllers', default='all', metavar='A,B,...|all')
-    parser.add_argument('--out', type=Path, metavar='DIR')
+    parser.add_argument(
+        '--controllers',
+        default='all',
+        metavar='A,B,...|all',
+        help='names of --list, or files that `design` wrote; default: %(default)s',
+    )
+    parser.add_argument('--out', type=Path, metavar='DIR', help='folder for all of it')
     parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
     add_run_options(parser)
     return parser

@@ -8,7 +8,7 @@ from rclpy.utilities import remove_ros_args
 
 from ddct_bringup.live_view.live_node import LiveNode
 from ddct_bringup.run.live_process import DEFAULT_PORT
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import ParameterError
 from ddct_plant.graph.run_info import package_version
 from ddct_plant.graph.spin import run_node
@@ -49,11 +49,10 @@ def _say(text: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Serve the running graph to Foxglove over WebSocket, on the simulated time.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--host', default='127.0.0.1', help='default: %(default)s')
     parser.add_argument('--port', type=int, default=DEFAULT_PORT, help='default: %(default)s')

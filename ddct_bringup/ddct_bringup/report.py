@@ -17,7 +17,7 @@ from ddct_bringup.report_page.runs import (
     require_one_scenario,
 )
 from ddct_bringup.scores.scoring import bags_in
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import write_text
 
@@ -82,11 +82,10 @@ def _progress(bags: Sequence[tuple[Path, Path | None]]) -> Iterable[tuple[Path, 
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Show recorded runs side by side on one page that needs no network.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         'runs',

@@ -24,7 +24,7 @@ from ddct_bringup.scores.scoring import (
 )
 from ddct_bringup.scores.signals_csv import signals_csv
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text
 
@@ -115,11 +115,10 @@ def _csv(runs: Sequence[Entry]) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Compute the metrics of recorded runs from their bags.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         'bags',

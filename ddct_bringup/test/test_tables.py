@@ -16,6 +16,7 @@ def run(controller='pi', *, valid=True, reason='', **metrics):
         'valid': valid,
         'reason': reason,
         'metrics': {**dict.fromkeys(METRIC_NAMES), **metrics},
+        'fallbacks': None,
     }
 
 

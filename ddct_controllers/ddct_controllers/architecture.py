@@ -57,7 +57,7 @@ class StaticController:
 
 class Architecture:
     """
-    C_f = open loop + feedback; feedback is held in reset until its first step.
+    C_f = open loop + feedback; feedback is held off until its first step.
 
     The open loop takes C_m, and C_load computed from V_x and the slope.
     """
@@ -84,7 +84,7 @@ class Architecture:
             feedback = 'on'
             command = self._checked(self._controller.update(measurement), measurement.step)
         else:
-            feedback = 'held in reset'
+            feedback = 'held off'
             self._controller.hold(measurement)
             command = self._feedback_off(measurement)
         torque = open_loop + command.clutch_torque

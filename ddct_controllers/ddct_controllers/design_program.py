@@ -1,7 +1,5 @@
 """Program `design`: the thesis's design workflows, and what its numbers come to."""
 
-import argparse
-
 from ddct_controllers.design import (
     figures_command,
     hinf_command,
@@ -10,7 +8,7 @@ from ddct_controllers.design import (
     mpc_command,
     thesis_command,
 )
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.graph.run_info import package_version
 
 PROGRAM = 'design'
@@ -43,11 +41,10 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _design(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog=PROGRAM,
         description='Design controllers, and check them against the thesis.',
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--version', action='version', version=package_version())
     commands = parser.add_subparsers(required=True, metavar='WORKFLOW')

@@ -57,7 +57,7 @@ def test_detailed_holds_feedback_in_reset_until_control_starts():
     request = make_architecture(SETTINGS, controller).update(BEFORE)
     assert request.torque == static_torque()
     assert controller.calls == ['reset']
-    assert dict(request.status)['feedback'] == 'held in reset'
+    assert dict(request.status)['feedback'] == 'held off'
 
 
 @pytest.mark.parametrize('name', [name for name in ARCHITECTURES if name != 'detailed'])

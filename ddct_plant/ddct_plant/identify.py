@@ -1,11 +1,10 @@
 """Program `identify`: the driveline parameters behind the thesis's transfer functions."""
 
-import argparse
 from typing import Any
 
 import numpy as np
 
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.coefficients import FITTED, PrintedCoefficients
 from ddct_plant.errors import DdctError
 from ddct_plant.identification import Identification, identify_driveline
@@ -44,11 +43,10 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _run(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
+    parser = ProgramParser(
         prog='identify',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         '--json', metavar='FILE', help='write the result as JSON; - is standard output, alone'

@@ -13,6 +13,17 @@ STDOUT = '-'
 """The file name that stands for standard output."""
 
 
+def require_place(option: str, target: str) -> None:
+    """Raise DdctError where `target`, given with `option`, cannot be a file: before long work."""
+    path = Path(target)
+    if target == STDOUT:
+        return
+    if path.is_dir():
+        raise DdctError(f'{option} {target} is a folder: name a file in it')
+    if not path.parent.is_dir():
+        raise DdctError(f'{option} {target}: there is no folder {path.parent}: make it first')
+
+
 def write_json(target: str, content: Any) -> None:
     """Write `content` as JSON like `write_text`; NaN and infinity raise ValueError."""
     write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n')

@@ -27,6 +27,7 @@ ENTRY_KEYS = [
     'valid',
     'reason',
     'metrics',
+    'fallbacks',
 ]
 
 

@@ -59,7 +59,12 @@ def measure() -> dict[str, Any]:
 
 def print_table(figures: dict[str, Any]) -> None:
     """Print what `measure` returned."""
-    print(f'MPC3 step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us):')
+    ours = figures['ways']['ours, daqp']
+    met = ours['median_us'] <= MEDIAN_GOAL_US and ours['p99_us'] <= P99_GOAL_US
+    print(
+        f'MPC3 step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us: '
+        f'{"met" if met else "MISSED"}):'
+    )
     for name, row in figures['ways'].items():
         print(
             f'  {name:10} median {row["median_us"]:8.1f} us ({row["median_ratio"]:6.1f}x), '

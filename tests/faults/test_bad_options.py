@@ -6,7 +6,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup import bringup
+from ddct_bringup import bringup, compare
 
 BAD_OPTIONS = {
     'controller': (['--controller', 'pid'], ["'pid'", 'choose from', 'hinf1']),
@@ -157,3 +157,29 @@ def test_the_program_exits_with_the_code_that_main_returns(
     assert program.wait() == 1
     assert_one_line(program.errors(), 'bringup', "'pid'")
     assert not program.output()
+
+
+def test_a_section_for_an_unknown_controller_is_refused(tmp_path, capsys):
+    """It would change nothing, and the table's title would say that it did."""
+    options = ['--headless', '--out', str(tmp_path / 'x'), '--set', 'controllers.mpc_4.gain=3']
+    assert compare.main(['--controllers', 'pi', *options]) == 1
+    assert 'controllers.mpc_4: there is no such controller' in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_json_without_a_folder_is_refused_before_anything_runs(tmp_path, capsys):
+    target = tmp_path / 'absent' / 'scores.json'
+    options = ['--headless', '--out', str(tmp_path / 'x'), '--json', str(target)]
+    assert compare.main(['--controllers', 'pi', *options]) == 1
+    assert 'there is no folder' in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_usage_error_is_one_line(capsys):
+    with pytest.raises(SystemExit) as end:
+        compare.main(['--nonsense'])
+    complaint = capsys.readouterr().err
+    assert end.value.code == 2
+    assert complaint.splitlines() == [
+        'compare: unrecognized arguments: --nonsense: see compare --help'
+    ]

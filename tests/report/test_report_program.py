@@ -10,6 +10,7 @@ from page_reader import PageReader
 from support.processes import Programs
 from support.runs import plan, record
 
+from ddct_bringup import compare
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.report import main
 from ddct_bringup.score import main as score
@@ -217,3 +218,17 @@ def test_the_page_goes_to_standard_output_on_request(
 ) -> None:
     assert main([str(demo / 'pi'), '--out', '-']) == 0
     assert capsys.readouterr().out.startswith('<!DOCTYPE html>')
+
+
+def test_a_controller_that_fell_back_is_named(tmp_path, capsys):
+    """Its figures would otherwise pass for those of the controller."""
+    changes = ['controllers.mpc3.iteration_limit=1', 'controllers.mpc3.highest_torque_n_m=300']
+    options = [part for change in changes for part in ('--set', change)]
+    folder = tmp_path / 'runs'
+    options += ['--headless', '--out', str(folder)]
+    assert compare.main(['--controllers', 'mpc3', *options]) == 0
+    fallbacks = json.loads((folder / 'scores.json').read_text())['runs'][0]['fallbacks']
+    assert fallbacks > 0
+    note = f'at {fallbacks} of 300 steps its program had no solution'
+    assert note in capsys.readouterr().out
+    assert note in (folder / 'report.html').read_text()

@@ -4,7 +4,7 @@ import importlib.util
 from pathlib import Path
 
 from ddct_plant.errors import DdctError
-from ddct_plant.output_file import STDOUT
+from ddct_plant.output_file import STDOUT, require_place
 
 MARKER = '<meta name="generator" content="ddct_bringup report">'
 """Tells a page that this program wrote, and may replace, from other files."""
@@ -23,11 +23,8 @@ def require_writable(out: str) -> None:
     """Raise DdctError where the page cannot go, or would replace what is no page of ours."""
     if out == STDOUT:
         return
+    require_place('--out', out)
     path = Path(out)
-    if path.is_dir():
-        raise DdctError(f'--out {out} is a folder: name a file, such as {path / "report.html"}')
-    if not path.parent.is_dir():
-        raise DdctError(f'--out {out}: there is no folder {path.parent}: make it first')
     try:
         if path.is_file() and path.stat().st_size:
             with path.open('rb') as file:

@@ -22,6 +22,7 @@ from ddct_bringup.report_page.output import MARKER
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.report_page.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
 from ddct_bringup.report_page.update_times import TICKS, update_times
+from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.scores.thesis_table import THESIS_TABLE
 from ddct_plant.graph.run_info import package_version
 
@@ -87,6 +88,7 @@ def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
             'charted': run.recording is not None,
             'on': on,
             'thesis': row,
+            'fallback': fallback_note(run.entry) if run.entry['fallbacks'] else '',
             'times': update_times(run),
             'origin': run_origin(run),
         }

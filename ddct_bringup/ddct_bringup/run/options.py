@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from ddct_controllers.registry import controller_names
 from ddct_plant.clutch import CLUTCHES
+from ddct_plant.errors import ParameterError
 from ddct_plant.graph.run_info import package_version
 from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
 from ddct_plant.scenario_file import load_scenario, scenario_names
@@ -12,15 +13,40 @@ from ddct_plant.scenario_file import load_scenario, scenario_names
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Add what describes a run, and how it is carried out, to a program's options."""
-    parser.add_argument('--architecture', default='detailed', metavar='NAME')
-    parser.add_argument('--scenario', default='thesis', metavar='NAME|FILE')
-    parser.add_argument('--clutch', default='linear', metavar='NAME')
-    parser.add_argument('--wear-gain', type=float, default=1.0, metavar='X', help='K_usura')
-    parser.add_argument('--mode', default='lockstep', metavar='lockstep|realtime')
+    parser.add_argument(
+        '--architecture',
+        default='detailed',
+        metavar='NAME',
+        help=f'{" | ".join(ARCHITECTURES)}; default: %(default)s',
+    )
+    parser.add_argument(
+        '--scenario',
+        default='thesis',
+        metavar='NAME|FILE',
+        help='one that comes with the package, or a YAML file; default: %(default)s',
+    )
+    parser.add_argument(
+        '--clutch', default='linear', metavar='NAME', help='model; default: %(default)s'
+    )
+    parser.add_argument(
+        '--wear-gain',
+        type=float,
+        default=1.0,
+        metavar='X',
+        help='K_usura, 1 for a new clutch; default: %(default)s',
+    )
+    parser.add_argument(
+        '--mode',
+        default='lockstep',
+        metavar='|'.join(MODES),
+        help='wait for every node, or 100 Hz on the wall clock; default: %(default)s',
+    )
     parser.add_argument(
         '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
     )
-    parser.add_argument('--seed', type=int, default=0, metavar='N')
+    parser.add_argument(
+        '--seed', type=int, default=0, metavar='N', help='of random numbers; default: %(default)s'
+    )
     parser.add_argument(
         '--set',
         action='append',
@@ -46,13 +72,25 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--version', action='version', version=package_version())
 
 
-def settings_of(options: argparse.Namespace) -> RunSettings:
-    """Return the validated settings; raise ParameterError that names what cannot be used."""
+def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:
+    """
+    Return the validated settings of a run, or of runs, with the controllers called `labels`.
+
+    Raise ParameterError that names what cannot be used.
+    """
     overrides = list(options.overrides)
     if options.duration is not None:
         overrides.append(f'duration_s={options.duration!r}')
+    scenario = load_scenario(options.scenario, overrides)
+    known = {*controller_names(), *labels}
+    unknown = sorted(scenario.controllers.keys() - known)
+    if unknown:
+        raise ParameterError(
+            f'controllers.{unknown[0]}: there is no such controller: choose from '
+            f'{", ".join(controller_names())}'
+        )
     return RunSettings(
-        scenario=load_scenario(options.scenario, overrides),
+        scenario=scenario,
         architecture=options.architecture,
         clutch=options.clutch,
         wear_gain=options.wear_gain,

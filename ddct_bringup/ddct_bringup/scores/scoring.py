@@ -17,7 +17,7 @@ from ddct_plant.errors import DdctError
 from ddct_plant.timebase import time_of_step
 
 Entry = dict[str, Any]
-"""One run of `scores.json`: bag, controller, ..., valid, reason, metrics."""
+"""One run of `scores.json`: bag, controller, ..., valid, reason, metrics, fallbacks."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
 _FACT_NAMES = (
@@ -57,6 +57,7 @@ def score_recording(recording: Recording, bag: str) -> Entry:
         'valid': not reason,
         'reason': reason,
         'metrics': metrics.as_dict(),
+        'fallbacks': fallbacks_in(recording.trajectory),
     }
 
 
@@ -74,7 +75,18 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
         'valid': False,
         'reason': str(error),
         'metrics': dict.fromkeys(METRIC_NAMES),
+        'fallbacks': None,
     }
+
+
+def fallbacks_in(trajectory: Trajectory) -> int | None:
+    """
+    Return at how many steps the controller had no solution of its program and said so.
+
+    None for a controller whose status does not count them.
+    """
+    count = dict(trajectory.status[-1]).get('fallbacks', '')
+    return int(count) if count.isdigit() else None
 
 
 def why_invalid(trajectory: Trajectory, steps: int) -> str:

@@ -63,7 +63,7 @@ COLUMNS = (
 def print_runs(
     runs: Sequence[Entry], columns: Sequence[Column], stream: TextIO, title: str | None = None
 ) -> None:
-    """Print one row per run, then the reason of each invalid one."""
+    """Print one row per run, then why one is invalid or not quite the controller's."""
     table = Table(title=title, box=box.SIMPLE, pad_edge=False, collapse_padding=True)
     for column in columns:
         table.add_column(column.heading, justify='right' if column.number else 'left')
@@ -77,6 +77,16 @@ def print_runs(
         if not run['valid']:
             reason = f'{run["bag"]}: not valid: {run["reason"]}'
             console.print(Text(reason, 'bold'), soft_wrap=True)
+        elif run['fallbacks']:
+            console.print(Text(f'{run["bag"]}: {fallback_note(run)}', 'bold'), soft_wrap=True)
+
+
+def fallback_note(run: Entry) -> str:
+    """Return what to know of a run whose controller had to do without a solution."""
+    return (
+        f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
+        'time: the figures are partly those of its fallback'
+    )
 
 
 def _text(value: Any, form: str) -> str:

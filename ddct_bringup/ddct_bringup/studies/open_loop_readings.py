@@ -27,10 +27,16 @@ class OpenLoopUnknown(Controller):
 
 
 class OpenLoopOff(Controller):
-    """C_fOL is taken off at control start, and the MPC goes on from the torque it had then."""
+    """
+    C_fOL is taken off at control start, and the MPC gives the whole torque.
 
-    def __init__(self, controller: PredictiveController) -> None:
+    With `from_zero` its moves are counted from no torque at all, so the first has to bring it all;
+    otherwise from the torque that there was.
+    """
+
+    def __init__(self, controller: PredictiveController, *, from_zero: bool = False) -> None:
         self._controller = controller
+        self._from_zero = from_zero
         self.preview_steps = controller.preview_steps
         self._taken_over = 0.0
 
@@ -42,7 +48,7 @@ class OpenLoopOff(Controller):
     def hold(self, measurement: Measurement) -> None:
         """Note the torque to go on from."""
         self._controller.hold(measurement)
-        self._taken_over = measurement.open_loop_torque
+        self._taken_over = 0.0 if self._from_zero else measurement.open_loop_torque
 
     def update(self, measurement: Measurement) -> Command:
         """Return the MPC's whole request less the C_fOL that the architecture adds."""

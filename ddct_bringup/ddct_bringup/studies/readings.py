@@ -84,6 +84,11 @@ _READINGS: Mapping[str, Callable[[MpcSettings], Controller]] = {
     'Q per rad/s, reference held': lambda settings: _controller(_per_rad_s(_held(settings))),
     'weights not squared': lambda settings: _controller(_not_squared(settings)),
     'no actuator in its model': lambda settings: _controller(settings, _without_actuator()),
-    'C_fOL off from 0.6 s': lambda settings: OpenLoopOff(_controller(settings)),
+    'C_fOL off from 0.6 s, its torque taken over': lambda settings: OpenLoopOff(
+        _controller(settings)
+    ),
+    'C_fOL off from 0.6 s, moves from 0': lambda settings: OpenLoopOff(
+        _controller(settings), from_zero=True
+    ),
     'C_fOL on, unknown to it': lambda settings: OpenLoopUnknown(_controller(settings)),
 }

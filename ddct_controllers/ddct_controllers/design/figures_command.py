@@ -29,7 +29,6 @@ def add_parser(subparsers: Any) -> None:
         help='the figures of the thesis, and a page that shows them',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--out', required=True, metavar='DIR', help='folder, created if absent')
     parser.add_argument('--only', metavar='N,N...', help='numbers such as 2.10,3.5')

@@ -50,7 +50,6 @@ def add_parser(subparsers: Any) -> None:
         help='Chapter 3 step by step, or a controller from your specifications',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
     add('--rise-time', type=float, metavar='S', help='t_r (default: 0.3)')

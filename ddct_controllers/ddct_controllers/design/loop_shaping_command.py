@@ -50,7 +50,6 @@ def add_parser(subparsers: Any) -> None:
         help='Chapter 2 step by step, or a controller from your specifications',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--rise-time', type=float, metavar='S', help='longest t_r')
     parser.add_argument('--overshoot', type=float, metavar='PERCENT', help='largest overshoot')

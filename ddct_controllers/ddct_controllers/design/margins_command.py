@@ -43,7 +43,6 @@ def add_parser(subparsers: Any) -> None:
         help='margins of the sampled loop, over wear and plant corners',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--controller', default='all', metavar='NAME|FILE|all')
     parser.add_argument(

@@ -37,7 +37,6 @@ def add_parser(subparsers: Any) -> None:
         help='studies of the predictive controllers',
         description=_DESCRIPTION,
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')

@@ -43,7 +43,6 @@ def add_parser(subparsers: Any) -> None:
         help="the thesis's numbers beside ours",
         description=_DESCRIPTION,
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--json', metavar='FILE', help='write all numbers; - is standard output')
     parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
