@@ -10,8 +10,8 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers import feedforward
-from ddct_controllers.design.feedforward_design import TORQUE_RATE_WEIGHT, design_feedforward
-from ddct_controllers.design.feedforward_residual import engine_residual, load_residual
+from ddct_controllers.design.feedforward.design import TORQUE_RATE_WEIGHT, design_feedforward
+from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.lti import StateSpace

@@ -9,9 +9,9 @@ import pytest
 from ddct_bringup import compare
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.evidence import frequency_evidence
-from ddct_controllers.design.loops import sampled_loop
-from ddct_controllers.design.step_response import step_response
+from ddct_controllers.design.analysis.evidence import frequency_evidence
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_plant.run_settings import RunSettings

@@ -1,13 +1,8 @@
 """Program `design`: the thesis's design workflows, and what its numbers come to."""
 
-from ddct_controllers.design import (
-    figures_command,
-    hinf_command,
-    loop_shaping_command,
-    margins_command,
-    mpc_command,
-    thesis_command,
-)
+from ddct_controllers.design import figures_command, margins_command, mpc_command, thesis_command
+from ddct_controllers.design.h_infinity import command as hinf_command
+from ddct_controllers.design.loop_shaping import command as loop_shaping_command
 from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.graph.run_info import package_version
 

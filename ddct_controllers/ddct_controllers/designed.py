@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from ddct_controllers.design.hinf_bilinear import from_w_plane
+from ddct_controllers.design.h_infinity.bilinear import from_w_plane
 from ddct_plant.cascade import Factor
 from ddct_plant.checks import require_choice
 from ddct_plant.errors import DdctError, ParameterError

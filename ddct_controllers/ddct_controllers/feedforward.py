@@ -1,6 +1,6 @@
 """Feedforward of engine torque and load torque (thesis Section 1.6.2), as it runs."""
 
-from ddct_controllers.design.feedforward_design import design_feedforward, state_at_rest
+from ddct_controllers.design.feedforward.design import design_feedforward, state_at_rest
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_plant.parameters import DrivelineParameters
 

@@ -3,7 +3,7 @@
 import importlib.metadata
 from collections.abc import Callable, Mapping
 
-from ddct_controllers.design.hinf_controllers import SYNTHESISED, synthesised_controller
+from ddct_controllers.design.h_infinity.controllers import SYNTHESISED, synthesised_controller
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
 from ddct_controllers.entry_points import load_entry_point
 from ddct_controllers.interface import Controller, ControllerContext

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.design.driveline_mode import (
+from ddct_controllers.design.analysis.driveline_mode import (
     driveline_mode,
     locked_driveline_zero,
     nearest_mode,
 )
-from ddct_controllers.design.loops import IDENTIFIED_DRIVELINE, sampled_loop
+from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
 from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.driveline_model import driveline_matrices

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.design.hinf_cleaning import FAST_RAD_S, clean, factor_text
-from ddct_controllers.design.hinf_synthesis import SynthesisError
+from ddct_controllers.design.h_infinity.cleaning import FAST_RAD_S, clean, factor_text
+from ddct_controllers.design.h_infinity.synthesis import SynthesisError
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction
 

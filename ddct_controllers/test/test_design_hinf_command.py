@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from ddct_controllers.design.hinf_controllers import synthesised_controller
-from ddct_controllers.design.hinf_weights import WeightError
+from ddct_controllers.design.h_infinity.controllers import synthesised_controller
+from ddct_controllers.design.h_infinity.weights import WeightError
 from ddct_controllers.design_program import main
 from ddct_controllers.designed import BILINEAR, DesignedController, load_designed
 from ddct_controllers.registry import make_controller

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.hinf_bilinear import from_w_plane, to_w_plane
-from ddct_controllers.design.hinf_norm import h_infinity_norm
-from ddct_controllers.design.loops import sampled_plant
+from ddct_controllers.design.analysis.loops import sampled_plant
+from ddct_controllers.design.h_infinity.bilinear import from_w_plane, to_w_plane
+from ddct_controllers.design.h_infinity.norm import h_infinity_norm
 from ddct_plant.errors import ParameterError
 from ddct_plant.lti import FactoredTransferFunction, StateSpace
 

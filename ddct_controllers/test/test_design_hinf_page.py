@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ddct_controllers.design.hinf_command import page_tables
-from ddct_controllers.design.plant_corners import PlantCorners
-from ddct_controllers.design.worst_corner import worst_corner
+from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.design.h_infinity.command import page_tables
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.lti import discretise_zoh
 from ddct_plant.page_tables import fill_tables

@@ -6,22 +6,25 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design import hinf_problem
-from ddct_controllers.design.hinf_coordinates import balanced
-from ddct_controllers.design.hinf_design import design_h_infinity, generalised_plant
-from ddct_controllers.design.hinf_lmi import synthesise_by_lmi
-from ddct_controllers.design.hinf_plant import GeneralisedPlant, GeneralisedPlantError
-from ddct_controllers.design.hinf_problem import mixed_sensitivity
-from ddct_controllers.design.hinf_recipes import HinfWeights, make_weights
-from ddct_controllers.design.hinf_riccati import central_controller, stabilising_solutions
-from ddct_controllers.design.hinf_synthesis import SynthesisError, synthesise, verified_norm
-from ddct_controllers.design.hinf_weights import (
+from ddct_controllers.design.analysis.loops import plant_in_rpm
+from ddct_controllers.design.h_infinity import problem as hinf_problem
+from ddct_controllers.design.h_infinity.coordinates import balanced
+from ddct_controllers.design.h_infinity.design import design_h_infinity, generalised_plant
+from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
+from ddct_controllers.design.h_infinity.plant import GeneralisedPlant, GeneralisedPlantError
+from ddct_controllers.design.h_infinity.problem import mixed_sensitivity
+from ddct_controllers.design.h_infinity.recipes import HinfWeights, make_weights
+from ddct_controllers.design.h_infinity.riccati import central_controller, stabilising_solutions
+from ddct_controllers.design.h_infinity.synthesis import SynthesisError, synthesise, verified_norm
+from ddct_controllers.design.h_infinity.weights import (
     ComplementaryWeight,
     SensitivityWeight,
     WeightError,
 )
-from ddct_controllers.design.loops import plant_in_rpm
-from ddct_controllers.design.specifications import SpecificationError, TimeSpecifications
+from ddct_controllers.design.loop_shaping.specifications import (
+    SpecificationError,
+    TimeSpecifications,
+)
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.lti import FactoredTransferFunction, StateSpace
 

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.hinf_recipes import THESIS_SPECIFICATIONS, make_weights
-from ddct_controllers.design.hinf_uncertainty import (
+from ddct_controllers.design.analysis.loops import plant_in_rpm
+from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS, make_weights
+from ddct_controllers.design.h_infinity.uncertainty import (
     OMEGA,
     PRINTED_W_U,
     fit_first_order,
@@ -14,15 +15,14 @@ from ddct_controllers.design.hinf_uncertainty import (
     shortfall_from_rad_s,
     wear_family,
 )
-from ddct_controllers.design.hinf_weights import (
+from ddct_controllers.design.h_infinity.weights import (
     ComplementaryWeight,
     EffortWeight,
     SensitivityWeight,
     WeightError,
     stable_weight,
 )
-from ddct_controllers.design.loops import plant_in_rpm
-from ddct_controllers.design.specifications import TimeSpecifications
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.errors import ParameterError
 from ddct_plant.lti import FactoredTransferFunction
 

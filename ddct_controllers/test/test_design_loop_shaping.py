@@ -5,20 +5,20 @@ import math
 import numpy as np
 import pytest
 
+from ddct_controllers.design.analysis.loop_stability import unstable_poles
+from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
+from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.pulse_transfer_function import pulse_transfer_function
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.factored_form import factored_form
-from ddct_controllers.design.loop_shaping import (
+from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     largest_zero_rad_s,
     network_steps,
     placement,
 )
-from ddct_controllers.design.loop_stability import unstable_poles
-from ddct_controllers.design.loops import continuous_loop, sampled_loop
-from ddct_controllers.design.margins import LoopMargins, loop_margins
-from ddct_controllers.design.networks import LagNetwork, LeadNetwork
-from ddct_controllers.design.pulse_transfer_function import pulse_transfer_function
-from ddct_controllers.design.specifications import prototype_phase_margin
-from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork
+from ddct_controllers.design.loop_shaping.specifications import prototype_phase_margin
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
 from ddct_plant.parameters import DrivelineParameters

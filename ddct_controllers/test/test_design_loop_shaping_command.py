@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from ddct_controllers.design import loop_shaping_command
+from ddct_controllers.design.loop_shaping import command as loop_shaping_command
 from ddct_controllers.designed import load_designed
 from ddct_controllers.registry import make_controller
 from ddct_plant.cli import run_program

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loop_shaping_search import STRUCTURES, design_loop_shaping
-from ddct_controllers.design.loops import sampled_loop
-from ddct_controllers.design.specifications import SpecificationError, TimeSpecifications
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
+from ddct_controllers.design.loop_shaping.specifications import (
+    SpecificationError,
+    TimeSpecifications,
+)
 from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.design.verified_design import verify
 from ddct_controllers.printed import PRINTED_CONTROLLERS

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loops import (
+from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     continuous_loop,
     plant_in_rpm,

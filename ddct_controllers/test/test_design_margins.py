@@ -6,9 +6,9 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loop_stability import closed_loop_stable, unstable_poles
-from ddct_controllers.design.loops import ContinuousLoop, continuous_loop, sampled_loop
-from ddct_controllers.design.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable, unstable_poles
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
+from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
 from ddct_controllers.design.state_space import frequency_response, scaled, series
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh

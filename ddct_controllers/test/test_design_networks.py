@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loops import plant_in_rpm
-from ddct_controllers.design.networks import LagNetwork, LeadNetwork, with_crossover
+from ddct_controllers.design.analysis.loops import plant_in_rpm
+from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork, with_crossover
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.errors import ParameterError
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loop_curve import LoopCurve
-from ddct_controllers.design.loop_shaping import NETWORK_SPECIFICATIONS
-from ddct_controllers.design.loops import continuous_loop
-from ddct_controllers.design.nichols import (
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS
+from ddct_controllers.design.loop_shaping.nichols import (
     NicholsCurve,
     constant_m_curve,
     constant_s_curve,

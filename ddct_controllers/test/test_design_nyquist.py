@@ -2,10 +2,14 @@
 
 import pytest
 
-from ddct_controllers.design.loop_shaping import integrators, network_steps
-from ddct_controllers.design.loop_stability import unstable_poles
-from ddct_controllers.design.loops import ContinuousLoop, continuous_loop, plant_in_rpm
-from ddct_controllers.design.nyquist import NyquistCount, nyquist_count, stabilising_sign
+from ddct_controllers.design.analysis.loop_stability import unstable_poles
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
+from ddct_controllers.design.loop_shaping.design import integrators, network_steps
+from ddct_controllers.design.loop_shaping.nyquist import (
+    NyquistCount,
+    nyquist_count,
+    stabilising_sign,
+)
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.lti import FactoredTransferFunction

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ddct_controllers.design.crossover_bound import (
+from ddct_controllers.design.analysis.loops import ContinuousLoop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.crossover_bound import (
     highest_crossover_rad_s,
     require_reachable,
     unavoidable_lag,
 )
-from ddct_controllers.design.loops import ContinuousLoop
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.specifications import (
+from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
     TimeSpecifications,
     prototype_complementary_peak,
@@ -21,7 +22,6 @@ from ddct_controllers.design.specifications import (
     prototype_sensitivity_peak,
     rise_time_crossover_product,
 )
-from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
 from ddct_plant.lti import FactoredTransferFunction
 from ddct_plant.printed import ACTUATOR
 

@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from ddct_controllers.design.loop_shaping import integrators
-from ddct_controllers.design.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.specifications import SpecificationError
-from ddct_controllers.design.steady_state import (
+from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.steady_state import (
     poles_at_zero,
     required_integrators,
     steady_state_error,
 )
+from ddct_controllers.design.loop_shaping.design import integrators
+from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.driveline_model import engine_to_slip, load_to_slip
 from ddct_plant.lti import FactoredTransferFunction

@@ -7,12 +7,12 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.design.loop_stability import closed_loop_stable
-from ddct_controllers.design.loops import IDENTIFIED_DRIVELINE, sampled_loop
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.plant_corners import PARAMETER_SPREAD, PlantCorners
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
+from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
 from ddct_controllers.design.state_space import frequency_response, scaled
-from ddct_controllers.design.worst_corner import WEAR_GAINS, worst_corner
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.lti import StateSpace, discretise_zoh
 from ddct_plant.parameters import DrivelineParameters

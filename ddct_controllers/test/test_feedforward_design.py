@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_controllers.design.feedforward_design import (
+from ddct_controllers.design.analysis.loops import sampled_plant
+from ddct_controllers.design.feedforward.design import (
     TORQUE_RATE_WEIGHT,
     design_feedforward,
     state_at_rest,
 )
-from ddct_controllers.design.feedforward_residual import engine_residual, load_residual
-from ddct_controllers.design.loops import sampled_plant
+from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_plant.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from ddct_controllers.design.loop_shaping_report import thesis_record
-from ddct_controllers.design.loop_shaping_tables import thesis_tables
+from ddct_controllers.design.loop_shaping.report import thesis_record
+from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.page_tables import fill_tables

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ddct_controllers.design import evidence, margins_command
+from ddct_controllers.design import margins_command
+from ddct_controllers.design.analysis import evidence
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
 from ddct_plant.cli import run_program

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
 
-from ddct_controllers.design.loops import sampled_loop, sampled_plant
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.plant_corners import PlantCorners
-from ddct_controllers.design.worst_corner import worst_corner
+from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.worst_corner import worst_corner
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi

@@ -9,12 +9,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from ddct_controllers.design import figures_command
-from ddct_controllers.design.chart_style import typeset
-from ddct_controllers.design.loop_curve import LoopCurve
-from ddct_controllers.design.loops import continuous_loop
-from ddct_controllers.design.nichols import nichols_curve
-from ddct_controllers.design.specifications import rise_time_crossover_product
-from ddct_controllers.design.step_response import step_response
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.step_response import step_response
+from ddct_controllers.design.drawing.chart_style import typeset
+from ddct_controllers.design.loop_shaping.nichols import nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 from ddct_controllers.design.thesis_figures.collect import (
     ENTRY_POINT_GROUP,
     OWN_FIGURES,
@@ -288,7 +288,7 @@ def test_gallery_needs_nothing_but_the_pictures_beside_it():
     ('target', 'complaint'),
     [
         ('ddct_nowhere:FIGURES', 'cannot be loaded .ModuleNotFoundError'),
-        ('ddct_controllers.design.chart_style:BLACK', 'must be a tuple of ThesisFigure'),
+        ('ddct_controllers.design.drawing.chart_style:BLACK', 'must be a tuple of ThesisFigure'),
     ],
 )
 def test_entry_point_that_gives_no_figures_is_named(monkeypatch, target, complaint):

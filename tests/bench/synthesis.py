@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.design.hinf_design import generalised_plant
-from ddct_controllers.design.hinf_plant import GeneralisedPlant
-from ddct_controllers.design.hinf_recipes import make_weights
-from ddct_controllers.design.hinf_synthesis import synthesise, verified_norm
+from ddct_controllers.design.h_infinity.design import generalised_plant
+from ddct_controllers.design.h_infinity.plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.recipes import make_weights
+from ddct_controllers.design.h_infinity.synthesis import synthesise, verified_norm
 from ddct_plant.errors import ParameterError
 from ddct_plant.lti import StateSpace
 

@@ -5,13 +5,13 @@ import pytest
 from bench.synthesis import measure, slycot_optimum
 from scipy.linalg import block_diag, null_space
 
-from ddct_controllers.design.hinf_coordinates import balanced
-from ddct_controllers.design.hinf_design import generalised_plant
-from ddct_controllers.design.hinf_lmi import synthesise_by_lmi
-from ddct_controllers.design.hinf_norm import h_infinity_norm
-from ddct_controllers.design.hinf_plant import GeneralisedPlant
-from ddct_controllers.design.hinf_recipes import RECIPES, make_weights
-from ddct_controllers.design.hinf_synthesis import synthesise, verified_norm
+from ddct_controllers.design.h_infinity.coordinates import balanced
+from ddct_controllers.design.h_infinity.design import generalised_plant
+from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
+from ddct_controllers.design.h_infinity.norm import h_infinity_norm
+from ddct_controllers.design.h_infinity.plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.recipes import RECIPES, make_weights
+from ddct_controllers.design.h_infinity.synthesis import synthesise, verified_norm
 from ddct_plant.lti import StateSpace
 
 

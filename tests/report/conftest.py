@@ -8,7 +8,7 @@ from support.runs import plan, record
 
 from ddct_bringup.report import main
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.evidence import frequency_evidence
+from ddct_controllers.design.analysis.evidence import frequency_evidence
 from ddct_plant.scenario_file import scenario_digest
 
 CONTROLLERS = ('pi', 'ls8', 'hinf1')

@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.evidence import Evidence, frequency_evidence
+from ddct_controllers.design.analysis.evidence import Evidence, frequency_evidence
 from ddct_plant.errors import DdctError
 
 COMPUTED = 'computed for this page'

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_bringup.report_page.evidence import LoopEvidence
-from ddct_controllers.design.evidence import Evidence
+from ddct_controllers.design.analysis.evidence import Evidence
 
 LOOP_COLUMNS = (
     ('gain_margin_db', 'GM', 'dB', '.1f', 'Least increase of the gain that makes it unstable'),

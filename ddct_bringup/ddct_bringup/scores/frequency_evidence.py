@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from ddct_controllers.design.evidence import frequency_evidence
+from ddct_controllers.design.analysis.evidence import frequency_evidence
 from ddct_plant.output_file import write_json
 from ddct_plant.run_settings import RunSettings
 

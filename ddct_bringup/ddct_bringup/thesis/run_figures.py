@@ -6,8 +6,13 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.scores.thesis_table import CALIBRATED, PREDICTED, thesis_row
 from ddct_bringup.thesis.groups import RUN_GROUPS, RunGroup
 from ddct_bringup.thesis.runs import thesis_metrics, thesis_run
-from ddct_controllers.design.chart_style import BLACK, REFERENCE_LINE, line_styles, new_chart
-from ddct_controllers.design.charts import label_time_axis
+from ddct_controllers.design.drawing.chart_style import (
+    BLACK,
+    REFERENCE_LINE,
+    line_styles,
+    new_chart,
+)
+from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, ThesisFigure
 from ddct_plant.units import rpm_from_rad_s
 

@@ -6,8 +6,13 @@ import math
 import numpy as np
 
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
-from ddct_controllers.design.chart_style import GREY, REFERENCE_LINE, line_styles, new_chart
-from ddct_controllers.design.charts import label_time_axis
+from ddct_controllers.design.drawing.chart_style import (
+    GREY,
+    REFERENCE_LINE,
+    line_styles,
+    new_chart,
+)
+from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, ThesisFigure
 from ddct_plant.elementary import ElementaryBlockPlant
 from ddct_plant.engine import Engine

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ddct_controllers.design.specifications import TimeSpecifications
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.designed import DesignedController, load_designed, require_name
 from ddct_controllers.registry import controller_names
 from ddct_plant.errors import DdctError, ParameterError
@@ -41,7 +41,7 @@ def write_design(
 ) -> Path:
     """Write charts and, last, the controller; return its path. Raise DdctError on failure."""
     # matplotlib takes most of a second to load.
-    from ddct_controllers.design.design_charts import write_design_charts
+    from ddct_controllers.design.drawing.design_charts import write_design_charts
 
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     """Draw into the folder and return the exit code."""
     # Matplotlib takes half a second to import: the other subcommands do without.
     try:
-        from ddct_controllers.design.chart_style import chart_style, save_chart
+        from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
         from ddct_controllers.design.thesis_figures import collect, figure_tables, gallery
         from ddct_controllers.design.thesis_figures.thesis_figure import DrawnFigure
     except ModuleNotFoundError as error:

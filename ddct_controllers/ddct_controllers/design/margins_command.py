@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from ddct_controllers.design.evidence import Evidence, frequency_evidence
+from ddct_controllers.design.analysis.evidence import Evidence, frequency_evidence
 from ddct_controllers.registry import controller_names
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import write_json

@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 
-from ddct_controllers.design.loop_curve import LoopCurve
-from ddct_controllers.design.loop_stability import closed_loop_stable
-from ddct_controllers.design.loops import sampled_loop
-from ddct_controllers.design.margins import LoopMargins, loop_margins
-from ddct_controllers.design.nichols import Contour, contours
-from ddct_controllers.design.specifications import TimeSpecifications
-from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.nichols import Contour, contours
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.timebase import PERIOD_S

@@ -4,11 +4,11 @@ import math
 
 from scipy.optimize import brentq
 
-from ddct_controllers.design.hinf_cleaning import clean
-from ddct_controllers.design.hinf_recipes import THESIS_SPECIFICATIONS
-from ddct_controllers.design.loops import continuous_loop, sampled_loop
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.steady_state import poles_at_zero
+from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.steady_state import poles_at_zero
+from ddct_controllers.design.h_infinity.cleaning import clean
+from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS
 from ddct_controllers.design.thesis.factors import pair
 from ddct_controllers.design.thesis.loop_shaping_values import translation
 from ddct_controllers.design.thesis.norm_values import norm_values

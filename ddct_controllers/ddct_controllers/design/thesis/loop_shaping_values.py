@@ -6,8 +6,11 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import brentq
 
-from ddct_controllers.design.loop_curve import LoopCurve
-from ddct_controllers.design.loop_shaping import (
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.steady_state import poles_at_zero, required_integrators
+from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
     PLACEMENT_SPECIFICATIONS,
@@ -15,17 +18,14 @@ from ddct_controllers.design.loop_shaping import (
     largest_zero_rad_s,
     placement,
 )
-from ddct_controllers.design.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.networks import network_phase
-from ddct_controllers.design.nichols import contours
-from ddct_controllers.design.nyquist import nyquist_count, stabilising_sign
-from ddct_controllers.design.specifications import (
+from ddct_controllers.design.loop_shaping.networks import network_phase
+from ddct_controllers.design.loop_shaping.nichols import contours
+from ddct_controllers.design.loop_shaping.nyquist import nyquist_count, stabilising_sign
+from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     prototype_phase_margin,
     rise_time_crossover_product,
 )
-from ddct_controllers.design.steady_state import poles_at_zero, required_integrators
 from ddct_controllers.design.thesis.factors import pair, real
 from ddct_controllers.design.thesis.sampled_values import sampled_values
 from ddct_controllers.design.thesis.step_values import (

@@ -5,11 +5,11 @@ import math
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from ddct_controllers.design.hinf_recipes import make_weights
-from ddct_controllers.design.hinf_uncertainty import PRINTED_W_U
-from ddct_controllers.design.hinf_weighted_norms import WeightedNorms, weighted_norms
-from ddct_controllers.design.loops import continuous_loop
-from ddct_controllers.design.steady_state import poles_at_zero
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.steady_state import poles_at_zero
+from ddct_controllers.design.h_infinity.recipes import make_weights
+from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U
+from ddct_controllers.design.h_infinity.weighted_norms import WeightedNorms, weighted_norms
 from ddct_controllers.design.thesis.thesis_number import Value
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction

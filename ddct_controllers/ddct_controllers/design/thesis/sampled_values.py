@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ddct_controllers.design.pulse_transfer_function import pulse_transfer_function
+from ddct_controllers.design.analysis.pulse_transfer_function import pulse_transfer_function
 from ddct_controllers.design.thesis.thesis_number import Value
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
-from ddct_controllers.design.loops import ContinuousLoop, continuous_loop
-from ddct_controllers.design.specifications import TimeSpecifications
-from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.units import RAD_S_PER_RPM

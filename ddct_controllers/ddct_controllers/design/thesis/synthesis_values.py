@@ -1,7 +1,7 @@
 """Section 3.2.2 synthesised again: what the printed weights lead to, and what Hinf1 came from."""
 
-from ddct_controllers.design.hinf_controllers import synthesised_design
-from ddct_controllers.design.loops import plant_in_rpm
+from ddct_controllers.design.analysis.loops import plant_in_rpm
+from ddct_controllers.design.h_infinity.controllers import synthesised_design
 from ddct_controllers.design.thesis.factors import pair, real
 from ddct_controllers.design.thesis.thesis_number import Value
 from ddct_plant.cascade import Factor

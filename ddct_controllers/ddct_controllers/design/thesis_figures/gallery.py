@@ -4,7 +4,7 @@ import html
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
-from ddct_controllers.design.chart_style import INDEXED_SYMBOL
+from ddct_controllers.design.drawing.chart_style import INDEXED_SYMBOL
 from ddct_controllers.design.thesis_figures.gallery_style import STYLE
 from ddct_controllers.design.thesis_figures.thesis_figure import DrawnFigure, figure_order
 

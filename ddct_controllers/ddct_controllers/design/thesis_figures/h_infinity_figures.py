@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from ddct_controllers.design.chart_style import BLUE, BOUND_LINE, SKY, new_chart
-from ddct_controllers.design.charts import draw_bound
-from ddct_controllers.design.hinf_recipes import THESIS_SPECIFICATIONS, make_weights
-from ddct_controllers.design.hinf_uncertainty import PRINTED_W_U, relative_error, wear_family
-from ddct_controllers.design.hinf_weighted_norms import WeightedNorms, weighted_norms
-from ddct_controllers.design.loops import ContinuousLoop, continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
+from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY, new_chart
+from ddct_controllers.design.drawing.charts import draw_bound
+from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS, make_weights
+from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, relative_error, wear_family
+from ddct_controllers.design.h_infinity.weighted_norms import WeightedNorms, weighted_norms
 from ddct_controllers.design.thesis_figures.loop_shaping_figures import (
     draw_loop_in_nichols,
     draw_step,

@@ -1,18 +1,18 @@
 """Figures 2.7 to 2.10: the loops of the loop-shaping design, and the step response of G_c2."""
 
-from ddct_controllers.design.chart_style import new_chart
-from ddct_controllers.design.charts import draw_nichols, draw_step_response
-from ddct_controllers.design.loop_curve import LoopCurve
-from ddct_controllers.design.loop_shaping import (
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.drawing.chart_style import new_chart
+from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
+from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_SPECIFICATIONS,
     integrators,
 )
-from ddct_controllers.design.loops import continuous_loop
-from ddct_controllers.design.margins import loop_margins
-from ddct_controllers.design.nichols import contours, nichols_curve
-from ddct_controllers.design.specifications import TimeSpecifications
-from ddct_controllers.design.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, ThesisFigure
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.lti import FactoredTransferFunction

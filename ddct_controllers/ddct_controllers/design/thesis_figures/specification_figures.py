@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ddct_controllers.design.chart_style import (
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.drawing.chart_style import (
     BLACK,
     BLUE,
     SKY,
@@ -10,12 +11,11 @@ from ddct_controllers.design.chart_style import (
     line_styles,
     new_chart,
 )
-from ddct_controllers.design.charts import decibel
-from ddct_controllers.design.loop_shaping import NETWORK_SPECIFICATIONS, integrators
-from ddct_controllers.design.loops import continuous_loop
-from ddct_controllers.design.networks import LagNetwork, LeadNetwork
-from ddct_controllers.design.nyquist import nyquist_count
-from ddct_controllers.design.specifications import rise_time_crossover_product
+from ddct_controllers.design.drawing.charts import decibel
+from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS, integrators
+from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork
+from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
+from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 from ddct_controllers.design.thesis_figures.thesis_figure import Drawing, ThesisFigure
 
 _PRINTED_PRODUCT = 2.02

@@ -1,0 +1,1 @@
+"""Sampled loops: margins, corners of plant and wear, step responses."""

@@ -1,0 +1,100 @@
+"""The Nyquist curve of a loop: where it crosses something, and where something peaks on it."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from ddct_controllers.design.analysis.loops import ContinuousLoop
+from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s
+from ddct_plant.lti import StateSpace
+
+Measure = Callable[[np.ndarray], np.ndarray]
+"""A real function of L(j omega), elementwise."""
+
+_GRID_POINTS = 1500
+_SLOWEST_RAD_S = 1e-5
+_FASTEST_RAD_S = 1e5
+"""Ends of the grid of a continuous loop; a sampled one ends at half its sampling rate."""
+_DISTANCES = np.geomspace(1e-4, 0.1, 12)
+"""Relative distances of further grid points from every pole's frequency, on both sides."""
+_NEAR_THE_PEAK = 0.95
+"""A local maximum on the grid of at least this share of the highest is refined too."""
+
+
+class LoopCurve:
+    """L(j omega) or L(exp(j omega T)) on a grid that is dense around the poles of L and of T."""
+
+    def __init__(self, loop: ContinuousLoop | StateSpace) -> None:
+        """Evaluate the loop on its grid, which takes the poles of T without a dead time."""
+        self._loop = loop
+        if isinstance(loop, ContinuousLoop):
+            system = loop.transfer_function.to_state_space()
+        else:
+            system = loop
+        self._sampled = system.period_s is not None
+        last = math.pi / system.period_s if system.period_s else _FASTEST_RAD_S
+        poles = poles_rad_s(system)
+        self._integrates = bool(np.min(np.abs(poles), initial=math.inf) < _SLOWEST_RAD_S)
+        self.omega = _grid(np.concatenate([poles, poles_rad_s(close_loop(system))]), last)
+        """Frequencies in rad/s, rising, (n,)."""
+        self.values = self._response(self.omega)
+        """L there, (n,) complex."""
+
+    def at(self, omega: float) -> complex:
+        """Return L at one frequency in rad/s."""
+        return complex(self._response(np.array([omega]))[0])
+
+    def crossings(self, measure: Measure) -> list[float]:
+        """Return the frequencies in rad/s, rising, at which `measure` of L changes its sign."""
+        signs = measure(self.values) > 0.0
+        brackets = np.flatnonzero(signs[1:] != signs[:-1])
+        return [
+            float(brentq(lambda x: self._measured(measure, x), *self.omega[i : i + 2], rtol=1e-12))
+            for i in brackets
+        ]
+
+    def peak(self, measure: Measure) -> tuple[float, float]:
+        """Return the maximum of `measure` of L over frequency, and its frequency in rad/s."""
+        measured = measure(self.values)
+        best = int(np.argmax(measured))
+        highest, where = float(measured[best]), float(self.omega[best])
+        inner = measured[1:-1]
+        local = (inner >= measured[:-2]) & (inner >= measured[2:])
+        for i in np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest)):
+            found = minimize_scalar(
+                lambda x: -self._measured(measure, x),
+                bounds=(self.omega[i], self.omega[i + 2]),
+                method='bounded',
+                options={'xatol': 1e-7 * self.omega[i]},
+            )
+            if -found.fun > highest:
+                highest, where = -float(found.fun), float(found.x)
+        return highest, where
+
+    def critical_gains(self) -> list[float]:
+        """Return every factor that puts L through -1: -1/L where L is real and negative."""
+        crossings = self.crossings(lambda values: values.imag / np.abs(values))
+        values = [self.at(omega) for omega in crossings] + self._real_ends()
+        return [-1.0 / value.real for value in values if value.real < 0.0]
+
+    def _real_ends(self) -> list[complex]:
+        """Return L at rest, and at half the sampling rate, where no sign tells a crossing."""
+        ends = [] if self._integrates else [0.0]
+        return [self.at(omega) for omega in (*ends, *(self.omega[-1:] if self._sampled else ()))]
+
+    def _measured(self, measure: Measure, omega: float) -> float:
+        return float(measure(np.array([self.at(omega)]))[0])
+
+    def _response(self, omega: np.ndarray) -> np.ndarray:
+        if isinstance(self._loop, ContinuousLoop):
+            return self._loop.response(omega)
+        return frequency_response(self._loop, omega)
+
+
+def _grid(poles: np.ndarray, last: float) -> np.ndarray:
+    near = np.concatenate([1.0 + _DISTANCES, 1.0 / (1.0 + _DISTANCES)])
+    around = np.outer(np.abs(poles[np.isfinite(poles)]), near).ravel()
+    inside = around[(around > _SLOWEST_RAD_S) & (around < last)]
+    return np.unique(np.concatenate([np.geomspace(_SLOWEST_RAD_S, last, _GRID_POINTS), inside]))

@@ -1,0 +1,88 @@
+"""Margins of a unit-feedback loop, continuous or sampled, from its exact frequency response."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import ContinuousLoop
+from ddct_plant.lti import StateSpace
+
+
+@dataclass(frozen=True)
+class LoopMargins:
+    """
+    How far a stable closed loop is from instability, and how it behaves on the way there.
+
+    Every number is None when the closed loop is unstable, and infinite where nothing limits it.
+    """
+
+    stable: bool
+    """Whether the closed loop is, by its poles."""
+    gain_margin_db: float | None = None
+    """Least increase of the loop gain that makes it unstable."""
+    gain_reduction_margin_db: float | None = None
+    """Least decrease of the loop gain that makes it unstable, as a positive number."""
+    phase_margin_deg: float | None = None
+    """Least change of phase, lag or lead, that makes it unstable."""
+    delay_margin_s: float | None = None
+    """Least additional delay that makes it unstable."""
+    disk_margin: float | None = None
+    """alpha = 2 / max |S - T|; gains from (2 - alpha)/(2 + alpha) to its inverse are safe."""
+    sensitivity_peak: float | None = None
+    """M_s, the maximum of |S| = 1/|1 + L|."""
+    complementary_peak: float | None = None
+    """M_t, the maximum of |T| = |L|/|1 + L|."""
+    crossover_rad_s: float | None = None
+    """Highest frequency at which |L| = 1, 0 when |L| is below 1 everywhere."""
+    bandwidth_rad_s: float | None = None
+    """Lowest frequency at which |T| is 1/sqrt(2), 0 when |T| is below that at rest."""
+
+
+def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
+    """
+    Return the margins of L closed by unit negative feedback.
+
+    Crossings are bracketed on a grid, dense around every pole, and then solved for; peaks
+    likewise. The delay margin of a sampled loop counts a delay tau as exp(-j omega tau), which is
+    exact for whole samples.
+    """
+    if not closed_loop_stable(loop):
+        return LoopMargins(stable=False)
+    curve = LoopCurve(loop)
+    crossovers = curve.crossings(lambda values: np.log(np.abs(values)))
+    lags = [float(np.angle(-curve.at(omega))) for omega in crossovers]
+    gains = curve.critical_gains()
+    return LoopMargins(
+        stable=True,
+        gain_margin_db=_decibel(min((gain for gain in gains if gain > 1.0), default=math.inf)),
+        gain_reduction_margin_db=-_decibel(max((g for g in gains if g < 1.0), default=0.0)),
+        phase_margin_deg=math.degrees(min(map(abs, lags), default=math.inf)),
+        delay_margin_s=min(
+            (lag % math.tau / omega for lag, omega in zip(lags, crossovers, strict=True)),
+            default=math.inf,
+        ),
+        disk_margin=2.0 / curve.peak(lambda values: np.abs((1.0 - values) / (1.0 + values)))[0],
+        sensitivity_peak=curve.peak(lambda values: 1.0 / np.abs(1.0 + values))[0],
+        complementary_peak=curve.peak(_complementary)[0],
+        crossover_rad_s=max(crossovers, default=0.0),
+        bandwidth_rad_s=_bandwidth_rad_s(curve),
+    )
+
+
+def _bandwidth_rad_s(curve: LoopCurve) -> float:
+    level = math.sqrt(0.5)
+    if _complementary(curve.values[:1])[0] < level:
+        return 0.0
+    falls = curve.crossings(lambda values: _complementary(values) - level)
+    return min(falls, default=math.inf)
+
+
+def _complementary(values: np.ndarray) -> np.ndarray:
+    return np.abs(values / (1.0 + values))
+
+
+def _decibel(gain: float) -> float:
+    return 20.0 * math.log10(gain) if gain > 0.0 else -math.inf

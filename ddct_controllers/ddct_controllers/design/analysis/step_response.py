@@ -1,0 +1,55 @@
+"""Step response of a closed loop, its rise time and its overshoot, as the thesis measures them."""
+
+import numpy as np
+
+from ddct_controllers.design.analysis.loops import ContinuousLoop
+from ddct_controllers.design.state_space import close_loop
+from ddct_plant.checks import require_number
+from ddct_plant.lti import StateSpace, discretise_zoh
+
+TIME_STEP_S = 0.001
+"""Between the points at which a continuous loop is evaluated, each of them exact."""
+
+
+def step_response(
+    loop: ContinuousLoop | StateSpace, duration_s: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return time in s and the output of L/(1 + L) for a unit step of the reference, both (n,).
+
+    A sampled loop gives its samples, a continuous one a point per millisecond. Raise
+    ParameterError for a continuous loop with delay.
+    """
+    require_number('duration_s', duration_s, above=0.0)
+    system = loop.to_state_space() if isinstance(loop, ContinuousLoop) else loop
+    period_s = system.period_s or TIME_STEP_S
+    closed = close_loop(system)
+    if system.period_s is None:
+        closed = discretise_zoh(closed, period_s)
+    time = period_s * np.arange(round(duration_s / period_s) + 1)
+    state, output = np.zeros(len(closed.a)), np.zeros(len(time))
+    for index in range(len(time)):
+        output[index] = closed.c[0] @ state + closed.d[0, 0]
+        state = closed.a @ state + closed.b[:, 0]
+    return time, output
+
+
+def rise_time_s(time: np.ndarray, output: np.ndarray, final_value: float = 1.0) -> float | None:
+    """
+    Return when the output first crosses the final value, t_r of Section 2.1; None if never.
+
+    Linear between points. The final value is that of a loop with an integrator, 1, not the last
+    point: slow poles take minutes to settle.
+    """
+    above = np.flatnonzero(output >= final_value)
+    if not above.size or above[0] == 0:
+        return float(time[0]) if above.size else None
+    after = int(above[0])
+    before = after - 1
+    share = (final_value - output[before]) / (output[after] - output[before])
+    return float(time[before] + share * (time[after] - time[before]))
+
+
+def overshoot(time: np.ndarray, output: np.ndarray, final_value: float = 1.0) -> float:
+    """Return by what fraction of the final value the output exceeds it at most; 0.1 is 10 %."""
+    return max(0.0, float(np.max(output)) / final_value - 1.0)

@@ -1,0 +1,117 @@
+"""The worst that wear and driveline parameters together do to a sampled loop."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.design.analysis.driveline_mode import (
+    damping,
+    locked_driveline_zero,
+    nearest_mode,
+)
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.state_space import (
+    close_loop,
+    frequency_response,
+    scaled,
+    series,
+    to_s_plane,
+)
+from ddct_plant.lti import StateSpace
+from ddct_plant.timebase import PERIOD_S
+
+WEAR_GAINS = (0.7, 1.0, 1.3)
+"""K_usura from one end of Table 5.2 to the other."""
+_CANDIDATE_SHARE = 0.95
+"""Corners whose M_s on the grid reaches this share of the highest are solved for exactly."""
+
+
+@dataclass(frozen=True)
+class WorstCorner:
+    """Where among all corners, and wear gains from 0.7 to 1.3, a loop is nearest instability."""
+
+    unstable_corners: int
+    """How many corners are unstable at some wear gain of the range."""
+    index: int
+    """
+    Which corner is worst.
+
+    That is the one of highest M_s or, if any is unstable, of the fastest growing pole.
+    """
+    wear_gain: float
+    """The wear gain there."""
+    sensitivity_peak: float | None
+    """M_s there, None when a corner is unstable."""
+    least_mode_damping: float | None
+    """Of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
+
+
+def worst_corner(controller: StateSpace, corners: PlantCorners) -> WorstCorner:
+    """Return the worst corner for a controller as `sampled_loop` takes it."""
+    loops = [series(controller, plant) for plant in corners.plants]
+    responses = corners.responses * frequency_response(controller, corners.omega)
+    poles = np.linalg.eigvals(
+        [[close_loop(scaled(loop, gain)).a for gain in WEAR_GAINS] for loop in loops]
+    )
+    radius = np.abs(poles).max(axis=2)
+    unstable = (radius >= 1.0).any(axis=1)
+    for index in np.flatnonzero(~unstable & _may_cross(responses)):
+        gains = LoopCurve(loops[index]).critical_gains()
+        unstable[index] = any(WEAR_GAINS[0] <= gain <= WEAR_GAINS[-1] for gain in gains)
+    if unstable.any():
+        index, wear = np.unravel_index(np.argmax(radius), radius.shape)
+        worst, wear_gain, peak = int(index), WEAR_GAINS[wear], None
+    else:
+        worst, wear_gain, peak = _highest_peak(loops, responses)
+    return WorstCorner(
+        unstable_corners=int(np.count_nonzero(unstable)),
+        index=worst,
+        wear_gain=wear_gain,
+        sensitivity_peak=peak,
+        least_mode_damping=_least_mode_damping(poles, corners),
+    )
+
+
+def _highest_peak(loops: list[StateSpace], responses: np.ndarray) -> tuple[int, float, float]:
+    """Return the corner, the wear gain and the M_s of the highest M_s."""
+    on_grid = _sensitivity(responses).max(axis=1)
+    peak, worst, gain = 0.0, 0, 1.0
+    for index in np.flatnonzero(on_grid >= _CANDIDATE_SHARE * on_grid.max()).tolist():
+        curve = LoopCurve(loops[index])
+        found, omega = curve.peak(_sensitivity)
+        if found > peak:
+            peak, worst = found, index
+            gain = float(_worst_wear(np.array([curve.at(omega)]))[0])
+    return worst, gain, peak
+
+
+def _sensitivity(values: np.ndarray) -> np.ndarray:
+    """Return the highest |1/(1 + k L)| over the wear gains k, elementwise."""
+    return 1.0 / np.abs(1.0 + _worst_wear(values) * values)
+
+
+def _worst_wear(values: np.ndarray) -> np.ndarray:
+    """Return the k in the wear range that brings k L nearest to -1: a point on a ray."""
+    nearest = -values.real / np.abs(values) ** 2
+    return np.clip(nearest, WEAR_GAINS[0], WEAR_GAINS[-1])
+
+
+def _may_cross(responses: np.ndarray) -> np.ndarray:
+    """Return per corner whether k L passes near -1 between two points for a k in the range."""
+    imaginary, real = responses.imag, responses.real
+    changes = (imaginary[:, 1:] > 0.0) != (imaginary[:, :-1] > 0.0)
+    share = imaginary[:, :-1] / (imaginary[:, :-1] - imaginary[:, 1:])
+    crossed = real[:, :-1] + share * (real[:, 1:] - real[:, :-1])
+    near = (crossed < -0.9 / WEAR_GAINS[-1]) & (crossed > -1.1 / WEAR_GAINS[0])
+    return (changes & near).any(axis=1)
+
+
+def _least_mode_damping(poles: np.ndarray, corners: PlantCorners) -> float | None:
+    rates = to_s_plane(poles, PERIOD_S)
+    found = []
+    for parameters, per_wear in zip(corners.parameters, rates, strict=True):
+        zero = locked_driveline_zero(parameters)
+        modes = ((row, nearest_mode(row, zero)) for row in per_wear)
+        found += [float(damping(row[mode])) for row, mode in modes if mode is not None]
+    return min(found, default=None)

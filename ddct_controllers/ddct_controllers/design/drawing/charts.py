@@ -1,0 +1,128 @@
+"""Charts of a design, drawn on axes that the caller gives: Nichols, Nyquist, step, magnitude."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s
+from ddct_controllers.design.drawing.chart_style import (
+    BLACK,
+    BLUE,
+    BOUND_LINE,
+    GREEN,
+    GREY,
+    ORANGE,
+    REFERENCE_LINE,
+    VERMILLION,
+    line_styles,
+)
+from ddct_controllers.design.loop_shaping.nichols import (
+    NicholsCurve,
+    constant_m_curve,
+    constant_s_curve,
+)
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+
+_GRID_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
+"""Levels of |T| of the chart's grid."""
+_TURN_DEG = 360.0
+
+
+def draw_nichols(
+    axes: Axes,
+    curves: Mapping[str, NicholsCurve],
+    specifications: TimeSpecifications | None = None,
+    *,
+    phase_deg: tuple[float, float] = (-360.0, 0.0),
+    magnitude_db: tuple[float, float] = (-40.0, 40.0),
+) -> None:
+    """
+    Draw loops by name in a Nichols chart over the given range.
+
+    With specifications it has their constant-|S| and constant-|T| curves, which L should not
+    enter.
+    """
+    for level in _GRID_DB:
+        grid = constant_m_curve(10.0 ** (level / 20.0))
+        _closed_curve(axes, grid, phase_deg, color='#c4c4c4', linewidth=0.7)
+    if specifications:
+        s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
+        for name, curve, colour in (
+            (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
+            (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
+        ):
+            _closed_curve(axes, curve, phase_deg, name, color=colour, linestyle='--')
+    for (name, curve), style in zip(curves.items(), line_styles(), strict=False):
+        axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
+    critical = np.arange(-180.0, phase_deg[0] - 1.0, -_TURN_DEG)
+    axes.plot(critical, 0.0 * critical, '+', color=BLACK, markersize=11, markeredgewidth=2)
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    axes.set(xlim=phase_deg, ylim=magnitude_db)
+    axes.set_xticks(np.arange(phase_deg[0], phase_deg[1] + 1.0, 45.0))
+    axes.set(xlabel='Open-loop phase arg L, °', ylabel='Open-loop magnitude |L|, dB')
+    axes.legend(loc='upper left')
+
+
+def draw_step_response(axes: Axes, responses: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
+    """Draw (time, output) of unit steps by name, with rise time and overshoot in the legend."""
+    for (name, (time, output)), style in zip(responses.items(), line_styles(), strict=False):
+        rise = rise_time_s(time, output)
+        figures = f'overshoot {100.0 * overshoot(time, output):.1f} %'
+        if rise is not None:
+            figures = f't_r = {rise:.2f} s, {figures}'
+            axes.plot(rise, 1.0, 'o', color=style['color'])
+        axes.plot(time, output, label=f'{name}: {figures}', **style)
+        highest = int(np.argmax(output))
+        axes.plot(time[highest], output[highest], 's', color=style['color'], markersize=5)
+    axes.axhline(1.0, label='reference', **REFERENCE_LINE)
+    longest = max(time[-1] for time, _ in responses.values())
+    label_time_axis(axes, 'w_d / reference', (0.0, longest))
+
+
+def draw_bound(
+    axes: Axes,
+    omega: np.ndarray,
+    functions: Mapping[str, np.ndarray],
+    bound: tuple[str, np.ndarray],
+) -> None:
+    """Draw functions by name in dB over frequency, and their bound, (name, values at omega)."""
+    for (name, values), colour in zip(functions.items(), (BLUE, GREEN), strict=False):
+        axes.semilogx(omega, decibel(values), color=colour, label=name)
+    bound_name, limits = bound
+    axes.semilogx(omega, decibel(limits), label=bound_name, **BOUND_LINE)
+    axes.set(xlim=(omega[0], omega[-1]), xlabel='Frequency, rad/s', ylabel='Magnitude, dB')
+    axes.legend(loc='best')
+
+
+def label_time_axis(axes: Axes, quantity: str, range_s: tuple[float, float]) -> None:
+    """Label axes whose lines are drawn over time, and add the legend."""
+    axes.set(xlim=range_s, xlabel='Time, s', ylabel=quantity)
+    names = axes.get_legend_handles_labels()[1]
+    axes.legend(ncols=2 if len(names) > 5 else 1)
+
+
+def decibel(values: np.ndarray) -> np.ndarray:
+    """Return 20 log10 |values|."""
+    return 20.0 * np.log10(np.abs(values))
+
+
+def _closed_curve(
+    axes: Axes,
+    curve: NicholsCurve,
+    phase_deg: tuple[float, float],
+    label: str | None = None,
+    **style: Any,
+) -> None:
+    """Draw a curve that repeats every turn wherever the range of the phase has it."""
+    first, last = (math.floor(phase_deg[0] / _TURN_DEG), math.ceil(phase_deg[1] / _TURN_DEG))
+    phase, magnitude = (
+        np.append(values, values[0]) for values in (curve.phase_deg, curve.magnitude_db)
+    )
+    jumps = np.flatnonzero(np.abs(np.diff(phase)) > 0.5 * _TURN_DEG) + 1
+    phase, magnitude = np.insert(phase, jumps, np.nan), np.insert(magnitude, jumps, np.nan)
+    for turn in range(first + 1, last + 1):
+        axes.plot(phase + turn * _TURN_DEG, magnitude, label=label, **style)
+        label = None

@@ -1,0 +1,1 @@
+"""H-infinity synthesis (Chapter 3): weights, problem, Riccati and LMI solutions, cleaning."""

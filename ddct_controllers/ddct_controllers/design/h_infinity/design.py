@@ -1,0 +1,116 @@
+"""The H-infinity workflow of Chapter 3: from weights to a verified controller."""
+
+import math
+from dataclasses import dataclass, replace
+
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import (
+    IDENTIFIED_DRIVELINE,
+    ContinuousLoop,
+    continuous_loop,
+    plant_in_rpm,
+    sampled_loop,
+    sampled_plant,
+)
+from ddct_controllers.design.factored_form import factored_form
+from ddct_controllers.design.h_infinity.bilinear import from_w_plane, to_w_plane
+from ddct_controllers.design.h_infinity.cleaning import CleaningStep, clean
+from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
+from ddct_controllers.design.h_infinity.plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.problem import mixed_sensitivity, sampled_sensitivity
+from ddct_controllers.design.h_infinity.recipes import HinfWeights
+from ddct_controllers.design.h_infinity.synthesis import Synthesis, SynthesisError, synthesise
+from ddct_controllers.design.loop_shaping.specifications import SpecificationError
+from ddct_plant.checks import require_choice
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.timebase import PERIOD_S
+
+METHODS = ('riccati', 'lmi')
+_ROLL_OFF = 10.0
+"""How far beyond w_2 the weight W_t levels out in the sampled problem, which needs it proper."""
+
+
+@dataclass(frozen=True, eq=False)
+class HinfDesign:
+    """A verified controller and how it came about."""
+
+    weights: HinfWeights
+    synthesis: Synthesis
+    raw: FactoredTransferFunction
+    """What the synthesis gave: in s, or in w for a sampled design."""
+    cleaning: tuple[CleaningStep, ...]
+    cleaned: FactoredTransferFunction
+    """In the same variable."""
+    sampled: StateSpace
+    """G_c(z) from slip error in rpm to torque in N m, as it runs."""
+
+
+def design_h_infinity(
+    weights: HinfWeights,
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    method: str = METHODS[0],
+) -> HinfDesign:
+    """
+    Synthesise, clean, discretise and verify a controller.
+
+    Raise SpecificationError when no controller meets both requirements, SynthesisError when no
+    controller verifies or the cleaned one does not keep the loop stable.
+    """
+    require_choice('method', method, METHODS)
+    problem = generalised_plant(weights, parameters)
+    if method == 'lmi':
+        synthesis = synthesise_by_lmi(problem)
+    else:
+        synthesis = synthesise(problem, weights.back_off)
+    _require_attainable(weights, synthesis, parameters)
+    raw = factored_form(synthesis.controller)
+    cleaned, steps = clean(raw, weights.sensitivity.offset_rad_s)
+    realised = cleaned.to_state_space()
+    if weights.sampled:
+        sampled = from_w_plane(realised)
+    else:
+        sampled = discretise_zoh(realised, PERIOD_S)
+        _require_stable('without hold and delay', continuous_loop(cleaned, parameters))
+    _require_stable('with hold and delay', sampled_loop(sampled, parameters))
+    return HinfDesign(weights, synthesis, raw, steps, cleaned, sampled)
+
+
+def generalised_plant(
+    weights: HinfWeights, parameters: DrivelineParameters = IDENTIFIED_DRIVELINE
+) -> GeneralisedPlant:
+    """Return the generalised plant of a design."""
+    w_s, w_t = weights.sensitivity.shifted(), weights.complementary
+    if not weights.sampled:
+        return mixed_sensitivity(plant_in_rpm(parameters), w_s, w_t.transfer_function())
+    effort = weights.effort.transfer_function() if weights.effort else None
+    plant = to_w_plane(sampled_plant(parameters))
+    return sampled_sensitivity(plant, w_s, w_t.rolled_off(_ROLL_OFF), effort)
+
+
+def _require_attainable(
+    weights: HinfWeights, synthesis: Synthesis, parameters: DrivelineParameters
+) -> None:
+    """
+    Raise SpecificationError when the bounds on S and T exclude each other.
+
+    A controller with ||W_s S|| <= 1 and ||W_t T|| <= 1 has a stack of at most sqrt(2).
+    """
+    bound = synthesis.lower_bound
+    if weights.effort:
+        alone = replace(weights, effort=None)
+        bound = synthesise(generalised_plant(alone, parameters)).lower_bound
+    if bound > math.sqrt(2.0):
+        raise SpecificationError(
+            f'no controller meets the bounds on S and T: the least norm of their stack is '
+            f'{bound:.2f}, above sqrt(2): allow a longer rise time, more overshoot, '
+            'a larger K or a larger w_2'
+        )
+
+
+def _require_stable(which: str, loop: ContinuousLoop | StateSpace) -> None:
+    if not closed_loop_stable(loop):
+        raise SynthesisError(
+            f'synthesis: the cleaned controller makes the loop {which} unstable: allow a longer '
+            'rise time, or use the weights that have hold and delay in the plant (sampled)'
+        )

@@ -1,0 +1,113 @@
+"""Recipes of weights: the thesis's printed ones, those behind its Hinf1, and our own."""
+
+from dataclasses import dataclass
+
+from ddct_controllers.design.h_infinity.synthesis import BACK_OFF
+from ddct_controllers.design.h_infinity.weights import (
+    BUTTERWORTH,
+    ComplementaryWeight,
+    EffortWeight,
+    SensitivityWeight,
+    WeightError,
+)
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_plant.checks import require_choice
+
+THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
+"""Section 3.2."""
+
+
+@dataclass(frozen=True)
+class WeightRecipe:
+    """Weights for a rise time of 0.3 s; other rise times scale every frequency alike."""
+
+    description: str
+    low_frequency_gain: float
+    """K."""
+    bandwidth_rad_s: float
+    """w_2."""
+    damping: float
+    """Of W_t."""
+    effort: EffortWeight | None = None
+    """Only the sampled design has one."""
+    sampled: bool = False
+    """Whether the design plant has the hold and the delay of the actuator."""
+    back_off: float = BACK_OFF
+    """Level over optimum; 1 where the thesis too stopped at the optimum and cleaned."""
+
+
+RECIPES = {
+    'thesis': WeightRecipe('printed in Section 3.2.1', 0.15, 28.0, BUTTERWORTH),
+    'fitted': WeightRecipe(
+        'that lead to nearly the printed Hinf1', *(0.35, 28.0), damping=1.0, back_off=1.0
+    ),
+    'sampled': WeightRecipe(
+        'printed, and one on the torque; hold and delay in the plant',
+        *(0.15, 28.0, BUTTERWORTH),
+        effort=EffortWeight(torque_n_m_per_rpm=0.055, corner_rad_s=30.0),
+        sampled=True,
+    ),
+}
+"""By the name that `design h-infinity --weights` takes."""
+
+
+@dataclass(frozen=True)
+class HinfWeights:
+    """The weights of one design."""
+
+    sensitivity: SensitivityWeight
+    complementary: ComplementaryWeight
+    effort: EffortWeight | None
+    sampled: bool
+    """Whether the design plant has hold and delay."""
+    back_off: float
+    """Level of the controller over the optimum."""
+
+
+def make_weights(
+    recipe: str,
+    specifications: TimeSpecifications = THESIS_SPECIFICATIONS,
+    low_frequency_gain: float | None = None,
+    bandwidth_rad_s: float | None = None,
+    effort_n_m_per_rpm: float | None = None,
+    back_off: float | None = None,
+) -> HinfWeights:
+    """
+    Return the weights of a recipe for specifications; what is given overrides the recipe.
+
+    S_p and T_p follow from the overshoot. K and w_2 are the designer's choice in the thesis; with
+    the rise time, times grow by a factor t_r / 0.3 s, so that K grows by its square.
+    """
+    require_choice('weights', recipe, tuple(RECIPES))
+    chosen = RECIPES[recipe]
+    slower = specifications.rise_time_s / THESIS_SPECIFICATIONS.rise_time_s
+    return HinfWeights(
+        SensitivityWeight(
+            _either(low_frequency_gain, chosen.low_frequency_gain * slower**2),
+            specifications.sensitivity_peak,
+        ),
+        ComplementaryWeight(
+            specifications.complementary_peak,
+            _either(bandwidth_rad_s, chosen.bandwidth_rad_s / slower),
+            chosen.damping,
+        ),
+        _effort(chosen.effort, effort_n_m_per_rpm, slower),
+        chosen.sampled,
+        _either(back_off, chosen.back_off),
+    )
+
+
+def _either(given: float | None, otherwise: float) -> float:
+    return otherwise if given is None else given
+
+
+def _effort(
+    recipe: EffortWeight | None, torque: float | None, slower: float
+) -> EffortWeight | None:
+    if recipe is None:
+        if torque is not None:
+            raise WeightError('only the sampled design weighs the torque: leave out its weight')
+        return None
+    return EffortWeight(
+        _either(torque, recipe.torque_n_m_per_rpm / slower), recipe.corner_rad_s / slower
+    )

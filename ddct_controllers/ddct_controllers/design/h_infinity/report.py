@@ -1,0 +1,158 @@
+"""What `design h-infinity` computes, as plain values."""
+
+import dataclasses
+import math
+from typing import Any
+
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import (
+    ContinuousLoop,
+    continuous_loop,
+    plant_in_rpm,
+    sampled_loop,
+)
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.design.factored_form import factored_form
+from ddct_controllers.design.h_infinity.design import HinfDesign
+from ddct_controllers.design.h_infinity.recipes import HinfWeights
+from ddct_controllers.design.h_infinity.uncertainty import (
+    OMEGA,
+    PRINTED_W_U,
+    fit_first_order,
+    relative_error,
+    shortfall_from_rad_s,
+    wear_family,
+)
+from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.timebase import PERIOD_S
+
+Record = dict[str, Any]
+_STEP_RISE_TIMES = 20.0
+"""Length of the step responses in rise times asked for."""
+
+
+def design_record(
+    name: str,
+    recipe: str,
+    specifications: TimeSpecifications,
+    design: HinfDesign,
+    corners: PlantCorners | None = None,
+) -> Record:
+    """Return a design and what was verified of it, with `corners` over wear and parameters too."""
+    found = design.synthesis
+    return {
+        'name': name,
+        **provenance(recipe, specifications, design),
+        'synthesis': {
+            'method': found.method,
+            'optimum': found.optimum,
+            'lower_bound': found.lower_bound,
+            'gamma': found.gamma,
+        },
+        'raw_controller': dataclasses.asdict(design.raw),
+        'controller': dataclasses.asdict(design.cleaned),
+        'pulse_transfer_function': dataclasses.asdict(factored_form(design.sampled)),
+        'corners': _corner_record(design.sampled, corners) if corners else None,
+    }
+
+
+def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Record:
+    """Return what a controller's file says of where it comes from."""
+    weights = design.weights
+    sampled = loop_record(sampled_loop(design.sampled), weights, specifications)
+    continuous = None
+    if not weights.sampled:
+        continuous = loop_record(continuous_loop(design.cleaned), weights, specifications)
+    return {
+        'method': f'h-infinity, {design.synthesis.method}',
+        'specifications': {
+            'rise_time_s': specifications.rise_time_s,
+            'overshoot': specifications.overshoot,
+            'damping': specifications.damping,
+            'sensitivity_peak': specifications.sensitivity_peak,
+            'complementary_peak': specifications.complementary_peak,
+            'natural_frequency_rad_s': specifications.natural_frequency_rad_s,
+        },
+        'weights': {'recipe': recipe, **_weights_record(weights)},
+        'gamma': design.synthesis.gamma,
+        'cleaning': [dataclasses.asdict(step) for step in design.cleaning],
+        'continuous_loop': continuous,
+        'sampled_loop': sampled,
+    }
+
+
+def printed_record(
+    controller: FactoredTransferFunction, weights: HinfWeights, specifications: TimeSpecifications
+) -> Record:
+    """Return both loops of a printed controller, judged by the same weights."""
+    sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
+    return {
+        'continuous_loop': loop_record(continuous_loop(controller), weights, specifications),
+        'sampled_loop': loop_record(sampled_loop(sampled), weights, specifications),
+    }
+
+
+def loop_record(
+    loop: ContinuousLoop | StateSpace, weights: HinfWeights, specifications: TimeSpecifications
+) -> Record:
+    """Return weighted norms, step figures and margins of a loop; only `stable` if it is not."""
+    if not closed_loop_stable(loop):
+        return {'stable': False}
+    norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
+    response = step_response(loop, _STEP_RISE_TIMES * specifications.rise_time_s)
+    rise_time, exceeds = rise_time_s(*response), overshoot(*response)
+    margins = dataclasses.asdict(loop_margins(loop))
+    return {
+        **{key: None if value == math.inf else value for key, value in margins.items()},
+        'rise_time_s': rise_time,
+        'overshoot': exceeds,
+        'meets_specifications': rise_time is not None
+        and rise_time <= specifications.rise_time_s
+        and exceeds <= specifications.overshoot,
+        'norms': dataclasses.asdict(norms),
+    }
+
+
+def uncertainty_record() -> Record:
+    """Return the fitted and the printed W_u, and how far the printed one falls short."""
+    error = relative_error(plant_in_rpm(), wear_family(), OMEGA)
+    largest = float(error.max())
+    printed = abs(PRINTED_W_U.frequency_response(OMEGA))
+    return {
+        'largest_error': largest,
+        'fitted': dataclasses.asdict(fit_first_order(OMEGA, error)),
+        'printed': dataclasses.asdict(PRINTED_W_U),
+        'printed_falls_short_by': float((1.0 - printed / error).max()),
+        'printed_falls_short_above_rad_s': shortfall_from_rad_s(PRINTED_W_U, largest),
+    }
+
+
+def _weights_record(weights: HinfWeights) -> Record:
+    w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
+    return {
+        'low_frequency_gain': w_s.low_frequency_gain,
+        'sensitivity_corner_rad_s': w_s.corner_rad_s,
+        'offset_rad_s': w_s.offset_rad_s,
+        'bandwidth_rad_s': w_t.corner_rad_s,
+        'complementary_damping': w_t.damping,
+        'effort_n_m_per_rpm': effort.torque_n_m_per_rpm if effort else None,
+        'effort_corner_rad_s': effort.corner_rad_s if effort else None,
+        'hold_and_delay_in_plant': weights.sampled,
+        'back_off': weights.back_off,
+    }
+
+
+def _corner_record(controller: StateSpace, corners: PlantCorners) -> Record:
+    worst = worst_corner(controller, corners)
+    return {
+        'corners': len(corners.plants),
+        'unstable': worst.unstable_corners,
+        'sensitivity_peak': worst.sensitivity_peak,
+        'wear_gain': worst.wear_gain,
+        'factors': dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
+    }

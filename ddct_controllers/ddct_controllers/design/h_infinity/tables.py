@@ -1,0 +1,198 @@
+"""The tables of `design h-infinity`, the same for the terminal and the documentation page."""
+
+from collections.abc import Mapping, Sequence
+
+from ddct_controllers.design.h_infinity.cleaning import factor_text
+from ddct_controllers.design.h_infinity.report import Record
+from ddct_controllers.design.thesis.gate_tables import GateTable
+from ddct_plant.cascade import Factor
+
+_LOOP_HEADERS = (
+    *('controller', 'loop', 'W_s S', 'W_t T', 'W_u T', 't_r s', 's^ %', 'met'),
+    *('w_c rad/s', 'M_s', 'M_t', 'PM deg', 'GM dB', 'DM s'),
+)
+
+
+def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, GateTable]:
+    """Return the tables of designs for one specification, by the names that the page has."""
+    return {
+        'specifications': _specification_table(records[0]['specifications']),
+        'weights': _weight_table(records),
+        'uncertainty': _uncertainty_table(uncertainty),
+        'synthesis': _synthesis_table(records),
+        'cleaning': GateTable(
+            'Cleaning, in the order of the rules',
+            ('controller', 'rule', 'taken out'),
+            [
+                (record['name'], step['rule'], step['removed'])
+                for record in records
+                for step in record['cleaning']
+            ],
+        ),
+        'controllers': _controller_table(records),
+        'loops': loop_table({record['name']: record for record in records}),
+        'corners': _corner_table(records),
+    }
+
+
+def loop_table(loops: Mapping[str, Record]) -> GateTable:
+    """Return norms, step figures and margins of the loops of named controllers."""
+    return GateTable(
+        'Loops: norms by the weights, step response and whether it meets both, margins',
+        _LOOP_HEADERS,
+        [
+            (name, label, *_loop_cells(loop))
+            for name, record in loops.items()
+            for label, loop in (
+                ('continuous', record['continuous_loop']),
+                ('sampled, hold and delay', record['sampled_loop']),
+            )
+            if loop
+        ],
+    )
+
+
+def _specification_table(wanted: Record) -> GateTable:
+    return GateTable(
+        'Specifications, translated by the second-order prototype',
+        ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
+        [
+            (
+                f'{wanted["rise_time_s"]:g}',
+                f'{100.0 * wanted["overshoot"]:g}',
+                f'{wanted["damping"]:.4f}',
+                f'{wanted["sensitivity_peak"]:.3f}',
+                f'{wanted["complementary_peak"]:.3f}',
+                f'{wanted["natural_frequency_rad_s"]:.2f}',
+            )
+        ],
+    )
+
+
+def _weight_table(records: Sequence[Record]) -> GateTable:
+    columns = (
+        ('K', 'low_frequency_gain', '.4g'),
+        ('w_1 rad/s', 'sensitivity_corner_rad_s', '.3f'),
+        ('epsilon rad/s', 'offset_rad_s', '.4f'),
+        ('w_2 rad/s', 'bandwidth_rad_s', '.4g'),
+        ('zeta of W_t', 'complementary_damping', '.4g'),
+        ('effort N m/rpm', 'effort_n_m_per_rpm', '.4g'),
+        ('from rad/s', 'effort_corner_rad_s', '.4g'),
+    )
+    return GateTable(
+        'Weights',
+        ('controller', 'recipe', *(heading for heading, _, _ in columns), 'hold, delay in plant'),
+        [
+            (
+                record['name'],
+                record['weights']['recipe'],
+                *(_text(record['weights'][key], form) for _, key, form in columns),
+                'yes' if record['weights']['hold_and_delay_in_plant'] else 'no',
+            )
+            for record in records
+        ],
+    )
+
+
+def _uncertainty_table(found: Record) -> GateTable:
+    above = found['printed_falls_short_above_rad_s']
+    short = f'by {100.0 * found["printed_falls_short_by"]:.2f} % above {above:.3g} rad/s'
+    return GateTable(
+        f'W_u; the relative error of K_usura is {found["largest_error"]:.3f} at most',
+        ('W_u', 'gain', 'zero rad/s', 'pole rad/s', 'falls short'),
+        [
+            (
+                which,
+                f'{found[which]["gain"]:.4f}',
+                f'{found[which]["numerator"][0]:.4g}',
+                f'{found[which]["denominator"][0]:.4g}',
+                'nowhere' if which == 'fitted' or above is None else short,
+            )
+            for which in ('fitted', 'printed')
+        ],
+    )
+
+
+def _synthesis_table(records: Sequence[Record]) -> GateTable:
+    return GateTable(
+        'Synthesis: norms of the closed loop with the weights',
+        ('controller', 'method', 'optimum', 'lower bound', 'taken'),
+        [
+            (
+                record['name'],
+                record['synthesis']['method'],
+                f'{record["synthesis"]["optimum"]:.5f}',
+                f'{record["synthesis"]["lower_bound"]:.5f}',
+                f'{record["synthesis"]["gamma"]:.4f}',
+            )
+            for record in records
+        ],
+    )
+
+
+def _controller_table(records: Sequence[Record]) -> GateTable:
+    return GateTable(
+        'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
+        ('controller', 'form', 'gain', 'numerator', 'denominator'),
+        [
+            (
+                record['name'],
+                form,
+                f'{record[key]["gain"]:.4g}',
+                _product(record[key]['numerator'], form[-2]),
+                _product(record[key]['denominator'], form[-2]),
+            )
+            for record in records
+            for form, key in (
+                ('G_c(s)', 'controller'),
+                ('G_c(z)', 'pulse_transfer_function'),
+            )
+        ],
+    )
+
+
+def _corner_table(records: Sequence[Record]) -> GateTable:
+    return GateTable(
+        'Worst of wear 0.7 to 1.3 and all driveline parameters +-20 %, sampled loop',
+        ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),
+        [
+            (
+                record['name'],
+                str(record['corners']['corners']),
+                str(record['corners']['unstable']),
+                _text(record['corners']['sensitivity_peak'], '.3f'),
+                f'{record["corners"]["wear_gain"]:.2f}',
+                ', '.join(f'{name} {x:g}' for name, x in record['corners']['factors'].items()),
+            )
+            for record in records
+        ],
+    )
+
+
+def _loop_cells(loop: Record) -> tuple[str, ...]:
+    if not loop['stable']:
+        return ('unstable', *[''] * (len(_LOOP_HEADERS) - 3))
+    norms = loop['norms']
+    return (
+        *(f'{norms[key]:.3f}' for key in ('sensitivity', 'complementary', 'uncertainty')),
+        _text(loop['rise_time_s'], '.3f'),
+        f'{100.0 * loop["overshoot"]:.1f}',
+        'yes' if loop['meets_specifications'] else 'no',
+        _text(loop['crossover_rad_s'], '.2f'),
+        _text(loop['sensitivity_peak'], '.3f'),
+        _text(loop['complementary_peak'], '.3f'),
+        _text(loop['phase_margin_deg'], '.1f'),
+        _text(loop['gain_margin_db'], '.1f'),
+        _text(loop['delay_margin_s'], '.3f'),
+    )
+
+
+def _product(factors: Sequence[Factor], variable: str) -> str:
+    """Return factors; with 4 digits in z a slow pole would read as an integrator."""
+    digits = 5 if variable == 'z' else 4
+    return ' '.join(factor_text(factor, variable, digits) for factor in factors)
+
+
+def _text(value: float | None, form: str) -> str:
+    """Return a dash for what does not exist or has no limit."""
+    return '-' if value is None else format(value, form)

@@ -1,0 +1,1 @@
+"""Loop shaping (Chapter 2): specifications, networks, Nyquist and Nichols, search."""

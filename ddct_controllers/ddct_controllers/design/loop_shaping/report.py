@@ -1,0 +1,148 @@
+"""What `design loop-shaping` computes, as plain values."""
+
+import dataclasses
+import math
+from typing import Any
+
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loop_stability import unstable_poles
+from ddct_controllers.design.analysis.loops import (
+    ContinuousLoop,
+    continuous_loop,
+    plant_in_rpm,
+    sampled_loop,
+)
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.design import (
+    NETWORK_SPECIFICATIONS,
+    PLACEMENT_CROSSOVER_RAD_S,
+    PLACEMENT_SPECIFICATIONS,
+    largest_zero_rad_s,
+    network_steps,
+    placement,
+)
+from ddct_controllers.design.loop_shaping.networks import with_crossover
+from ddct_controllers.design.loop_shaping.nichols import Contour, contours
+from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
+from ddct_controllers.design.verified_design import WEAR_GAINS
+from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.timebase import PERIOD_S
+
+Record = dict[str, Any]
+G_C1, G_C2 = LOOP_SHAPING_CONTROLLERS['ls2'], LOOP_SHAPING_CONTROLLERS['ls7']
+"""Equations (2.1) and (2.2)."""
+_STEP_DURATION_S = 6.0
+
+
+def thesis_record() -> Record:
+    """Return the way to G_c1 and to G_c2, and both loops in three versions."""
+    return {
+        'network_steps': [
+            {'step': step.name, **_loop_record(continuous_loop(step.controller))}
+            for step in network_steps()
+        ],
+        'placement': [
+            {'version': version, **_placement_record(controller)}
+            for version, controller in _placements().items()
+        ],
+        'loops': [
+            {'controller': name, 'loop': label, **_loop_record(loop)}
+            for name, controller in (('G_c1', G_C1), ('G_c2', G_C2))
+            for label, loop in _versions(controller).items()
+        ],
+    }
+
+
+def design_record(name: str, design: LoopShapingDesign) -> Record:
+    """Return a design and what was verified of it."""
+    found = design.verification
+    return {
+        'name': name,
+        'controller': dataclasses.asdict(design.controller),
+        **provenance(design),
+        'contours': [_contour_record(contour) for contour in found.contours],
+    }
+
+
+def provenance(design: LoopShapingDesign) -> Record:
+    """Return what a controller's file says of where it comes from."""
+    found = design.verification
+    specifications = found.specifications
+    return {
+        'method': 'loop-shaping',
+        'structure': design.structure,
+        'integrators': design.integrators,
+        'specifications': {
+            'rise_time_s': specifications.rise_time_s,
+            'overshoot': specifications.overshoot,
+            'sensitivity_peak': specifications.sensitivity_peak,
+            'complementary_peak': specifications.complementary_peak,
+            'crossover_rad_s': specifications.crossover_rad_s,
+        },
+        'sampled_loop': {
+            'rise_time_s': found.rise_time_s,
+            'overshoot': found.overshoot,
+            **_finite(dataclasses.asdict(found.margins)),
+            'stable_with_wear_gain': {
+                str(gain): stable
+                for gain, stable in zip(WEAR_GAINS, found.stable_when_worn, strict=True)
+            },
+        },
+    }
+
+
+def _placements() -> dict[str, FactoredTransferFunction]:
+    """Return G_c2 as printed, with the gain for w_c, and what the rule of `placement` gives."""
+    driveline, crossover = DrivelineParameters(), PLACEMENT_CROSSOVER_RAD_S
+    zero = largest_zero_rad_s(crossover, PLACEMENT_SPECIFICATIONS.overshoot, driveline)
+    return {
+        'printed': G_C2,
+        'printed, gain for w_c': with_crossover(G_C2, plant_in_rpm(driveline), crossover),
+        'ours': placement(crossover, zero, driveline),
+    }
+
+
+def _placement_record(controller: FactoredTransferFunction) -> Record:
+    loop = continuous_loop(controller)
+    response = step_response(loop, _STEP_DURATION_S)
+    margins = loop_margins(loop)
+    return {
+        **dataclasses.asdict(controller),
+        'crossover_rad_s': margins.crossover_rad_s,
+        'complementary_peak': margins.complementary_peak,
+        'rise_time_s': rise_time_s(*response),
+        'overshoot': overshoot(*response),
+    }
+
+
+def _versions(controller: FactoredTransferFunction) -> dict[str, ContinuousLoop | StateSpace]:
+    sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
+    return {
+        'continuous': continuous_loop(controller),
+        'with the delay': continuous_loop(controller, delay_s=PERIOD_S),
+        'sampled, hold and delay': sampled_loop(sampled),
+    }
+
+
+def _loop_record(loop: ContinuousLoop | StateSpace) -> Record:
+    found = contours(LoopCurve(loop), NETWORK_SPECIFICATIONS)
+    return {
+        'unstable_poles': unstable_poles(loop),
+        **_finite(dataclasses.asdict(loop_margins(loop))),
+        'contours': [_contour_record(contour) for contour in found],
+    }
+
+
+def _contour_record(contour: Contour) -> Record:
+    return dataclasses.asdict(contour) | {'respected': contour.respected}
+
+
+def _finite(values: Record) -> Record:
+    """Replace what has no limit by None, as JSON has no infinity."""
+    return {
+        name: None if isinstance(value, float) and math.isinf(value) else value
+        for name, value in values.items()
+    }

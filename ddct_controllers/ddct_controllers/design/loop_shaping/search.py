@@ -1,0 +1,197 @@
+"""From specifications to a loop-shaping controller that is verified in the sampled loop."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
+from ddct_controllers.design.loop_shaping.crossover_bound import require_reachable
+from ddct_controllers.design.loop_shaping.design import integrators, placement
+from ddct_controllers.design.loop_shaping.networks import LeadNetwork, with_crossover
+from ddct_controllers.design.loop_shaping.nyquist import stabilising_sign
+from ddct_controllers.design.loop_shaping.specifications import (
+    SpecificationError,
+    TimeSpecifications,
+)
+from ddct_controllers.design.state_space import frequency_response, series
+from ddct_controllers.design.verified_design import (
+    LARGEST_SENSITIVITY_PEAK,
+    Verification,
+    step_figures,
+    verify,
+)
+from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.timebase import PERIOD_S
+
+STRUCTURES = ('networks', 'placement')
+"""Integrators with lead networks, as G_c1 begins, and placed poles and zeros, as in G_c2."""
+
+_LEAD_POLE_RATIO = 10.0
+"""Pole of a lead network over the crossover: it takes back 6 degrees of the lead."""
+_ZERO_RATIOS = np.geomspace(0.002, 0.5, 64)
+"""Zeros over the crossover, from the least overshoot to the quickest recovery."""
+_CROSSOVERS_RAD_S = np.geomspace(0.05, 50.0, 150)
+"""5 % apart, whatever is asked for, so that what one search can reach the next can too."""
+_FIRST_CROSSOVER = 0.7
+"""Where the search begins, over the crossover that the prototype asks for."""
+_SEARCH_TIME = 15.0
+"""Length of a step response of the search over 1/w_c: past the highest overshoot."""
+_OMEGA = np.geomspace(1e-2, math.pi / PERIOD_S, 200)
+"""Frequencies in rad/s at which the search looks at S and T."""
+
+
+@dataclass(frozen=True)
+class LoopShapingDesign:
+    """A controller that meets its specifications in the sampled loop."""
+
+    structure: str
+    """One of STRUCTURES."""
+    integrators: int
+    """mu."""
+    controller: FactoredTransferFunction
+    verification: Verification
+
+
+def design_loop_shaping(
+    specifications: TimeSpecifications,
+    integrator_count: int,
+    parameters: DrivelineParameters,
+    structures: tuple[str, ...] = STRUCTURES,
+) -> LoopShapingDesign:
+    """
+    Return the slowest controller found that meets the specifications.
+
+    In this order: a structure whose L stays out of the S_p and T_p curves, then any that meets
+    the time specifications. Only what `verify` accepts is returned. Raise SpecificationError with
+    what can be reached when there is none.
+    """
+    require_reachable(specifications)
+    search = _Search(specifications, integrator_count, parameters)
+    for within_contours in (True, False):
+        for structure in structures:
+            for controller in search.candidates(structure, within_contours):
+                found = verify(controller, specifications, parameters)
+                if not found.complaints and found.respects_contours >= within_contours:
+                    return LoopShapingDesign(structure, integrator_count, controller, found)
+                search.complaints = found.complaints
+    raise search.failure(structures)
+
+
+class _Search:
+    """Candidates for one set of specifications."""
+
+    def __init__(
+        self, specifications: TimeSpecifications, count: int, parameters: DrivelineParameters
+    ) -> None:
+        self._specifications = specifications
+        self._count = count
+        self._parameters = parameters
+        self._plant = plant_in_rpm(parameters)
+        self._sign = float(stabilising_sign(self._plant, count))
+        self._sampled_plant = sampled_plant(parameters)
+        self._plant_response = frequency_response(self._sampled_plant, _OMEGA)
+        first_rad_s = _FIRST_CROSSOVER * specifications.crossover_rad_s
+        self._first = int(np.searchsorted(_CROSSOVERS_RAD_S, first_rad_s))
+        self._fastest_s = math.inf
+        self.complaints: tuple[str, ...] = ()
+        """Why the last candidate was turned down."""
+
+    def candidates(
+        self, structure: str, within_contours: bool
+    ) -> Iterator[FactoredTransferFunction]:
+        """Yield what is fast enough and overshoots little enough, rising in crossover."""
+        for crossover in _CROSSOVERS_RAD_S[self._first :]:
+            found = self._quickest(structure, float(crossover), within_contours)
+            if found is None:
+                return
+            controller, rise_time_s = found
+            self._fastest_s = min(self._fastest_s, rise_time_s)
+            if rise_time_s <= self._specifications.rise_time_s:
+                yield controller
+
+    def failure(self, structures: tuple[str, ...]) -> SpecificationError:
+        """Return the error that says what can be reached and what to change."""
+        limit_s = self._specifications.rise_time_s
+        asked = (
+            f'no loop-shaping controller found with {self._count} integrator(s), rise time '
+            f'{limit_s:g} s and overshoot {100.0 * self._specifications.overshoot:g} % in the '
+            'sampled loop'
+        )
+        if self._fastest_s <= limit_s:
+            return SpecificationError(
+                f'{asked} (last candidate: {"; ".join(self.complaints)}): allow a longer rise time'
+            )
+        fastest_s = min(self._fastest_s, *(self._slower_s(structure) for structure in structures))
+        if math.isinf(fastest_s):
+            return SpecificationError(f'{asked}, nor a slower one: allow more overshoot')
+        fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
+        return SpecificationError(
+            f'{asked}: the fastest has {fastest_s:g} s: allow that or more overshoot'
+        )
+
+    def _slower_s(self, structure: str) -> float:
+        """Return the rise time with the highest crossover below those that were tried, or inf."""
+        for crossover in _CROSSOVERS_RAD_S[: self._first][::-1]:
+            found = self._quickest(structure, float(crossover), within_contours=False)
+            if found is not None and math.isfinite(found[1]):
+                return found[1]
+        return math.inf
+
+    def _quickest(
+        self, structure: str, crossover: float, within_contours: bool
+    ) -> tuple[FactoredTransferFunction, float] | None:
+        """Return the controller with the largest allowed zeros, and its rise time in s."""
+        best = self._allowed(structure, crossover, _ZERO_RATIOS[0], within_contours)
+        if best is None or not self._count:
+            return best
+        allowed, refused = 0, len(_ZERO_RATIOS)
+        while refused - allowed > 1:
+            middle = (allowed + refused) // 2
+            found = self._allowed(structure, crossover, _ZERO_RATIOS[middle], within_contours)
+            if found is None:
+                refused = middle
+            else:
+                allowed, best = middle, found
+        return best
+
+    def _allowed(
+        self, structure: str, crossover: float, ratio: float, within_contours: bool
+    ) -> tuple[FactoredTransferFunction, float] | None:
+        """Return controller and rise time (inf for none) if the overshoot is allowed."""
+        controller = self._controller(structure, crossover, float(ratio))
+        sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
+        loop = series(sampled, self._sampled_plant)
+        if not closed_loop_stable(loop):
+            return None
+        if not self._within_bounds(sampled, within_contours):
+            return None
+        rise_time_s, highest = step_figures(loop, _SEARCH_TIME / crossover)
+        if highest > self._specifications.overshoot:
+            return None
+        return controller, math.inf if rise_time_s is None else rise_time_s
+
+    def _within_bounds(self, sampled: StateSpace, within_contours: bool) -> bool:
+        """Return whether |S| is low enough, and |S| and |T| below S_p and T_p if asked for."""
+        values = frequency_response(sampled, _OMEGA) * self._plant_response
+        sensitivity = np.abs(1.0 / (1.0 + values))
+        if not within_contours:
+            return bool(np.max(sensitivity) <= LARGEST_SENSITIVITY_PEAK)
+        s_p = min(self._specifications.sensitivity_peak, LARGEST_SENSITIVITY_PEAK)
+        t_p = self._specifications.complementary_peak
+        below = np.max(sensitivity) <= s_p and np.max(sensitivity * np.abs(values)) <= t_p
+        return bool(below)
+
+    def _controller(
+        self, structure: str, crossover: float, ratio: float
+    ) -> FactoredTransferFunction:
+        if structure == 'placement':
+            return placement(crossover, ratio * crossover, self._parameters, self._count)
+        lead = LeadNetwork(ratio * crossover, _LEAD_POLE_RATIO / ratio).transfer_function
+        shape = integrators(self._sign, self._count)
+        for _ in range(self._count):
+            shape = shape * lead
+        return with_crossover(shape, self._plant, crossover)

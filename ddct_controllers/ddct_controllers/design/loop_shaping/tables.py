@@ -1,0 +1,144 @@
+"""The tables of `design loop-shaping`, the same for the terminal and the documentation page."""
+
+from collections.abc import Sequence
+
+from ddct_controllers.design.loop_shaping.report import Record
+from ddct_controllers.design.loop_shaping.specifications import (
+    TimeSpecifications,
+    rise_time_crossover_product,
+)
+from ddct_controllers.design.thesis.gate_tables import GateTable
+
+_LOOP_HEADERS = (
+    *('unstable poles', 'w_c rad/s', 'PM deg', 'GM dB', 'M_s', 'M_t'),
+    *('S_p curve', 'T_p curve'),
+)
+_TRANSLATED = (
+    ('2.2, G_c1', TimeSpecifications(rise_time_s=0.25, overshoot=0.14)),
+    ('2.2, G_c2', TimeSpecifications(rise_time_s=0.6, overshoot=0.14)),
+    ('3.2', TimeSpecifications(rise_time_s=0.3, overshoot=0.08)),
+)
+
+
+def thesis_tables(record: Record) -> dict[str, GateTable]:
+    """Return the tables of `thesis_record` by the names that docs/loop_shaping.md has."""
+    return {
+        'specifications': _specification_table(),
+        'network_steps': GateTable(
+            'From K_c/s to G_c1, continuous and without delay',
+            ('controller', *_LOOP_HEADERS),
+            [(row['step'], *_loop_cells(row)) for row in record['network_steps']],
+        ),
+        'placement': _placement_table(record['placement']),
+        'loops': GateTable(
+            'Both controllers, and the curves of 14 % overshoot',
+            ('controller', 'loop', *_LOOP_HEADERS),
+            [(row['controller'], row['loop'], *_loop_cells(row)) for row in record['loops']],
+        ),
+    }
+
+
+def design_tables(record: Record) -> tuple[GateTable, GateTable]:
+    """Return the tables of `design_record`: what was asked for and found, and G_c(s)."""
+    wanted, found = record['specifications'], record['sampled_loop']
+    peaks = {contour['name']: contour for contour in record['contours']}
+    figures = GateTable(
+        f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
+        ('figure', 'asked for', 'sampled loop', 'unit'),
+        [
+            _row('rise time', wanted['rise_time_s'], found['rise_time_s'], 's'),
+            _row('overshoot', 100.0 * wanted['overshoot'], 100.0 * found['overshoot'], '%'),
+            _row(_peak_name(peaks['S']), wanted['sensitivity_peak'], peaks['S']['peak'], '1'),
+            _row(_peak_name(peaks['T']), wanted['complementary_peak'], peaks['T']['peak'], '1'),
+            _row('crossover', wanted['crossover_rad_s'], found['crossover_rad_s'], 'rad/s'),
+            _row('phase margin', None, found['phase_margin_deg'], 'deg'),
+            _row('gain margin', None, found['gain_margin_db'], 'dB'),
+            _row('delay margin', None, found['delay_margin_s'], 's'),
+        ],
+    )
+    controller = record['controller']
+    parts = GateTable(
+        'G_c(s) in N m/rpm; a is (s + a), (b, c) is (s^2 + b s + c)',
+        ('part', 'value'),
+        [
+            ('gain', f'{controller["gain"]:.6g}'),
+            ('numerator', _factors(controller['numerator'])),
+            ('denominator', _factors(controller['denominator'])),
+        ],
+    )
+    return figures, parts
+
+
+def _specification_table() -> GateTable:
+    return GateTable(
+        'Specifications translated by the second-order prototype',
+        ('section', 't_r s', 's^ %', 'zeta', 'S_p', 'T_p', 't_r w_c', 'w_c rad/s', 'w_n rad/s'),
+        [
+            (
+                section,
+                f'{wanted.rise_time_s:g}',
+                f'{100.0 * wanted.overshoot:g}',
+                f'{wanted.damping:.4f}',
+                f'{wanted.sensitivity_peak:.3f}',
+                f'{wanted.complementary_peak:.3f}',
+                f'{rise_time_crossover_product(wanted.damping):.3f}',
+                f'{wanted.crossover_rad_s:.2f}',
+                f'{wanted.natural_frequency_rad_s:.2f}',
+            )
+            for section, wanted in _TRANSLATED
+        ],
+    )
+
+
+def _placement_table(placements: Sequence[Record]) -> GateTable:
+    lines = {
+        'gain N m/rpm': [f'{one["gain"]:.6f}' for one in placements],
+        'zero rad/s': [f'{one["numerator"][0]:.4f}' for one in placements],
+        'zeros b, c': [_factors(one['numerator'][1:]) for one in placements],
+        'poles b, c': [_factors(one['denominator'][1:]) for one in placements],
+        'w_c rad/s': [f'{one["crossover_rad_s"]:.2f}' for one in placements],
+        't_r s': [f'{one["rise_time_s"]:.3f}' for one in placements],
+        's^ %': [f'{100.0 * one["overshoot"]:.1f}' for one in placements],
+        'M_t': [f'{one["complementary_peak"]:.3f}' for one in placements],
+    }
+    return GateTable(
+        'G_c2 as printed, and as the rule gives it',
+        ('figure', *(one['version'] for one in placements)),
+        [(name, *cells) for name, cells in lines.items()],
+    )
+
+
+def _peak_name(contour: Record) -> str:
+    return f'max |{contour["name"]}|' + ('' if contour['respected'] else ', crosses its curve')
+
+
+def _row(name: str, asked: float | None, found: float | None, unit: str) -> tuple[str, ...]:
+    return (name, _text(asked, '.3g'), _text(found, '.3g'), unit)
+
+
+def _loop_cells(row: Record) -> tuple[str, ...]:
+    kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
+    return (
+        str(row['unstable_poles']),
+        _text(row['crossover_rad_s'], '.2f'),
+        _text(row['phase_margin_deg'], '.1f'),
+        _text(row['gain_margin_db'], '.1f'),
+        _text(row['sensitivity_peak'], '.3f'),
+        _text(row['complementary_peak'], '.3f'),
+        'kept out of' if kept_out['S'] else 'crossed',
+        'kept out of' if kept_out['T'] else 'crossed',
+    )
+
+
+def _factors(factors: Sequence[float | Sequence[float]]) -> str:
+    return ', '.join(
+        f'{factor:.6g}'
+        if isinstance(factor, float)
+        else f'({", ".join(f"{number:.6g}" for number in factor)})'
+        for factor in factors
+    )
+
+
+def _text(value: float | None, form: str) -> str:
+    """Return a dash for what does not exist or has no limit."""
+    return '-' if value is None else format(value, form)
