@@ -94,15 +94,19 @@ def test_between_bound_and_structure_the_error_says_what_can_be_had_and_it_can()
 
 
 @pytest.mark.parametrize(
-    ('rise_time', 'overshoot', 'reachable'),
-    [(0.6, 0.0005, r'15\.\d+'), (0.05, 0.9, r'0\.0\d+'), (4.0, 1e-6, 'nor a slower one')],
+    ('rise_time', 'overshoot', 'structures', 'reachable'),
+    [
+        (0.6, 0.0005, STRUCTURES, r'15\.\d+'),
+        (0.05, 0.9, STRUCTURES, r'0\.0\d+'),
+        (4.0, 1e-6, ('networks',), 'nor a slower one'),  # one structure: it tries every crossover
+    ],
 )
 def test_what_no_loop_so_fast_can_have_is_named_with_what_can_be_had(
-    rise_time, overshoot, reachable
+    rise_time, overshoot, structures, reachable
 ):
     """Two integrators overshoot; 0.05 s would need an M_s above 2."""
     with pytest.raises(SpecificationError, match=f'{reachable}.*more overshoot'):
-        design_loop_shaping(TimeSpecifications(rise_time, overshoot), 1, DRIVELINE)
+        design_loop_shaping(TimeSpecifications(rise_time, overshoot), 1, DRIVELINE, structures)
 
 
 @pytest.mark.parametrize(
