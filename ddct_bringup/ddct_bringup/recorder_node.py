@@ -3,20 +3,21 @@
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.clock import Clock, ClockType
 from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import Header
 
 from ddct_bringup.bag.cdr import CdrNormaliser
 from ddct_bringup.bag.message_definitions import load_definition
-from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
 from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
 from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.run.graph_nodes import NODE_NAMES
+from ddct_bringup.run.heard_nodes import HeardNodes
 from ddct_bringup.run.record import custom_data
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.errors import DdctError
@@ -24,7 +25,7 @@ from ddct_plant.graph.message_values import status_name_of, status_pairs_of
 from ddct_plant.graph.messages import ack_message
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
-from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
+from ddct_plant.graph.run_info import RUN_INFO_TOPIC
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.timebase import START_NS, stamp_of_step
@@ -33,6 +34,9 @@ ACK = 'recorder/ack'
 TIMING = 'controller/timing'
 DIAGNOSTICS = '/diagnostics'
 DIAGNOSTICS_SOURCE = 'driveline: ticks'
+PATIENCE_S = 5.0
+"""How long to wait for the other nodes before saying for whom."""
+_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 class RecorderNode(GraphNode):
@@ -42,6 +46,8 @@ class RecorderNode(GraphNode):
     The bag is opened once every node has said its settings on `run_info` and t_0 is whole. In
     lock-step it holds only what is deterministic; wall-clock figures go to `timing.json`.
     """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p out:=runs/mine',)
 
     def __init__(self, **kwargs: Any) -> None:
         """Subscribe to everything that is recorded."""
@@ -53,12 +59,11 @@ class RecorderNode(GraphNode):
             declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
             or self._folder.name
         )
-        self._expected_nodes = set(
-            declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
-        )
         self._two_input = declare(
             self, 'two_input', False, 'Record engine/torque_request of a two-input controller'
         )
+        nodes = declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
+        self._nodes = HeardNodes(self.settings, self._two_input, nodes)
         topics = recorded_topics(lockstep=self.settings.lockstep, two_input=self._two_input)
         self._tick_topics = [topic.name for topic in topics if topic.every_tick]
         self._topics = topics
@@ -67,7 +72,6 @@ class RecorderNode(GraphNode):
             self._same_message,
             wait_for_all=self.settings.lockstep,
         )
-        self._run_info: dict[str, tuple[bytes, dict[str, str]]] = {}
         self._held: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
@@ -78,6 +82,7 @@ class RecorderNode(GraphNode):
         self._ack_cdr = bytearray(serialize_message(ack_message(START_NS)))
         self._subscribe_all()
         self.publish_run_info()
+        self._patience = self.create_timer(PATIENCE_S, self._say_who_is_silent, clock=_STEADY)
 
     def close(self) -> None:
         """Finish the bag and write `timing.json`; raise DdctError when nothing was recorded."""
@@ -122,20 +127,7 @@ class RecorderNode(GraphNode):
 
     def _on_run_info(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
-        node, pairs = status_name_of(message), dict(status_pairs_of(message))
-        two_input = str(self._two_input).lower()
-        for key, ours in run_info_pairs(self.settings):
-            if pairs.get(key, ours) != ours:
-                raise DdctError(
-                    f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
-                    'start every node with the same settings'
-                )
-        if pairs.get('two_input', two_input) != two_input:
-            raise DdctError(
-                f'node {node} runs with two_input {pairs["two_input"]} and the recorder with '
-                f'{two_input}: start engine and recorder with the two_input of the controller'
-            )
-        self._run_info[node] = (cdr, pairs)
+        self._nodes.hear(status_name_of(message), dict(status_pairs_of(message)), cdr)
         self._write_ticks([])
 
     def _on_timing(self, cdr: bytes) -> None:
@@ -184,15 +176,12 @@ class RecorderNode(GraphNode):
                 self._bag.write(topic, stamp, cdr)
 
     def _open_bag(self) -> bool:
-        if self._expected_nodes - set(self._run_info):
+        if self._nodes.silent():
             return False
-        name = self._run_info['controller'][1]['controller']
-        steps = int(self._run_info['driveline'][1]['steps'])
-        self._bag = BagWriter(
-            self._folder, self._bag_name, self._topics, custom_data(self.settings, name, steps)
-        )
-        for node in run_info_order(self._run_info):
-            self._bag.write(RUN_INFO_TOPIC, START_NS, self._run_info[node][0])
+        facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
+        self._bag = BagWriter(self._folder, self._bag_name, self._topics, facts)
+        for cdr in self._nodes.messages():
+            self._bag.write(RUN_INFO_TOPIC, START_NS, cdr)
         for topic, stamp, cdr in self._unordered:
             self._bag.write(topic, stamp, cdr)
         self._first_tick_at = time.monotonic()
@@ -204,10 +193,21 @@ class RecorderNode(GraphNode):
         return normaliser.normalise(first) == normaliser.normalise(second)
 
     def _waiting_for(self) -> str:
-        silent = sorted(self._expected_nodes - set(self._run_info))
+        silent = self._nodes.silent()
         if silent:
-            return f'no run_info came from {", ".join(silent)}: start them, or set `nodes`'
-        return 'no whole tick came: start it first or set require_recorder on driveline'
+            return (
+                f'no run_info came from {", ".join(silent)}: start them, or leave them out of '
+                '--ros-args -p nodes:=[...]'
+            )
+        return (
+            'no whole tick came: start it first, or driveline with '
+            '--ros-args -p require_recorder:=true'
+        )
+
+    def _say_who_is_silent(self) -> None:
+        self._patience.cancel()
+        if self._nodes.silent():
+            self.get_logger().warning(self._waiting_for())
 
 
 def main() -> int:

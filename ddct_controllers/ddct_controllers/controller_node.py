@@ -1,7 +1,7 @@
 """Node `controller`: runs the controller that its `controller` parameter names, every tick."""
 
 import time
-from typing import Any
+from typing import Any, ClassVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TwistStamped, WrenchStamped
@@ -30,6 +30,7 @@ from ddct_plant.timebase import stamp_of_step
 
 TIMING_BATCH = 20
 """Update times are published in batches of this many steps."""
+_ABOUT_GAINS = 'May be changed while it runs; its unit is in the documentation of the controller'
 
 
 class ControllerNode(FollowerNode):
@@ -40,6 +41,11 @@ class ControllerNode(FollowerNode):
     demand in place of `engine/torque`. Gains are parameters `gains.<name>`, which may be changed
     while it runs.
     """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = (
+        '-p controller:=ls8',
+        '-p controller:=pi -p gains.proportional_gain:=0.2',
+    )
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the controller that the `controller` parameter names."""
@@ -128,7 +134,7 @@ class ControllerNode(FollowerNode):
 
     def _declare_gains(self) -> None:
         for name, value in self._controller.gains().items():
-            declare(self, f'gains.{name}', value, f'Gain {name}', read_only=False)
+            declare(self, f'gains.{name}', value, _ABOUT_GAINS, read_only=False)
             self._controller.set_gain(name, self.get_parameter(f'gains.{name}').value)
         self.add_on_set_parameters_callback(self._set_gains)
 

@@ -1,7 +1,7 @@
 """Node `driveline`: owns time, integrates the stiff states and publishes them at every tick."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import AccelStamped, TwistStamped, WrenchStamped
@@ -63,6 +63,8 @@ class DrivelineNode(GraphNode):
 
     In real time it steps on a steady 10 ms timer instead and counts what is missing.
     """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p require_recorder:=true -p duration:=2.0',)
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the driveline in its initial state; `begin` starts the run."""

@@ -1,23 +1,32 @@
-"""Open the clutch when requests stop: what the actuator does in real time without a controller."""
+"""What engine and actuator do in real time when their requests stop."""
 
 from dataclasses import asdict, dataclass
 
 from ddct_plant.checks import require_number
 from ddct_plant.timebase import PERIOD_S
 
+REQUEST_TIMEOUT_S = 0.05
+"""How long a missing request is waited for."""
+LEAST_REQUEST_TIMEOUT_S, MOST_REQUEST_TIMEOUT_S = PERIOD_S, 10.0
+
 
 @dataclass(frozen=True)
 class FailSafeSettings:
     """When and how fast the clutch opens."""
 
-    request_timeout_s: float = 0.05
+    request_timeout_s: float = REQUEST_TIMEOUT_S
     """A missing request is held this long."""
     fail_safe_ramp_n_m_s: float = 1000.0
     """Rate at which the request then runs to zero, in N m/s."""
 
     def __post_init__(self) -> None:
         """Check both; raise ParameterError that names a bad one."""
-        require_number('request_timeout_s', self.request_timeout_s, above=0.0, at_most=10.0)
+        require_number(
+            'request_timeout_s',
+            self.request_timeout_s,
+            at_least=LEAST_REQUEST_TIMEOUT_S,
+            at_most=MOST_REQUEST_TIMEOUT_S,
+        )
         require_number('fail_safe_ramp_n_m_s', self.fail_safe_ramp_n_m_s, above=0.0, at_most=1e6)
 
     def info(self) -> dict[str, str]:
@@ -25,31 +34,61 @@ class FailSafeSettings:
         return {name: repr(value) for name, value in asdict(self).items()}
 
 
-class FailSafe:
+class RequestWatch:
     """
-    Watch the requests and, when they stop, ramp the last one down to an open clutch.
+    Notice that requests have stopped for longer than the timeout in s.
 
-    It stays engaged until the node is started again: a clutch that closes unasked is a hazard.
+    It stays so until the node is started again: who has been silent is not obeyed unasked.
     """
+
+    def __init__(self, timeout_s: float) -> None:
+        self._timeout_s = timeout_s
+        self._last_step: int | None = None
+        self.stopped = False
+
+    @property
+    def heard(self) -> bool:
+        """Whether there was a request at all."""
+        return self._last_step is not None
+
+    def request(self, step: int) -> None:
+        """Note that a request came for `step`."""
+        self._last_step = step
+
+    def tick(self, step: int) -> bool:
+        """Say at the start of `step` whether requests have stopped."""
+        if self._last_step is not None and not self.stopped:
+            self.stopped = self.too_long(self._last_step, step)
+        return self.stopped
+
+    def too_long(self, since_step: int, step: int) -> bool:
+        """Say whether more than the timeout lies between two steps."""
+        return (step - since_step) * PERIOD_S > self._timeout_s
+
+
+class FailSafe:
+    """Watch the requests and, when they stop, ramp the last one down to an open clutch."""
 
     def __init__(self, settings: FailSafeSettings) -> None:
-        self._settings = settings
-        self._last_step: int | None = None
+        self.watch = RequestWatch(settings.request_timeout_s)
+        self._most_change = settings.fail_safe_ramp_n_m_s * PERIOD_S
         self._torque = 0.0
-        self.engaged = False
+
+    @property
+    def engaged(self) -> bool:
+        """Whether the clutch is being opened, or open."""
+        return self.watch.stopped
 
     def request(self, step: int, torque: float) -> None:
         """Note the request in N m that came for `step`."""
-        self._last_step = step
+        self.watch.request(step)
         self._torque = max(torque, 0.0)
 
     def tick(self, step: int) -> bool:
         """Say at the start of `step` whether the fail-safe is engaged from now on."""
-        if self._last_step is not None and not self.engaged:
-            self.engaged = (step - self._last_step) * PERIOD_S > self._settings.request_timeout_s
-        return self.engaged
+        return self.watch.tick(step)
 
     def next_torque(self) -> float:
         """Return the request in N m of the next period on the way to an open clutch."""
-        self._torque = max(self._torque - self._settings.fail_safe_ramp_n_m_s * PERIOD_S, 0.0)
+        self._torque = max(self._torque - self._most_change, 0.0)
         return self._torque

@@ -1,6 +1,6 @@
 """Node `reference`: the slip speed that the controller shall follow, with its preview."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 from geometry_msgs.msg import TwistStamped
 from trajectory_msgs.msg import JointTrajectory
@@ -16,6 +16,8 @@ from ddct_reference.factory import make_reference
 
 class ReferenceNode(FollowerNode):
     """Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead."""
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the reference of the run's scenario and architecture."""

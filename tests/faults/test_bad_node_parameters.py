@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import pytest
 from support.complaints import assert_one_line
 from support.in_process_graph import GraphOf
 from support.processes import Program, Programs
@@ -41,6 +40,18 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
         ['-p', 'fail_safe_ramp_n_m_s:=0.0'],
         ['fail_safe_ramp_n_m_s is 0'],
     ),
+    'unknown parameter': (
+        ENGINE,
+        ['-p', 'two_inputs:=true'],
+        ['unknown parameter two_inputs', 'did you mean two_input?'],
+    ),
+    'unknown name of a controller': (
+        CONTROLLER,
+        ['-p', 'controler:=ls8'],
+        ['unknown parameter controler', 'did you mean controller?'],
+    ),
+    'unknown gain': (CONTROLLER, ['-p', 'gains.derivative:=1.0'], ['gains.derivative', 'known: ']),
+    'behind the ROS arguments': (ENGINE, ['--', 'late'], ['unknown argument late']),
     'malformed': (ENGINE, ['-p', 'wear_gain'], ['wear_gain']),
     'missing parameter file': (ENGINE, ['--params-file', 'no/such.yaml'], ['no/such.yaml']),
 }
@@ -58,11 +69,30 @@ def test_every_wrong_parameter_is_named(programs: Programs) -> None:
         assert_one_line(program.errors(), node, *words)
 
 
-def test_a_bad_domain_is_named(programs: Programs, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv('ROS_DOMAIN_ID', 'abc')
-    program = programs.start_node(ENGINE, {})
+def test_an_argument_in_front_of_those_for_ros_is_refused(programs: Programs) -> None:
+    wrong = ('--foo', 'two_input:=true')
+    started = [
+        programs.start_module(ENGINE, argument, '--ros-args', '-p', 'seed:=1')
+        for argument in wrong
+    ]
+    for argument, program in zip(wrong, started, strict=True):
+        assert program.wait() == 1
+        hint = 'parameters go behind --ros-args, as -p NAME:=VALUE'
+        assert_one_line(program.errors(), 'engine', f'unknown argument {argument}', hint)
+
+
+def test_a_parameter_file_may_hold_sections_of_other_nodes(
+    programs: Programs, tmp_path: Path
+) -> None:
+    file = tmp_path / 'parameters.yaml'
+    file.write_text(
+        '/**: {ros__parameters: {wear_gain: -1.0, use_sim_time: false}}\n'
+        '/**/driveline: {ros__parameters: {duration: 1.0}}\n',
+        encoding='utf-8',
+    )
+    program = programs.start_module(ENGINE, '--ros-args', '--params-file', str(file))
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID')
+    assert_one_line(program.errors(), 'engine', 'wear_gain', '-1.0')
 
 
 def test_a_recorder_that_cannot_write_its_bag_ends_with_the_reason(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import START_S, Programs
 from support.runs import plan
@@ -17,11 +18,13 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_plant.driveline_node import DrivelineNode
 from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
-from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.messages import clock_message, torque_message
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.tick_owner import RealtimeOwner
-from ddct_plant.timebase import PERIOD_S, step_of_stamp
+from ddct_plant.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 
 FAIL_SAFE = FailSafeSettings()
+HELD_STEPS = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
 SILENT_AT_STEP = 80
 STALL_S = 0.03
 """A driveline that is later than this publishes ticks in bursts."""
@@ -110,10 +113,75 @@ def _run_until_silent(
 
 def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:
     """Return the first step with a torque after the request was held for its timeout."""
-    held = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
     for step in range(SILENT_AT_STEP, steps):
-        answered = any(heard.has_torque(earlier) for earlier in range(step - held, step))
+        answered = any(heard.has_torque(earlier) for earlier in range(step - HELD_STEPS, step))
         if heard.has_torque(step) and not answered:
-            assert heard.has_torque(step - held - 1), f'held for longer than {held} steps'
+            late = f'held for longer than {HELD_STEPS} steps'
+            assert heard.has_torque(step - HELD_STEPS - 1), late
             return step
     raise AssertionError(f'the fail-safe did not engage: {sorted(heard.torques)}')
+
+
+class _Bench(_Listener):
+    """Stands in for plant and controller."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._clock = self.create_publisher(Clock, '/clock', LOOP_QOS)
+        self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
+
+    def connected(self) -> bool:
+        """Say whether the actuator is there."""
+        heard = all(each.get_subscription_count() for each in (self._clock, self._request))
+        return heard and self.count_publishers('actuator/torque') > 0
+
+    def tell_time(self, step: int) -> None:
+        """Publish the time of a step."""
+        self._clock.publish(clock_message(stamp_of_step(step)))
+
+    def ask(self, step: int) -> None:
+        """Publish a request for a step."""
+        self._request.publish(torque_message(stamp_of_step(step), 200.0))
+
+
+@pytest.fixture
+def bench(graph_of: GraphOf) -> tuple[InProcessGraph, _Bench]:
+    """Return a graph with an actuator in real time and nothing else but a bench."""
+    graph = graph_of(plan(mode='realtime'))
+    graph.add('actuator')
+    bench = _Bench(context=graph.context)
+    graph.add_other(bench)
+    graph.spin_until(bench.connected, 'the actuator', START_S)
+    return graph, bench
+
+
+def test_requests_without_clock_give_no_torque_and_end_the_actuator(
+    bench: tuple[InProcessGraph, _Bench],
+) -> None:
+    graph, driver = bench
+    for step in range(HELD_STEPS + 2):
+        driver.ask(step)
+    node, complaint = graph.first_failure()
+    assert node == 'actuator'
+    for words in (f'at stamp {stamp_of_step(HELD_STEPS + 1)} ns', 'publish /clock'):
+        assert words in complaint
+    assert not driver.torques
+
+
+def test_a_clock_that_is_heard_late_makes_the_actuator_answer(
+    bench: tuple[InProcessGraph, _Bench],
+) -> None:
+    graph, driver = bench
+    driver.ask(0)
+    graph.spin_until(lambda: 0 in driver.requests, 'the request')
+    assert not driver.torques
+    driver.tell_time(0)
+
+    def answered_again() -> bool:
+        driver.ask(0)
+        return driver.has_torque(0)
+
+    graph.spin_until(answered_again, 'the answer to a request that comes again')
+    for step in range(1, 2 * HELD_STEPS):
+        driver.ask(step)
+    graph.spin_until(lambda: driver.has_torque(2 * HELD_STEPS - 1), 'the torque')

@@ -16,7 +16,7 @@ from support.processes import START_S, Programs
 from support.runs import bag_bytes, expected, plan, record
 
 from ddct_bringup.run.plan import LAYOUTS
-from ddct_plant.engine_node import REQUEST_TIMEOUT_S
+from ddct_plant.fail_safe import REQUEST_TIMEOUT_S
 from ddct_plant.graph.message_values import stamp_ns, torque_of
 from ddct_plant.graph.messages import joint_states_message, torque_message
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
@@ -59,7 +59,11 @@ def test_an_engine_that_does_not_expect_requests_says_so(graph_of: GraphOf) -> N
     graph.add_all(without=['recorder'])
     node, complaint = graph.first_failure()
     assert node == 'engine'
-    for words in ('engine/torque_request arrived', 'follows the demand alone', 'two_input:=true'):
+    for words in (
+        'engine/torque_request arrived',
+        'follows the demand alone',
+        '-p two_input:=true',
+    ):
         assert words in complaint
 
 
@@ -96,13 +100,18 @@ class _Listener(Node):
         torques[step_of_stamp(stamp_ns(message))] = torque_of(message)
 
 
-def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop(
-    graph_of: GraphOf, programs: Programs
+@pytest.mark.parametrize(
+    'signals',
+    [[signal.SIGKILL], [signal.SIGSTOP, signal.SIGCONT]],
+    ids=['killed', 'stopped and continued'],
+)
+def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_stays_there(
+    graph_of: GraphOf, programs: Programs, signals: list[signal.Signals]
 ) -> None:
     run = plan('mpc4', mode='realtime', duration_s=1.8, changes=(LITTLE_SLEW,))
     for _ in range(3):
         with graph_of(run) as graph:
-            demands, torques = _run_until_silent(graph, programs)
+            demands, torques = _run_until_silent(graph, programs, signals)
         gaps = [
             (last, first)
             for last, first in pairwise(sorted(torques))
@@ -153,15 +162,20 @@ class _Driver(Node):
         self.answers.append((step_of_stamp(stamp_ns(message)), torque_of(message)))
 
 
-def test_in_real_time_a_step_is_answered_alone_once_and_a_late_request_changes_nothing(
-    graph_of: GraphOf,
-) -> None:
+def _driven(graph_of: GraphOf) -> tuple[InProcessGraph, _Driver]:
     demand = ('engine.time_s=[0.0]', 'engine.torque_n_m=[308.0]')
     graph = graph_of(plan('mpc4', mode='realtime', changes=(LITTLE_SLEW, *demand)))
     graph.add('engine')
     driver = _Driver(context=graph.context)
     graph.add_other(driver)
     graph.spin_until(driver.connected, 'the engine', START_S)
+    return graph, driver
+
+
+def test_in_real_time_requests_that_come_back_change_nothing(
+    graph_of: GraphOf, capfd: pytest.CaptureFixture[str]
+) -> None:
+    graph, driver = _driven(graph_of)
 
     def answered(count: int) -> bool:
         return len(driver.answers) == count
@@ -178,27 +192,44 @@ def test_in_real_time_a_step_is_answered_alone_once_and_a_late_request_changes_n
     for step in (first, second, second + 1):
         driver.ask(step, 400.0)
     driver.tick(second + 1)
-    graph.spin_until(partial(answered, 5), 'the answer to a request in time')
+    graph.spin_until(partial(answered, 5), 'the answer to the tick after a request')
     assert driver.answers == [
         (0, 313.0),
         (first, 308.0),
         (second, 308.0),
         (second, 308.0),
-        (second + 1, 313.0),
+        (second + 1, 308.0),
     ]
+    assert capfd.readouterr().err.count('the demand holds until the engine is started again') == 1
+
+
+def test_in_real_time_the_demand_is_delivered_until_the_first_request_and_not_held(
+    graph_of: GraphOf,
+) -> None:
+    graph, driver = _driven(graph_of)
+    first = TIMEOUT_STEPS + 1
+    driver.tick(first)
+    graph.spin_until(lambda: bool(driver.answers), 'an answer without a request')
+    for step in (first, first + 1):
+        driver.ask(step, 320.0)
+    driver.tick(first + 1)
+    graph.spin_until(lambda: len(driver.answers) == 2, 'the answer to a request')
+    assert driver.answers == [(first, 308.0), (first + 1, 313.0)]
 
 
 def _run_until_silent(
-    graph: InProcessGraph, programs: Programs
+    graph: InProcessGraph, programs: Programs, signals: list[signal.Signals]
 ) -> tuple[dict[int, float], dict[int, float]]:
-    """Run, kill the controller on the way, and return demands and torques by step."""
+    """Run, send the controller the signals on the way, and return demands and torques by step."""
     shared = graph.parameters['*'] | graph.parameters['controller']
     controller = programs.start_node('ddct_controllers.controller_node', shared)
     listener = _Listener(context=graph.context)
     graph.add_other(listener)
     graph.add_all(without=['controller'])
-    come = partial(listener.has_come_to, SILENT_AT_STEP)
-    graph.spin_until(come, f'step {SILENT_AT_STEP}', START_S)
-    controller.send(signal.SIGKILL)
+    for number, sent in enumerate(signals):
+        step = SILENT_AT_STEP + 20 * number
+        graph.spin_until(partial(listener.has_come_to, step), f'step {step}', START_S)
+        controller.send(sent)
     graph.run()
+    controller.send(signal.SIGKILL)
     return listener.demands, listener.torques

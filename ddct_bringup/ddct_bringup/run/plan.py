@@ -9,6 +9,7 @@ import yaml
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.errors import ParameterError
+from ddct_plant.graph.domain import require_domain
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import scenario_to_yaml
 
@@ -34,6 +35,8 @@ class RunPlan:
             raise ParameterError(
                 'mode realtime needs the graph, which --headless does without: drop one of them'
             )
+        if self.layout != 'headless':
+            require_domain()
 
     @property
     def name(self) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller
+from ddct_plant.engine_info import engine_info
 from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.run_info import package_version, run_info_pairs
 from ddct_plant.run_settings import RunSettings
@@ -42,7 +43,7 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
 def run_info_of(settings: RunSettings, name: str, controller: Controller, steps: int) -> RunInfo:
     """Return what the nodes of a graph with these settings say on `run_info`."""
     extra: dict[str, dict[str, str]] = {
-        'engine': {'two_input': str(controller.commands_engine).lower()},
+        'engine': engine_info(controller.commands_engine),
         'load': {},
         'clutch': {},
         'driveline': {'steps': str(steps)},

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.domain import require_domain
 
 _DOMAINS = range(1, 100)
 """Domain ids whose DDS ports stay below those that the kernel hands out."""
-_LAST_DOMAIN = 232
-"""Beyond it DDS has no ports, and its middleware ends the process."""
 _FIRST_PORT = 28400
 """A domain is taken while somebody listens on this port plus its id."""
 
@@ -23,9 +22,9 @@ def own_domain() -> Iterator[int]:
     A ROS_DOMAIN_ID that the user has set is respected; otherwise a free one is reserved.
     """
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    given = os.environ.get('ROS_DOMAIN_ID')
-    if given:
-        yield _domain(given)
+    given = require_domain()
+    if given is not None:
+        yield given
         return
     with _reserved() as domain:
         os.environ['ROS_DOMAIN_ID'] = str(domain)
@@ -48,9 +47,3 @@ def _reserved() -> Iterator[int]:
             yield domain
             return
     raise DdctError('every ROS domain is taken: wait for a graph to end or set ROS_DOMAIN_ID')
-
-
-def _domain(text: str) -> int:
-    if not text.isdecimal() or int(text) > _LAST_DOMAIN:
-        raise DdctError(f'ROS_DOMAIN_ID is {text!r}: give a whole number from 0 to {_LAST_DOMAIN}')
-    return int(text)

@@ -68,7 +68,8 @@ def read_slip_reference(
     if len(message.points) <= preview_steps:
         raise DdctError(
             f'{topic} has {len(message.points)} points and the controller needs '
-            f'{preview_steps + 1}: start the reference with preview_steps:={preview_steps}'
+            f'{preview_steps + 1}: start the reference with '
+            f'--ros-args -p preview_steps:={preview_steps}'
         )
     if not all(point.velocities and point.accelerations for point in message.points):
         raise DdctError(f'{topic}: each point needs a velocity and an acceleration')

@@ -1,7 +1,7 @@
 """Base of every node: settings, run information, and a way to end with a reason."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
@@ -14,6 +14,9 @@ from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.timebase import stamp_of_step
 
+_FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
+"""Parameters that rclpy declares itself begin with one of these."""
+
 
 class GraphNode(Node):
     """
@@ -21,6 +24,9 @@ class GraphNode(Node):
 
     Not a lifecycle node: nothing in this project would drive the transitions.
     """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ()
+    """What `--help` shows behind `--ros-args`; what makes sense for this node alone."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
@@ -36,6 +42,20 @@ class GraphNode(Node):
         publisher = self.create_publisher(DiagnosticArray, RUN_INFO_TOPIC, LATCHED_QOS)
         pairs = run_info_pairs(self.settings, extra)
         publisher.publish(status_message(stamp_of_step(0), self.get_name(), pairs))
+
+    def own_parameters(self) -> list[str]:
+        """Return the names of the parameters that the node itself declares."""
+        names = self.list_parameters([], 0).names
+        return [name for name in names if not name.startswith(_FOREIGN)]
+
+    def undeclared_parameters(self) -> list[str]:
+        """Return the names of the parameters that it was given and does not declare."""
+        given = self._parameter_overrides
+        return [
+            name
+            for name in given
+            if not self.has_parameter(name) and not name.startswith(_FOREIGN)
+        ]
 
     def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """Wrap a callback so that a DdctError ends the node with its one-line reason."""

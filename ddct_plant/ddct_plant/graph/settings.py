@@ -8,6 +8,11 @@ from rclpy.node import Node
 
 from ddct_plant.clutch import CLUTCHES
 from ddct_plant.errors import ParameterError
+from ddct_plant.fail_safe import (
+    LEAST_REQUEST_TIMEOUT_S,
+    MOST_REQUEST_TIMEOUT_S,
+    REQUEST_TIMEOUT_S,
+)
 from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
 from ddct_plant.scenario_file import load_scenario
 
@@ -26,6 +31,18 @@ def declare_settings(node: Node) -> RunSettings:
         wear_gain=declare(node, 'wear_gain', 1.0, 'K_usura, clutch wear gain [-]', 0.0, 3.0),
         mode=declare(node, 'mode', 'lockstep', f'One of: {", ".join(MODES)}'),
         seed=declare(node, 'seed', 0, 'Seed of random numbers', 0, 2**31 - 1),
+    )
+
+
+def declare_request_timeout(node: Node, afterwards: str) -> float:
+    """Declare how long requests may stop in real time, and what happens `afterwards`; in s."""
+    return declare(
+        node,
+        'request_timeout_s',
+        REQUEST_TIMEOUT_S,
+        f'Real time: when requests stop for longer [s], {afterwards}',
+        LEAST_REQUEST_TIMEOUT_S,
+        MOST_REQUEST_TIMEOUT_S,
     )
 
 

@@ -8,12 +8,17 @@ from typing import Any
 import rclpy
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.arguments import (
+    help_asked,
+    init_ros,
+    require_declared,
+    require_ros_arguments,
+)
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.node_help import help_asked, node_help
+from ddct_plant.graph.node_help import node_help
 from ddct_plant.stop_signals import stop_signals
 
 SLICE_S = 0.1
@@ -85,19 +90,25 @@ def finish_node(executor: Executor, node: GraphNode) -> None:
 
 
 def run_node(
-    name: str, factory: Callable[[], GraphNode], arguments: list[str] | None = None
+    name: str, factory: Callable[[], GraphNode], arguments: Sequence[str] | None = None
 ) -> int:
     """
     Run the node that `factory` builds and return the exit code of its program.
 
-    0 after its work is done, after SIGINT or SIGTERM, or after `--help`; 1, with one line on
-    standard error, after a DdctError.
+    A program that has arguments of its own, or its own `--help`, passes on its whole command line
+    as `arguments`, checked. 0 after its work is done, after SIGINT or SIGTERM, or after `--help`;
+    1, with one line on standard error, after a DdctError.
     """
-    if help_asked(sys.argv[1:] if arguments is None else arguments):
-        print(node_help(name, factory))
-        return 0
-    with stop_signals() as stops:
-        error = _run(factory, arguments, lambda: bool(stops))
+    try:
+        if arguments is None:
+            if help_asked(sys.argv):
+                print(node_help(name, factory, sys.argv))
+                return 0
+            require_ros_arguments(sys.argv[1:])
+        with stop_signals() as stops:
+            error = _run(factory, arguments, lambda: bool(stops))
+    except DdctError as failure:
+        error = failure
     if error is None:
         return 0
     print(f'{name}: {error}', file=sys.stderr, flush=True)
@@ -105,29 +116,21 @@ def run_node(
 
 
 def _run(
-    factory: Callable[[], GraphNode], arguments: list[str] | None, stopped: Callable[[], bool]
+    factory: Callable[[], GraphNode], arguments: Sequence[str] | None, stopped: Callable[[], bool]
 ) -> DdctError | None:
+    """Return the error that ended the node, if any; raise DdctError when it cannot be built."""
     try:
-        _init(arguments)
+        init_ros(arguments)
         node = factory()
+        require_declared(node)
         executor = make_executor()
         executor.add_node(node)
         spin_until(executor, end_of([node], stopped))
         finish_node(executor, node)
         error: DdctError | None = node.done.result() if node.done.done() else None
         node.destroy_node()
-    except DdctError as failure:
-        error = failure
     except ExternalShutdownException:
         error = None
     finally:
         rclpy.try_shutdown()
     return error
-
-
-def _init(arguments: list[str] | None) -> None:
-    try:
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-    except RuntimeError as error:  # so rcl refuses arguments and environment variables
-        reason = str(error).split(', at /')[0]
-        raise DdctError(f'{reason}: mend what stands behind --ros-args or in ROS_*') from error

@@ -1,0 +1,59 @@
+"""What stands on a node's command line: help, ROS's arguments, and nothing else."""
+
+import difflib
+from collections.abc import Sequence
+
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.graph.domain import require_domain
+from ddct_plant.graph.node import GraphNode
+
+HELP = ('-h', '--help')
+ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
+
+
+def help_asked(arguments: Sequence[str]) -> bool:
+    """Say whether `--help` is anywhere among the arguments."""
+    return any(argument in HELP for argument in arguments)
+
+
+def require_ros_arguments(arguments: Sequence[str]) -> None:
+    """Raise ParameterError for an argument that is not ROS's: a node has none of its own."""
+    for_ros = False
+    for argument in arguments:
+        if argument == ROS_ARGUMENTS:
+            for_ros = True
+        elif for_ros and argument == _END_OF_ROS_ARGUMENTS:
+            for_ros = False
+        elif not for_ros:
+            # rcl would pass over it, or take NAME:=VALUE for the new name of a topic.
+            raise ParameterError(
+                f'unknown argument {argument}: parameters go behind {ROS_ARGUMENTS}, '
+                'as -p NAME:=VALUE'
+            )
+
+
+def init_ros(arguments: Sequence[str] | None) -> None:
+    """Initialise rclpy with the arguments; raise DdctError for what it cannot use."""
+    require_domain()
+    try:
+        rclpy.init(
+            args=None if arguments is None else list(arguments),
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+    except RuntimeError as error:  # so rcl refuses arguments and environment variables
+        reason = str(error).split(', at /')[0]
+        raise DdctError(
+            f'{reason}: mend what stands behind {ROS_ARGUMENTS} or in ROS_*'
+        ) from error
+
+
+def require_declared(node: GraphNode) -> None:
+    """Raise ParameterError for a parameter that was given to the node and that it has not."""
+    for name in node.undeclared_parameters():
+        known = node.own_parameters()
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f'did you mean {close[0]}?' if close else f'known: {", ".join(known)}'
+        raise ParameterError(f'unknown parameter {name}: {hint}')

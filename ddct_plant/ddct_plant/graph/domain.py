@@ -1,0 +1,18 @@
+"""The ROS domain that the environment names, checked before any middleware sees it."""
+
+import os
+
+from ddct_plant.errors import DdctError
+
+LAST_DOMAIN = 232
+"""Beyond it DDS has no ports, and its middleware ends the process without a word."""
+
+
+def require_domain() -> int | None:
+    """Return ROS_DOMAIN_ID, None when it is not set; raise DdctError unless it is a domain."""
+    text = os.environ.get('ROS_DOMAIN_ID')
+    if not text:
+        return None
+    if not text.isdecimal() or int(text) > LAST_DOMAIN:
+        raise DdctError(f'ROS_DOMAIN_ID is {text!r}: give a whole number from 0 to {LAST_DOMAIN}')
+    return int(text)

@@ -1,0 +1,39 @@
+"""A ROS_DOMAIN_ID that is none ends nodes and programs with one line, before anything is left."""
+
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import Programs
+
+from ddct_bringup import bringup, compare
+
+
+@pytest.mark.parametrize('domain', ['abc', '-1', '233'])
+def test_a_node_names_it(programs: Programs, monkeypatch: pytest.MonkeyPatch, domain: str) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', domain)
+    program = programs.start_node('ddct_plant.engine_node', {})
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID', repr(domain), '0 to 232')
+
+
+@pytest.mark.parametrize('program', [bringup, compare])
+def test_a_run_names_it_once_and_makes_no_folder(
+    program: ModuleType,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', '999')
+    name, out = program.PROGRAM, tmp_path / 'out'
+    assert program.main(['--out', str(out)]) == 1
+    assert_one_line(capfd.readouterr().err, name, 'ROS_DOMAIN_ID', "'999'")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_without_a_graph_does_not_look_at_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', '999')
+    assert bringup.main(['--headless', '--out', str(tmp_path / 'out')]) == 0
