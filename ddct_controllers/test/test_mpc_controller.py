@@ -9,10 +9,10 @@ import pytest
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_controllers.mpc.settings import InputTerms
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc, thesis_settings
-from ddct_controllers.mpc.transmission_model import SLIP_SPEED, transmission_model
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_controllers.mpc.transmission_model import transmission_model
+from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 from ddct_plant.units import rad_s_from_rpm
@@ -112,6 +112,46 @@ def test_rate_limit_counts_what_the_open_loop_moves():
     assert 230.0 + answer.clutch_torque >= 250.0 - 3.0 - 1e-6
 
 
+@pytest.mark.parametrize('backend', ['daqp', 'osqp'])
+def test_the_rate_goes_before_levels_that_it_cannot_keep(backend):
+    """From 250 N m a limit of 230 N m is reached at 300 N m/s, after seven periods."""
+    limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
+    mpc = controller(replace(MPC3, inputs=(limits,), backend=backend))
+    given = answers(mpc, reference=[0.0] * 23)
+    requests = [250.0 + each.clutch_torque for each in given]
+    expected = [247.0, 244.0, 241.0, 238.0, 235.0, 232.0, 230.0, 230.0]
+    assert requests == pytest.approx(expected, abs=1e-4)
+    assert {dict(each.status)['qp_status'] for each in given} == {'solved'}
+
+
+def test_the_lowest_torque_gives_way_to_the_rate_too():
+    limits = InputTerms(0.39, lowest=260.0, rate_n_m_s=300.0)
+    mpc = controller(replace(MPC3, inputs=(limits,)))
+    given = answers(mpc, steps=5, reference=[400.0] * 23)
+    requests = [250.0 + each.clutch_torque for each in given]
+    assert requests == pytest.approx([253.0, 256.0, 259.0, 260.0, 260.0], abs=1e-6)
+    assert mpc.fallbacks == 0
+
+
+def test_limits_that_agree_are_the_programs_own():
+    mpc = controller(replace(MPC3, inputs=(InputTerms(0.39, highest=258.0, rate_n_m_s=300.0),)))
+    before, jump = np.array([258.0]), np.zeros(1)
+    assert mpc._bounds(before, jump) == (mpc.program.lower, mpc.program.upper)
+    assert mpc._bounds(before, jump)[1] is mpc.program.upper
+    assert mpc._bounds(before + 5.0, jump)[1][:4] == pytest.approx([260.0] + [258.0] * 3)
+
+
+@pytest.mark.parametrize('held', [True, False])
+def test_the_rate_counts_from_what_the_actuator_was_given(held):
+    """It is given nothing below 0, whatever the open loop asks."""
+    mpc = controller(replace(MPC3, inputs=(InputTerms(0.39, rate_n_m_s=300.0),)))
+    if held:
+        mpc.hold(measurement(59, open_loop=-80.0))
+    answer = mpc.update(measurement(60, open_loop=-80.0, reference=[0.0] * 23))
+    assert -80.0 + answer.clutch_torque == pytest.approx(3.0, abs=1e-6)
+    assert dict(answer.status)['qp_status'] == 'solved'
+
+
 def test_status_is_deterministic_and_says_what_the_solver_did():
     first, again = answers(controller()), answers(controller())
     assert first == again
@@ -136,6 +176,15 @@ def test_a_solver_that_gives_up_is_counted_and_the_last_plan_goes_on():
         answer = mpc.update(measurement(step, slip=57.0))
     assert dict(answer.status)['fallbacks'] == '8'
     assert 250.0 + answer.clutch_torque <= 252.0
+
+
+def test_a_plan_that_is_followed_keeps_the_rate_before_the_level():
+    limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
+    mpc = controller(replace(MPC3, inputs=(limits,)))
+    mpc._solver = _Silent()
+    requests = [250.0 + each.clutch_torque for each in answers(mpc)]
+    expected = [247.0, 244.0, 241.0, 238.0, 235.0, 232.0, 230.0, 230.0]
+    assert requests == pytest.approx(expected)
 
 
 class _Silent:
@@ -167,12 +216,6 @@ def test_a_reset_controller_is_a_new_one(backend):
     assert answers(used) == answers(fresh)
 
 
-def test_measurements_that_are_not_finite_are_refused():
-    mpc = controller()
-    with pytest.raises(DdctError, match='at step 60: mend what measures them'):
-        mpc.update(measurement(60, slip=math.nan, reference=[0.0] * 23))
-
-
 @pytest.mark.parametrize(
     ('options', 'complaint'),
     [
@@ -184,7 +227,16 @@ def test_measurements_that_are_not_finite_are_refused():
         ({'backend': 'magic'}, r'unknown controllers\.mpc3\.backend'),
         ({'highest_torque_n_m': 0.0}, r'controllers\.mpc3\.highest_torque_n_m'),
         ({'torque_rate_n_m_s': -1.0}, r'controllers\.mpc3\.torque_rate_n_m_s'),
+        ({'torque_rate_n_m_s': -5.0}, 'is -5 N m/s: it must be above 0'),
+        ({'torque_rate_n_m_s': 1e300}, r'is 1e\+300 N m/s: it must be at most 1e\+06'),
         ({'iteration_limit': math.nan}, r'controllers\.mpc3\.iteration_limit'),
+        ({'iteration_limit': 1e300}, 'iteration_limit .* must be at most 1e'),
+        ({'iteration_limit': 2**40}, 'iteration_limit .* must be at most 1e'),
+        ({'prediction_steps': 1e6}, 'prediction_steps is .* must be at most 1000'),
+        ({'prediction_steps': 1, 'control_steps': 1}, 'feels a move of the clutch torque request'),
+        ({'lowest_slip_rpm': 'none'}, r'controllers\.mpc3\.lowest_slip_rpm'),
+        ({'lowest_slip_rpm': 1e7}, r'lowest_slip_rpm is 1e\+07: it must be at most'),
+        ({5: 7, 'horizon': 3}, r'controllers\.mpc3\.5 is not a key'),
     ],
 )
 def test_bad_options_are_named(options, complaint):
@@ -200,13 +252,19 @@ def test_options_reach_the_program():
     assert max(np.abs(np.diff(requests))) == pytest.approx(1.0)
 
 
-def test_two_inputs_ask_the_engine_too():
-    settings = MpcSettings(
-        7,
-        1,
-        (OutputTerms(SLIP_SPEED, 1.0),),
-        (InputTerms(move_weight=0.1), InputTerms(move_weight=0.1, target_weight=0.1)),
+def test_the_lowest_slip_is_soft_and_holds_where_it_can():
+    """Slip of 60 rad/s: rows at all 22 periods, broken by the first and so far as must be."""
+    free, limited = (
+        make_thesis_mpc('mpc3', ControllerContext(RUN, options))
+        for options in ({}, {'lowest_slip_rpm': 600.0})
     )
-    mpc = controller(settings)
-    assert mpc.commands_engine
-    assert all(each.engine_torque is not None for each in answers(mpc, preview=7))
+    assert limited.program.structure.soft_rows.tolist() == list(range(4, 26))
+    assert limited.program.lower[4:] == pytest.approx([rad_s_from_rpm(600.0)] * 22)
+    given = [answers(mpc, steps=1, reference=[0.0] * 23)[0] for mpc in (free, limited)]
+    assert given[1].clutch_torque < given[0].clutch_torque - 1.0
+    assert dict(given[1].status)['qp_status'] == 'solved'
+
+
+def test_a_second_input_is_refused():
+    with pytest.raises(ParameterError, match='2 inputs given: PredictiveController decides 1'):
+        controller(replace(MPC3, inputs=(InputTerms(0.1), InputTerms(0.1))))

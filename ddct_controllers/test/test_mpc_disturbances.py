@@ -125,6 +125,7 @@ def test_options_change_what_they_say():
         ({'clutch_drift_n_m': 0.0}, 'clutch_drift_n_m is 0: it must be above 0'),
         ({'load_drift_n_m': float('nan')}, 'load_drift_n_m is nan'),
         ({'clutch_drift_n_m': 'fast'}, 'give a number'),
+        ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m is .* at most'),
         ({'drift': 1.0}, 'drift is not a key of'),
         ({'prediction_steps': 2}, 'control_steps is 4, longer than'),
     ],
@@ -137,6 +138,11 @@ def test_bad_options_are_named(make, options, complaint):
 def test_a_negative_torsion_weight_is_refused():
     with pytest.raises(ParameterError, match='mpc_torsion.torsion_weight is -1'):
         make_torsion_mpc(ControllerContext(SETTINGS, {'torsion_weight': -1.0}))
+
+
+def test_a_torsion_weight_whose_square_is_infinite_is_refused():
+    with pytest.raises(ParameterError, match='mpc_torsion.torsion_weight is .* at most'):
+        make_torsion_mpc(ControllerContext(SETTINGS, {'torsion_weight': 1e200}))
 
 
 def test_a_torsion_weight_is_no_key_of_the_other_controller():

@@ -166,8 +166,40 @@ def test_terms_out_of_range_are_named(terms, complaint):
         terms()
 
 
+def test_level_rows_are_those_of_each_input():
+    """The first input has rows for levels and rates, the second for its rate alone."""
+    engine = replace(TWO.inputs[1], lowest=-math.inf, rate_n_m_s=500.0)
+    clutch = replace(TWO.inputs[0], highest=350.0, rate_n_m_s=2000.0)
+    both = condense(MODEL, replace(TWO, inputs=(clutch, replace(engine, highest=300.0))))
+    assert [rows.tolist() for rows in both.level_rows] == [[0, 2], [1, 3]]
+    assert both.upper[both.level_rows[1]].tolist() == [300.0, 300.0]
+    one = condense(MODEL, replace(TWO, inputs=(clutch, engine)))
+    assert [rows.tolist() for rows in one.level_rows] == [[0, 1], []]
+
+
+def test_a_horizon_that_no_move_reaches_is_refused():
+    """The request acts from the second period on, C_m within the first."""
+    for inputs in (ONE.inputs, TWO.inputs):
+        short = replace(TWO, prediction_steps=1, control_steps=1, inputs=inputs)
+        with pytest.raises(ParameterError, match='steps is 1: .* of the clutch torque'):
+            condense(MODEL, short)
+        condense(MODEL, replace(short, prediction_steps=2))
+
+
+@pytest.mark.parametrize('inputs', [(InputTerms(),), (InputTerms(),) * 2])
+def test_moves_that_nothing_weighs_are_refused(inputs):
+    """The request's last move acts beyond the horizon."""
+    loose = MpcSettings(3, 3, (OutputTerms(SLIP_SPEED, 1.0),), inputs)
+    with pytest.raises(ParameterError, match='control_steps is 3, too long .* at most 2'):
+        condense(MODEL, loose)
+    weighed = tuple(replace(terms, move_weight=0.1) for terms in inputs)
+    for fitting in (replace(loose, inputs=weighed), replace(loose, inputs=weighed[:1])):
+        assert (np.diag(condense(MODEL, fitting).structure.hessian) > 0.0).all()
+    condense(MODEL, replace(loose, inputs=inputs[:1], control_steps=2))
+
+
 def test_weights_that_leave_the_program_singular_are_refused():
-    """The last moves of an input act beyond the horizon: without a weight nothing fixes them."""
-    loose = MpcSettings(3, 3, (OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(),))
-    with pytest.raises(ParameterError, match='hessian'):
+    """Slip alone does not tell C_m from the clutch."""
+    loose = MpcSettings(60, 20, (OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(), InputTerms()))
+    with pytest.raises(ParameterError, match='hessian is singular'):
         condense(MODEL, loose)

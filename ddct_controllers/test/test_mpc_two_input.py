@@ -22,7 +22,7 @@ from ddct_controllers.mpc.transmission_model import (
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
 from ddct_plant.engine import Engine, EngineAuthority, EngineResponse
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.errors import ParameterError
 from ddct_plant.initial import initial_state
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
@@ -250,11 +250,28 @@ def test_a_reset_controller_is_a_new_one(name):
     assert answers(mpc) == first == answers(make(context))
 
 
-@pytest.mark.parametrize('name', FACTORIES)
-def test_measurements_that_are_not_finite_are_refused(name):
-    mpc = FACTORIES[name](ControllerContext(RUN, {}))
-    with pytest.raises(DdctError, match='at step 0: mend what measures them'):
-        mpc.update(replace(Vehicle().measure(), shaft_speed=math.nan))
+def test_one_input_is_refused():
+    with pytest.raises(ParameterError, match='1 inputs given: TwoInputController decides 2'):
+        controller(settings=replace(MPC4, inputs=MPC4.inputs[:1]))
+
+
+@pytest.mark.parametrize('iteration_limit', [None, 1])
+def test_the_rate_of_the_clutch_goes_before_its_level(iteration_limit):
+    """With the engine limited too, and whether or not the solver gets there."""
+    clutch = replace(MPC4.inputs[0], highest=200.0, rate_n_m_s=400.0)
+    authority = EngineAuthority(deviation_n_m=12.0, slew_n_m_s=300.0)
+    settings = replace(
+        MPC4, inputs=(clutch, MPC4.inputs[1]), control_steps=3, iteration_limit=iteration_limit
+    )
+    mpc, vehicle = controller(authority, settings), Vehicle(authority)
+    vehicle.drive_to_control_start(mpc)
+    request = vehicle.measure().open_loop_torque
+    while request > 204.0:
+        before, open_loop = request, vehicle.measure().open_loop_torque
+        request = open_loop + vehicle.answer(mpc).clutch_torque
+        assert request == pytest.approx(before - 4.0, abs=1e-5)
+    assert open_loop + vehicle.answer(mpc).clutch_torque <= 200.0 + 1e-6
+    assert (mpc.fallbacks > 0) == (iteration_limit == 1)
 
 
 def test_without_a_solution_the_plan_is_followed_within_the_limits_and_counted():
@@ -272,6 +289,8 @@ def test_without_a_solution_the_plan_is_followed_within_the_limits_and_counted()
     [
         ({'demand': 1.0}, r'controllers\.{}\.demand is not a key of {}: it has slip_acceleration'),
         ({'demand_weight': -1.0}, r'controllers\.{}\.demand_weight is -1: it must be at least 0'),
+        ({'demand_weight': 1e200}, r'demand_weight is 1e\+200: it must be at most 1e\+06'),
+        ({'prediction_steps': 1}, 'no weighted output feels a move of the clutch torque request'),
         ({'demand_weight': 'some'}, r'controllers\.{}\.demand_weight'),
         ({'slip_acceleration_weight': math.nan}, r'controllers\.{}\.slip_acceleration_weight'),
         ({'preview': 1}, r'controllers\.{}\.preview'),

@@ -1,21 +1,19 @@
-"""Estimate of the wear gain and the predictive controller that uses it."""
-
-from dataclasses import replace
+"""Estimate of the wear gain of the clutch."""
 
 import numpy as np
 import pytest
 
-from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.horizon import condense
+from ddct_controllers.mpc.disturbances import offset_free_model
 from ddct_controllers.mpc.observer import NoiseLevels
 from ddct_controllers.mpc.transmission_model import (
-    LOAD_TORQUE,
+    MEASURED,
+    STATES,
     transmission_model,
-    with_disturbances,
 )
-from ddct_controllers.mpc.wear_mpc import make_wear_mpc
-from ddct_controllers.mpc.wear_observer import HIGHEST_GAIN, WearNoise, WearObserver
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN
+from ddct_controllers.mpc.wear_noise import WearNoise
+from ddct_controllers.mpc.wear_observer import LEAST_TORQUE_N_M, WearObserver
+from ddct_plant.actuator import Actuator
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 
@@ -25,26 +23,36 @@ NOISE = NoiseLevels()
 LOAD_N_M = 60.0
 
 
-def make_observer():
-    model = transmission_model(DRIVELINE)
+def make_observer(**noise):
     return WearObserver(
-        model, NOISE, WearNoise(), DRIVELINE.halfshaft_stiffness, initial_request=0.0
+        offset_free_model(DRIVELINE),
+        NOISE,
+        WearNoise(**noise),
+        DRIVELINE.halfshaft_stiffness,
+        initial_request=0.0,
     )
 
 
-def follow(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
-    """Let the observer follow a plant; return its estimates of the gain, one per request."""
-    plant = transmission_model(DRIVELINE, wear_gain)
+def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
+    """Let the observer follow a plant; return its gain and errors of C_f and C_load, (n, 3)."""
+    plant = transmission_model(DRIVELINE)
+    effect = plant.a[:4, 4:].copy()
     twist = LOAD_N_M / DRIVELINE.halfshaft_stiffness
     state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
-    gains = []
-    for request in requests:
+    found = []
+    for request, true_gain in np.broadcast(requests, wear_gain):
         error = np.zeros(3) if noise is None else noise.normal(0.0, NOISE.speed_rad_s, 3)
-        observer.correct(tuple(state[:3] + error), LOAD_N_M)
-        gains.append(observer.wear_gain)
+        corrected = observer.correct(tuple(state[:3] + error), LOAD_N_M)
+        found.append((observer.wear_gain, *(observer.wear_gain * corrected[STATES:])))
         observer.predict((request, 120.0, LOAD_N_M))
+        plant.a[:4, 4:] = true_gain * effect
         state = plant.a @ state + plant.b @ (request, 120.0, LOAD_N_M + load_error_n_m)
-    return np.array(gains)
+    return np.array(found)
+
+
+def follow(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
+    """Return the gain alone, one per request."""
+    return estimates(observer, wear_gain, requests, load_error_n_m, noise)[:, 0]
 
 
 RAMP = np.minimum(np.arange(100) * 5.0, 150.0)
@@ -79,8 +87,70 @@ def test_its_errors_are_within_what_it_says_of_them():
     assert np.abs(deviations).max() < 3.0
 
 
-def test_the_estimate_stays_within_its_bounds():
-    assert follow(make_observer(), 2.0, RAMP).max() == HIGHEST_GAIN
+@pytest.mark.parametrize(('wear_gain', 'bound'), [(0.4, LOWEST_GAIN), (2.0, HIGHEST_GAIN)])
+def test_at_a_bound_the_rest_is_an_error_of_the_clutch_torque(wear_gain, bound):
+    observer = make_observer()
+    found = estimates(observer, wear_gain, RAMP, load_error_n_m=100.0)
+    gains, clutch_errors, load_errors = found.T
+    assert np.all((gains >= LOWEST_GAIN) & (gains <= HIGHEST_GAIN))
+    assert np.any(gains == bound)
+    assert gains[-1] * RAMP[-1] + clutch_errors[-1] == pytest.approx(
+        wear_gain * RAMP[-1], rel=1e-3
+    )
+    assert load_errors[-1] == pytest.approx(100.0, rel=1e-2)
+
+
+def test_a_bound_is_reported():
+    observer = make_observer()
+    assert not observer.wear_gain_at_bound
+    at_bound = []
+    for request in RAMP:
+        observer.correct((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), LOAD_N_M)
+        observer.predict((request, 0.0, LOAD_N_M))
+        at_bound.append(observer.wear_gain_at_bound)
+        assert at_bound[-1] == (observer.wear_gain in (LOWEST_GAIN, HIGHEST_GAIN))
+    assert any(at_bound)
+
+
+def test_within_the_bounds_no_error_of_the_clutch_torque_is_estimated():
+    assert np.all(estimates(make_observer(), 0.7, RAMP)[:, 1] == 0.0)
+
+
+def test_after_a_bound_the_true_gain_is_found_once_the_torque_changes():
+    swing = 100.0 + 50.0 * np.cos(0.1 * np.arange(200))
+    true_gains = np.repeat([2.0, 1.2], [100, 200])
+    gains = follow(make_observer(), true_gains, np.concatenate([RAMP, swing]))
+    assert np.any(gains[:100] == HIGHEST_GAIN)
+    assert gains[-1] == pytest.approx(1.2, abs=0.02)
+
+
+@pytest.mark.parametrize(('ends_at_n_m', 'rank'), [(150.0, 6), (300.0, 7)])
+def test_gain_and_error_of_the_clutch_torque_are_told_apart_while_it_changes(ends_at_n_m, rank):
+    """Observability of (driveline, K_usura, both errors) from the speeds along a torque."""
+    model = offset_free_model(DRIVELINE)
+    transition = np.eye(7)
+    transition[:4, :4], transition[:4, 5:] = model.a[:4, :4], model.a[:4, STATES:]
+    seen, rows = np.eye(7), []
+    for torque_n_m in np.linspace(150.0, ends_at_n_m, 30):
+        rows.append(seen[:MEASURED])
+        transition[:4, 4] = torque_n_m * model.clutch[:4]
+        seen = transition @ seen
+    matrix = np.vstack(rows)
+    assert np.linalg.matrix_rank(matrix / np.linalg.norm(matrix, axis=0), tol=1e-6) == rank
+
+
+def test_the_gain_does_not_drift_below_the_least_torque_of_the_actuator():
+    drifting, constant = make_observer(), make_observer(gain_drift=0.0)
+    actuator = Actuator()
+    for _ in range(20):
+        transmitted = np.mean(actuator.update(100.0))
+        for observer in (drifting, constant):
+            observer.correct((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), LOAD_N_M)
+        before = drifting.wear_gain_deviation, constant.wear_gain_deviation
+        for observer in (drifting, constant):
+            observer.predict((100.0, 120.0, LOAD_N_M))
+        assert constant.wear_gain_deviation == before[1]
+        assert (drifting.wear_gain_deviation > before[0]) == (transmitted > LEAST_TORQUE_N_M)
 
 
 def test_a_reset_observer_is_a_new_one():
@@ -93,79 +163,8 @@ def test_a_reset_observer_is_a_new_one():
     )
 
 
-def make_controller(options=None, settings=SETTINGS):
-    return make_wear_mpc(ControllerContext(settings, options or {}))
-
-
-@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
-def test_dividing_by_the_gain_gives_the_moves_of_the_worn_clutch_s_own_program(wear_gain):
-    controller = make_controller()
-    settings = controller.settings
-    worn = transmission_model(DRIVELINE, wear_gain)
-    worn = with_disturbances(worn, worn.b[:, LOAD_TORQUE : LOAD_TORQUE + 1])
-    weight = settings.inputs[0].move_weight * wear_gain
-    own = condense(
-        worn, replace(settings, inputs=(replace(settings.inputs[0], move_weight=weight),))
-    )
-    random = np.random.default_rng(1)
-    driveline, actuator, load_error = random.normal(size=4), random.normal(size=5), 20.0
-    before, known, target = 150.0, np.array([300.0, 70.0]), 0.0
-    references = random.normal(size=settings.prediction_steps)
-    given = np.concatenate(
-        [driveline, actuator, [load_error, before], known, [target], references]
-    )
-    scale = np.ones(len(given))
-    scale[[*range(4), 9, *range(11, 13), *range(14, len(given))]] = wear_gain
-    new = controller.program
-    expected = np.linalg.solve(own.structure.hessian, own.gradient @ given)
-    moves = np.linalg.solve(new.structure.hessian, new.gradient @ (given / scale))
-    np.testing.assert_allclose(moves, expected, rtol=1e-9)
-
-
-def measurement(step, speed=170.0):
-    return Measurement(
-        step=step,
-        engine_speed=speed,
-        shaft_speed=150.0,
-        wheel_speed=150.0 / DRIVELINE.total_ratio,
-        vehicle_speed=5.0,
-        engine_torque=200.0,
-        slip_reference=[20.0 - 0.5 * i for i in range(23)],
-        slip_reference_rate=[-50.0] * 23,
-        load_torque=60.0,
-        open_loop_torque=170.0,
-    )
-
-
-def test_a_reset_controller_is_a_new_one():
-    used, new = make_controller(), make_controller()
-    used.hold(measurement(0))
-    for step in range(1, 5):
-        used.update(measurement(step, 170.0 + step))
-    used.reset()
-    for step in range(4):
-        assert used.update(measurement(step)) == new.update(measurement(step))
-
-
-def test_status_shows_the_estimate():
-    status = dict(make_controller().update(measurement(0)).status)
-    assert float(status['wear_gain_estimate']) == 1.0
-    assert float(status['wear_gain_deviation']) == pytest.approx(WearNoise().initial_gain)
-
-
-def test_nan_is_refused():
-    with pytest.raises(DdctError, match='at step 3'):
-        make_controller().update(measurement(3, float('nan')))
-
-
-@pytest.mark.parametrize(
-    ('options', 'complaint'),
-    [
-        ({'gain_drift': -0.1}, 'controllers.mpc_wear.gain_drift is -0.1'),
-        ({'load_drift_n_m': None}, 'controllers.mpc_wear.load_drift_n_m is None'),
-        ({'torsion_weight': 1.0}, 'torsion_weight is not a key of mpc_wear'),
-    ],
-)
-def test_bad_options_are_named(options, complaint):
-    with pytest.raises(ParameterError, match=complaint):
-        make_controller(options)
+def test_gain_drift_sets_how_fast_the_estimate_may_move():
+    slow, fast = make_observer(gain_drift=0.0), make_observer(gain_drift=0.1)
+    for observer in (slow, fast):
+        follow(observer, 0.7, RAMP)
+    assert fast.wear_gain_deviation > 1.5 * slow.wear_gain_deviation

@@ -23,7 +23,10 @@ def require_number(
     """
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ParameterError(f'{name} is {value!r}: give a number{_in(unit)}')
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
     if not math.isfinite(number):
         raise ParameterError(f'{name} is {number}: give a finite number{_in(unit)}')
     if above is not None and number <= above:

@@ -117,29 +117,51 @@ def rebuilt(controller: PredictiveController, settings: MpcSettings) -> Predicti
     return PredictiveController(observer.model, observer, settings)
 
 
-def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path):
+@pytest.mark.parametrize('name', ['mpc2', 'mpc3', 'mpc4'])
+def test_levels_give_way_to_the_rate_as_in_the_original(tmp_path, name):
     """The open loop starts above the highest torque, farther than the rate leads back at once."""
-    section = 'controllers.mpc3'
-    settings = run_settings(f'{section}.highest_torque_n_m=30', f'{section}.torque_rate_n_m_s=100')
-    original = make_controller('mpc3', settings)
-    in_c = exported(original, 'mpc3', settings, tmp_path / 'c')
-    run = compare_loops(original, in_c, settings)
-    assert 'infeasible' in pairs(run, 'qp_status')
-    assert int(pairs(run, 'fallbacks')[-1]) == in_c.fallbacks > 0
+    section = f'controllers.{name}'
+    settings = run_settings(
+        f'{section}.highest_torque_n_m=240',
+        f'{section}.torque_rate_n_m_s=100',
+        f'{section}.control_steps=3',
+    )
+    original = make_controller(name, settings)
+    run = compare_loops(original, exported(original, name, settings, tmp_path / 'c'), settings)
+    request = run.torque_request[CONTROL_STARTS - 1 :]
+    assert request[0] > 270.0
+    assert request[-1] <= 240.0 + 1e-6
+    assert np.abs(np.diff(request)).max() <= 1.0 + 1e-6
+    assert set(pairs(run, 'qp_status')) == {None, 'solved'}
+
+
+@pytest.mark.parametrize('slip', [0, 100])
+@pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
+def test_the_lowest_slip_is_exported(tmp_path, name, slip):
+    settings = run_settings(f'controllers.{name}.lowest_slip_rpm={slip}')
+    original = make_controller(name, settings)
+    run = compare_loops(original, exported(original, name, settings, tmp_path / 'c'), settings)
+    other = run_headless(run_settings(), name)
+    assert np.abs(run.torque_request - other.torque_request).max() > 0.5
 
 
 def test_the_iteration_limit_is_the_static_bound(tmp_path):
-    """With a limit of one change the bound holds, and the plan keeps to the rate."""
+    """With a limit of one change the bound holds, and the plan keeps the rate before the level."""
     section = 'controllers.mpc3'
-    settings = run_settings(f'{section}.iteration_limit=1', f'{section}.torque_rate_n_m_s=100')
+    settings = run_settings(
+        f'{section}.iteration_limit=1',
+        f'{section}.torque_rate_n_m_s=100',
+        f'{section}.highest_torque_n_m=200',
+    )
     original = make_controller('mpc3', settings)
     in_c = exported(original, 'mpc3', settings, tmp_path / 'c')
     assert '#define DDCT_MPC_ITERATIONS 1\n' in (tmp_path / 'c' / 'ddct_mpc.h').read_text()
     run = run_headless(settings, in_c)
     assert 'iteration limit' in pairs(run, 'qp_status')
     assert set(pairs(run, 'qp_iterations')) <= {None, '0', '1'}
-    assert np.abs(np.diff(run.torque_request[CONTROL_STARTS:])).max() <= 1.0 + 1e-9
-    assert np.isfinite(run.torque_request).all()
+    request = run.torque_request[CONTROL_STARTS - 1 :]
+    assert np.abs(np.diff(request)).max() <= 1.0 + 1e-9
+    assert request[-1] <= 200.0 + 1e-9
 
 
 def test_a_reset_controller_repeats_a_new_one_to_the_bit(tmp_path):

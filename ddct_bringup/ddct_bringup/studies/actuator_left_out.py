@@ -14,13 +14,19 @@ from ddct_plant.run_settings import RunSettings
 from ddct_plant.timebase import SUBSTEPS
 
 
-def model_without_actuator(driveline: DrivelineParameters) -> TransmissionModel:
-    """Return the sampled driveline alone; the actuator's states drive nothing any more."""
+def model_without_actuator(
+    driveline: DrivelineParameters, wear_gain: float = 1.0
+) -> TransmissionModel:
+    """
+    Return the sampled driveline alone; the actuator's states drive nothing any more.
+
+    The clutch transmits `wear_gain` times the request.
+    """
     model, plant = transmission_model(driveline), driveline_matrices(driveline)
     a, b, c, d = model.a.copy(), model.b.copy(), model.c.copy(), model.d.copy()
     a[:4, 4:], c[:, 4:] = 0.0, 0.0
-    b[:, REQUEST] += model.clutch
-    d[SLIP_ACCELERATION, REQUEST] = plant.c[0] @ plant.b[:, 1]
+    b[:, REQUEST] += wear_gain * model.clutch
+    d[SLIP_ACCELERATION, REQUEST] = wear_gain * plant.c[0] @ plant.b[:, 1]
     return TransmissionModel(a, b, c, d, model.clutch)
 
 

@@ -2,107 +2,128 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless, run_loop
 from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_bringup.studies.actuator_left_out import LoopWithoutActuator, model_without_actuator
+from ddct_bringup.studies.static_controller import StaticControllerAlone
+from ddct_bringup.studies.torque_level import growth
 from ddct_bringup.studies.two_input_figures import HEADERS, cells
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
 from ddct_controllers.design.study import Study
-from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.build import make_observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
 from ddct_controllers.mpc.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
+from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.units import rad_s_from_rpm
 
 SETTINGS = RunSettings(THESIS_SCENARIO)
-MODEL = transmission_model(THESIS_SCENARIO.driveline)
+WEAR_GAINS = (0.7, 1.3)
+"""At which growth is shown, the ends of the thesis's Table 5.2."""
+GROWTH_HEADERS = tuple(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS)
 STIFFER_PULL = 0.05
 """Of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
-
-
-def mpc4_readings() -> Study:
-    """Return the figures of MPC4 under each reading; the first is what the registry has."""
-    rows = [(reading, *cells(SETTINGS, run())) for reading, run in _READINGS.items()]
-    printed = thesis_row('mpc4')
-    assert printed is not None
-    time, torsion, acceleration = (format(value, 'g') for value in printed.figures().values())
-    thesis = ('MPC4 as the thesis prints it', time, '-', torsion, acceleration, '-', '-')
-    return Study('MPC4 in the thesis scenario, by reading', ('reading', *HEADERS), [*rows, thesis])
+Model = Callable[[DrivelineParameters, float], TransmissionModel]
+"""From the driveline and the wear gain."""
 
 
 class _HeldReference(TwoInputController):
     """Holds both references over the horizon, although the one is the other's derivative."""
 
-    def _references(self, measurement: Measurement) -> np.ndarray:
-        return PredictiveController._references(self, measurement)
+    _references = PredictiveController._references
 
 
-class _StaticControllerAlone(Controller):
-    """Leaves the clutch to C_fOL and the engine to the driver."""
+@dataclass(frozen=True)
+class Reading:
+    """What one reading makes of MPC4, and of the plant."""
 
-    def reset(self) -> None:
-        """There is nothing to forget."""
+    settings: MpcSettings
+    model: Model = transmission_model
+    """In the controller."""
+    plant: Model = transmission_model
+    kind: type[TwoInputController] = TwoInputController
 
-    def update(self, measurement: Measurement) -> Command:
-        """Return no torque."""
-        return Command(0.0)
+    def controller(self, run: RunSettings) -> TwoInputController:
+        """Return the controller of a run."""
+        model = self.model(run.scenario.driveline, 1.0)
+        observer = make_observer(run, model)
+        return self.kind(model, observer, self.settings, run.scenario.engine_authority)
 
+    def run(self) -> Trajectory:
+        """Return its run in the thesis scenario."""
+        if self.plant is transmission_model:
+            return run_headless(SETTINGS, self.controller(SETTINGS))
+        # From the same slip, which without an actuator does not come about by itself.
+        slip = thesis_run('pi', 'detailed', 1.0).slip_speed[THESIS_SCENARIO.control_start_step]
+        speeds = THESIS_SCENARIO.initial
+        initial = replace(speeds, engine_speed_rad_s=speeds.shaft_speed_rad_s + float(slip))
+        run = RunSettings(replace(THESIS_SCENARIO, initial=initial))
+        return run_loop(LoopWithoutActuator(run, self.controller(run)), run.scenario.steps)
 
-def _run(
-    settings: MpcSettings,
-    model: TransmissionModel = MODEL,
-    kind: type[TwoInputController] = TwoInputController,
-) -> Trajectory:
-    return run_headless(SETTINGS, _controller(SETTINGS, settings, model, kind))
-
-
-def _controller(
-    run: RunSettings,
-    settings: MpcSettings,
-    model: TransmissionModel,
-    kind: type[TwoInputController],
-) -> TwoInputController:
-    return kind(model, make_observer(run, model), settings, run.scenario.engine_authority)
-
-
-def _without_actuator(settings: MpcSettings) -> Trajectory:
-    """Run from the same slip, which without an actuator does not come about by itself."""
-    slip = thesis_run('pi', 'detailed', 1.0).slip_speed[THESIS_SCENARIO.control_start_step]
-    speeds = THESIS_SCENARIO.initial
-    initial = replace(speeds, engine_speed_rad_s=speeds.shaft_speed_rad_s + float(slip))
-    run = RunSettings(replace(THESIS_SCENARIO, initial=initial))
-    model = model_without_actuator(run.scenario.driveline)
-    controller = _controller(run, settings, model, TwoInputController)
-    return run_loop(LoopWithoutActuator(run, controller), run.scenario.steps)
+    def growth(self, wear_gain: float) -> float:
+        """Return the growth per period of its loop with a worn clutch, see `torque_level`."""
+        mpc4 = self.controller(SETTINGS)
+        observer = make_observer(SETTINGS, self.model(THESIS_SCENARIO.driveline, 1.0))
+        return growth(mpc4.program, observer, self.plant(THESIS_SCENARIO.driveline, wear_gain))
 
 
-_DEFAULT = mpc4_settings()
-_SQUARED = mpc4_settings(0.05, STIFFER_PULL)
-_MIXED = mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL)
-_READINGS: Mapping[str, Callable[[], Trajectory]] = {
-    "x'Qx, reference along its tangent": lambda: _run(_DEFAULT),
-    "x'Qx, coming reference": lambda: _run(replace(_DEFAULT, preview=True)),
-    "x'Qx, reference held": lambda: _run(_DEFAULT, kind=_HeldReference),
-    'weights squared': lambda: _run(_SQUARED),
-    'weights squared, coming reference': lambda: _run(replace(_SQUARED, preview=True)),
-    'weights squared, reference held': lambda: _run(_SQUARED, kind=_HeldReference),
-    'w_d in rpm, dw_d/dt in rad/s^2': lambda: _run(_MIXED),
-    'no actuator in its model': lambda: _run(
-        _DEFAULT, model_without_actuator(THESIS_SCENARIO.driveline)
-    ),
-    'no actuator at all': lambda: _without_actuator(_DEFAULT),
-    'no actuator at all, coming reference': lambda: _without_actuator(
-        replace(_DEFAULT, preview=True)
-    ),
-    'no actuator at all, weights squared': lambda: _without_actuator(_SQUARED),
-    'C_fOL alone, C_m as demanded': lambda: run_headless(SETTINGS, _StaticControllerAlone()),
+_DEFAULT = Reading(mpc4_settings())
+_SQUARED = Reading(mpc4_settings(0.05, STIFFER_PULL))
+_MIXED = Reading(mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL))
+
+
+def _previewed(reading: Reading) -> Reading:
+    return replace(reading, settings=replace(reading.settings, preview=True))
+
+
+def _without_actuator(reading: Reading) -> Reading:
+    return replace(reading, model=model_without_actuator, plant=model_without_actuator)
+
+
+READINGS: Mapping[str, Reading] = {
+    "x'Qx, reference along its tangent": _DEFAULT,
+    "x'Qx, coming reference": _previewed(_DEFAULT),
+    "x'Qx, reference held": replace(_DEFAULT, kind=_HeldReference),
+    'weights squared': _SQUARED,
+    'weights squared, coming reference': _previewed(_SQUARED),
+    'weights squared, reference held': replace(_SQUARED, kind=_HeldReference),
+    'w_d in rpm, dw_d/dt in rad/s^2': _MIXED,
+    'no actuator in its model': replace(_DEFAULT, model=model_without_actuator),
+    'no actuator at all': _without_actuator(_DEFAULT),
+    'no actuator at all, coming reference': _previewed(_without_actuator(_DEFAULT)),
+    'no actuator at all, weights squared': _without_actuator(_SQUARED),
 }
+"""The first is what the registry has."""
+
+
+def mpc4_readings() -> Study:
+    """Return the figures of MPC4 under each reading."""
+    rows = [
+        (
+            name,
+            *cells(SETTINGS, reading.run()),
+            *(f'{reading.growth(gain):.3f}' for gain in WEAR_GAINS),
+        )
+        for name, reading in READINGS.items()
+    ]
+    alone = cells(SETTINGS, run_headless(SETTINGS, StaticControllerAlone()))
+    printed = thesis_row('mpc4')
+    assert printed is not None
+    time, torsion, acceleration = (format(value, 'g') for value in printed.figures().values())
+    none = ('-',) * len(WEAR_GAINS)
+    return Study(
+        'MPC4 in the thesis scenario, by reading',
+        ('reading', *HEADERS, *GROWTH_HEADERS),
+        [
+            *rows,
+            ('C_fOL alone, C_m as demanded', *alone, *none),
+            ('MPC4 as the thesis prints it', time, '-', torsion, acceleration, '-', '-', *none),
+        ],
+        ('Growth is that of the fastest mode of plant, filter and feedback per period of 10 ms.',),
+    )

@@ -17,6 +17,7 @@ from ddct_controllers.mpc.transmission_model import (
     MEASURED,
     REQUEST,
     STATES,
+    TransmissionModel,
     transmission_model,
 )
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
@@ -34,9 +35,11 @@ COASTING_S = 170
 
 def torque_level() -> Study:
     """Return figures and slowest modes of MPC4 for each weight of the pull."""
+    driveline = THESIS_SCENARIO.driveline
+    model = transmission_model(driveline)
+    worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]
     rows = []
     for pull in PULLS:
-        model = transmission_model(THESIS_SCENARIO.driveline)
         observer = make_observer(SETTINGS, model)
         settings = mpc4_settings(demand_weight=pull)
         mpc4 = TwoInputController(model, observer, settings, EngineAuthority())
@@ -48,7 +51,7 @@ def torque_level() -> Study:
                 *cells(SETTINGS, run),
                 f'{left:.1f}',
                 ', '.join(f'{time:.3g}' for time in slow_times_s(mpc4.program, observer)),
-                *(f'{growth(mpc4.program, observer, gain):.3f}' for gain in NEAR_WEAR),
+                *(f'{growth(mpc4.program, observer, plant):.3f}' for plant in worn),
             )
         )
     return Study(
@@ -65,19 +68,19 @@ def torque_level() -> Study:
     )
 
 
-def closed_loop(program: CondensedProgram, observer: Observer, wear_gain: float) -> np.ndarray:
+def closed_loop(
+    program: CondensedProgram, observer: Observer, plant: TransmissionModel
+) -> np.ndarray:
     """
-    Return the matrix (2 STATES, 2 STATES) of plant and filter within limits.
+    Return the matrix (2 STATES, 2 STATES) of `plant` and filter within limits.
 
-    Without weights on the moves the inputs follow from the estimate alone. The plant's clutch has
-    `wear_gain`, that of the controller's model is new.
+    Without weights on the moves the inputs follow from the estimate alone.
     """
-    model, plant = observer.model, transmission_model(THESIS_SCENARIO.driveline, wear_gain)
     feedback = -np.linalg.solve(program.structure.hessian, program.gradient[:, :STATES])
     inputs, measured = [REQUEST, ENGINE_TORQUE], np.eye(MEASURED, STATES)
     correction = observer.gain @ measured
     estimate = np.hstack([correction, np.eye(STATES) - correction])
-    moves = feedback @ estimate
+    moves, model = feedback @ estimate, observer.model
     return np.vstack(
         [
             np.hstack([plant.a, np.zeros_like(plant.a)]) + plant.b[:, inputs] @ moves,
@@ -86,14 +89,14 @@ def closed_loop(program: CondensedProgram, observer: Observer, wear_gain: float)
     )
 
 
-def growth(program: CondensedProgram, observer: Observer, wear_gain: float) -> float:
+def growth(program: CondensedProgram, observer: Observer, plant: TransmissionModel) -> float:
     """Return the factor by which the fastest growing mode grows per period; below 1 none does."""
-    return float(np.abs(np.linalg.eigvals(closed_loop(program, observer, wear_gain))).max())
+    return float(np.abs(np.linalg.eigvals(closed_loop(program, observer, plant))).max())
 
 
 def slow_times_s(program: CondensedProgram, observer: Observer) -> list[float]:
-    """Return the three longest time constants with a new clutch."""
-    sizes = np.abs(np.linalg.eigvals(closed_loop(program, observer, 1.0)))
+    """Return the three longest time constants with the plant that the observer expects."""
+    sizes = np.abs(np.linalg.eigvals(closed_loop(program, observer, observer.model)))
     times = [
         PERIOD_S / -math.log(size) if 0.0 < size < ALL_BUT_ONE else math.inf for size in sizes
     ]

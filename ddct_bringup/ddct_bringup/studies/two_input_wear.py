@@ -5,8 +5,10 @@ from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
 from ddct_controllers.design.study import Study
 from ddct_plant.run_settings import RunSettings
 
-CONTROLLERS = ('mpc4', 'mpc4_wear')
 WEAR_GAINS = (0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3)
+FAR_GAINS = (0.4, 0.5, *WEAR_GAINS, 1.5, 1.6, 2.0)
+"""Up to and beyond the bounds of the estimate, 0.5 and 1.5."""
+CASES = {'mpc4': WEAR_GAINS, 'mpc4_wear': FAR_GAINS}
 
 
 def two_input_wear() -> Study:
@@ -23,7 +25,7 @@ def two_input_wear() -> Study:
                     thesis_run(controller, 'detailed', gain),
                 ),
             )
-            for controller in CONTROLLERS
-            for gain in WEAR_GAINS
+            for controller, gains in CASES.items()
+            for gain in gains
         ],
     )

@@ -4,68 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_controllers.mpc.prediction import Prediction, predict
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import (
-    ENGINE_TORQUE,
-    LOAD_TORQUE,
-    REQUEST,
-    TransmissionModel,
-)
+from ddct_controllers.mpc.transmission_model import TransmissionModel
+from ddct_plant.errors import ParameterError
 from ddct_plant.timebase import PERIOD_S
 
-DECIDED = (REQUEST, ENGINE_TORQUE)
-"""Inputs that a controller may decide, in their order; it knows the others."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """
-    Outputs over the horizon, y_i, i = 1..p, stacked period by period, p outputs long.
-
-    y = from_moves @ z + from_known @ v, with z the moves of the inputs, m after m, and v the state
-    x_k, the inputs before the first move, and the known inputs, constant over the horizon.
-    """
-
-    from_moves: np.ndarray
-    """(p outputs, m inputs)."""
-    from_known: np.ndarray
-    """(p outputs, n + inputs + known inputs)."""
-
-
-def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
-    """Return how the weighted outputs follow from moves, state and inputs."""
-    inputs = len(settings.inputs)
-    decided = list(DECIDED[:inputs])
-    known = [column for column in (ENGINE_TORQUE, LOAD_TORQUE) if column not in decided]
-    rows = [terms.output for terms in settings.outputs]
-    c, d = model.c[rows], model.d[rows]
-    states = np.eye(len(model.a))
-    held = np.zeros((len(model.a), 3))
-    responses, free = [], []
-    for _ in range(settings.prediction_steps):
-        held = model.a @ held + model.b
-        states = model.a @ states
-        responses.append(c @ held + d)
-        free.append(np.hstack([c @ states, responses[-1][:, decided + known]]))
-    steps = np.array([response[:, decided] for response in responses])
-    feedthrough = d[:, decided]
-    return Prediction(_moves(steps, feedthrough, settings.control_steps), np.vstack(free))
-
-
-def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np.ndarray:
-    """
-    Return the response to a move at each of the first `control_steps` periods.
-
-    `steps` (p, outputs, inputs) is that to a unit step from period 0 on, at periods 1..p.
-    """
-    horizon, outputs, inputs = steps.shape
-    moves = np.zeros((horizon, outputs, control_steps, inputs))
-    for j in range(control_steps):
-        moves[j:, :, j, :] = steps[: horizon - j]
-        if j > 0:
-            moves[j - 1, :, j, :] = feedthrough
-    return moves.reshape(horizon * outputs, control_steps * inputs)
+INPUT_NAMES = ('the clutch torque request', 'C_m')
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,19 +29,52 @@ class CondensedProgram:
     lower: np.ndarray
     upper: np.ndarray
     shift: np.ndarray
+    level_rows: tuple[np.ndarray, ...]
+    """Per input the rows that limit it at the moves 1..m, (m,), or (0,) without such a limit."""
 
 
 def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
-    """Return the program; raise ParameterError when the weights leave it singular."""
+    """Return the program; raise ParameterError when horizons or weights leave moves open."""
     prediction = predict(model, settings)
     hessian, gradient = _cost(model, settings, prediction)
+    _require_felt(settings, prediction)
+    _require_weighed(settings, hessian)
     hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
     rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
     is_soft = np.arange(len(rows)) >= len(hard[0])
     weight = settings.soft_limit_weight if is_soft.any() else None
     return CondensedProgram(
-        QpStructure(hessian, rows, is_soft, weight), gradient, lower, upper, shift
+        QpStructure(hessian, rows, is_soft, weight),
+        gradient,
+        lower,
+        upper,
+        shift,
+        _level_rows(settings),
     )
+
+
+def _require_felt(settings: MpcSettings, prediction: Prediction) -> None:
+    """Raise ParameterError when outputs are weighted, but no move can change one of them."""
+    inputs, horizon = len(settings.inputs), settings.prediction_steps
+    weighted = np.tile([terms.weight > 0.0 for terms in settings.outputs], horizon)
+    felt = prediction.from_moves[weighted, :inputs].any(axis=0)
+    if weighted.any() and not felt.all():
+        name = INPUT_NAMES[int(np.argmin(felt))]
+        raise ParameterError(
+            f'MPC: prediction_steps is {horizon}: within them no weighted output feels a move of '
+            f'{name}: choose more'
+        )
+
+
+def _require_weighed(settings: MpcSettings, hessian: np.ndarray) -> None:
+    """Raise ParameterError when nothing weighs the last moves, as they act too late."""
+    weighed = np.diag(hessian) > 0.0
+    longest = int(np.argmin(weighed)) // len(settings.inputs)
+    if not weighed.all() and longest > 0:
+        raise ParameterError(
+            f'MPC: control_steps is {settings.control_steps}, too long for prediction_steps, '
+            f'{settings.prediction_steps}: nothing weighs the last moves: choose at most {longest}'
+        )
 
 
 def _cost(
@@ -136,6 +115,13 @@ def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
     upper = np.concatenate([np.tile(highest, moves), change])
     limited = np.isfinite(lower) | np.isfinite(upper)
     return rows[limited], lower[limited], upper[limited], np.vstack([before, jump])[limited]
+
+
+def _level_rows(settings: MpcSettings) -> tuple[np.ndarray, ...]:
+    """Return where among the rows of `_input_rows` each input's levels are."""
+    limited = [np.isfinite((terms.lowest, terms.highest)).any() for terms in settings.inputs]
+    owner = np.tile(np.flatnonzero(limited), settings.control_steps)
+    return tuple(np.flatnonzero(owner == each) for each in range(len(limited)))
 
 
 def _output_rows(settings: MpcSettings, prediction: Prediction) -> _Rows:

@@ -21,7 +21,7 @@ class InputTerms:
     highest: float = math.inf
     """Limit in N m; inf for none."""
     rate_n_m_s: float = math.inf
-    """Largest rate of change; inf for none."""
+    """Largest rate of change, which goes before both levels; inf for none."""
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
@@ -58,11 +58,6 @@ class OutputTerms:
                 f'{self.highest:g}'
             )
 
-    @property
-    def limited(self) -> bool:
-        """Whether it has a soft limit."""
-        return math.isfinite(self.lowest) or math.isfinite(self.highest)
-
 
 @dataclass(frozen=True)
 class MpcSettings:
@@ -84,7 +79,7 @@ class MpcSettings:
     preview: bool = True
     """Whether the coming reference is used; otherwise its present value is held."""
     soft_limit_weight: float = 1e4
-    """Of the squared violation of an output's limit, in its unit."""
+    """Of the squared violation of an output's limit, in its unit, at each period ahead."""
     backend: str = DEFAULT_BACKEND
     """Which QP solver."""
     iteration_limit: int | None = None

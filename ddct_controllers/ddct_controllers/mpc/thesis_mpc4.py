@@ -1,7 +1,7 @@
 """MPC4 of the thesis, with C_m as a second input (Section 4.3)."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -42,8 +42,14 @@ def mpc4_settings(
     )
 
 
-def mpc4_options(name: str, settings: MpcSettings, options: Mapping[str, Any]) -> MpcSettings:
-    """Return `settings` changed by the scenario's section of a controller with MPC4's cost."""
+def mpc4_options(
+    name: str, settings: MpcSettings, options: Mapping[str, Any], others: Sequence[str] = ()
+) -> MpcSettings:
+    """
+    Return `settings` changed by the scenario's section of a controller with MPC4's cost.
+
+    `others` are further keys of this controller; it reads them itself.
+    """
     slip, acceleration = settings.outputs
     clutch, engine = settings.inputs
     own = {
@@ -57,7 +63,7 @@ def mpc4_options(name: str, settings: MpcSettings, options: Mapping[str, Any]) -
     acceleration = replace(acceleration, weight=given['slip_acceleration_weight'])
     engine = replace(engine, target_weight=given['demand_weight'])
     settings = replace(settings, outputs=(slip, acceleration), inputs=(clutch, engine))
-    return with_options(name, settings, options, tuple(own))
+    return with_options(name, settings, options, (*own, *others))
 
 
 def make_mpc4(context: ControllerContext) -> TwoInputController:

@@ -1,17 +1,19 @@
 """A predictive controller of clutch and engine, within the engine's authority."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from ddct_controllers.interface import Command, Measurement, Status
 from ddct_controllers.mpc.engine_model import with_engine
+from ddct_controllers.mpc.limits import CLUTCH
 from ddct_controllers.mpc.observer import StateEstimator
 from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.references import references_along_tangent
 from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import SLIP_SPEED, TransmissionModel
+from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_plant.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
-from ddct_plant.timebase import PERIOD_S
 
 ENGINE = 1
 """Place of the engine among the inputs."""
@@ -26,6 +28,8 @@ class TwoInputController(PredictiveController):
     as constant over the horizon. Without preview the slip reference goes on along its tangent.
     """
 
+    commands_engine = True
+
     def __init__(
         self,
         model: TransmissionModel,
@@ -35,13 +39,15 @@ class TwoInputController(PredictiveController):
     ) -> None:
         """Take the model without an engine; the second input is limited by `authority` alone."""
         # A limit that no engine has: it makes the rows whose bounds each period sets.
-        engine = replace(
-            settings.inputs[ENGINE], lowest=-2.0 * MOST_AUTHORITY, highest=2.0 * MOST_AUTHORITY
+        limit = 2.0 * MOST_AUTHORITY
+        engine = (
+            replace(terms, lowest=-limit, highest=limit, rate_n_m_s=math.inf)
+            for terms in settings.inputs[ENGINE:]
         )
         self._authority = authority
-        settings = replace(settings, inputs=(settings.inputs[0], engine))
+        settings = replace(settings, inputs=(settings.inputs[CLUTCH], *engine))
         super().__init__(with_engine(model, authority.lag_share), observer, settings)
-        self._engine_rows = np.flatnonzero(self._program.lower == engine.lowest)
+        self._engine_rows = self.program.level_rows[ENGINE]
 
     @property
     def authority(self) -> EngineAuthority:
@@ -52,17 +58,17 @@ class TwoInputController(PredictiveController):
         """Forget everything; the engine is on the demand."""
         super().reset()
         self._engine = EngineResponse(self._authority)
-        self._reachable = np.zeros((2, self._settings.control_steps))
+        self._reachable = np.zeros((2, self.settings.control_steps))
 
-    def hold(self, measurement: Measurement) -> None:
-        """Let the observer follow the plant while the engine goes back to the demand."""
-        demand = measurement.engine_torque
-        delivered = self._engine.deliver(demand, demand)
-        super().hold(replace(measurement, engine_torque=delivered))
+    def _delivered(self, measurement: Measurement, request: float) -> float:
+        return self._engine.deliver(measurement.engine_torque, request)
 
     def _levels_before(self, measurement: Measurement) -> np.ndarray:
         clutch = measurement.open_loop_torque + self._own_torque
         return np.array([clutch, self._engine.asked])
+
+    def _known(self, measurement: Measurement) -> tuple[float, ...]:
+        return (measurement.load_torque,)
 
     def _solve(
         self, state: np.ndarray, before: np.ndarray, jump: np.ndarray, measurement: Measurement
@@ -80,32 +86,21 @@ class TwoInputController(PredictiveController):
     ) -> tuple[np.ndarray, Status]:
         """Solve with the engine's torques divided by `gain`, as the rest of `state` is."""
         demand = measurement.engine_torque
-        periods = range(1, self._settings.control_steps + 1)
+        periods = range(1, self.settings.control_steps + 1)
         reachable = [self._engine.reachable(demand, period) for period in periods]
         self._reachable = np.transpose(reachable) / gain
         state = np.concatenate((state, (demand / gain, self._engine.deviation / gain)))
         divisor = np.array([1.0, gain])
-        # The target of the deviation is zero.
-        measurement = replace(measurement, engine_torque=0.0)
         moves, status = super()._solve(state, before / divisor, jump, measurement)
         return moves * divisor, status
 
-    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        lower, upper = self._program.lower.copy(), self._program.upper.copy()
+    def _bounds(self, before: np.ndarray, jump: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        lower, upper = (bound.copy() for bound in super()._bounds(before, jump))
         lower[self._engine_rows], upper[self._engine_rows] = self._reachable
         return lower, upper
 
     def _references(self, measurement: Measurement) -> np.ndarray:
-        references = super()._references(measurement)
-        if self._settings.preview:
-            return references
-        steps = np.arange(1, self._settings.prediction_steps + 1)
-        along = PERIOD_S * measurement.slip_reference_rate[0] * steps
-        columns = references.reshape(len(steps), -1)
-        for column, terms in enumerate(self._settings.outputs):
-            if terms.output == SLIP_SPEED:
-                columns[:, column] += along
-        return references
+        return references_along_tangent(self.settings, measurement)
 
     def _next_planned(self, before: np.ndarray, jump: np.ndarray) -> np.ndarray:
         moves = super()._next_planned(before, jump)
@@ -117,8 +112,7 @@ class TwoInputController(PredictiveController):
     def _command(self, levels: np.ndarray, status: Status, measurement: Measurement) -> Command:
         demand = measurement.engine_torque
         request = demand + float(levels[ENGINE])
-        delivered = self._engine.deliver(demand, request)
-        levels = np.array([levels[0], delivered])
-        command = super()._command(levels, status, measurement)
+        delivered = self._delivered(measurement, request)
+        self._advance(measurement, float(levels[CLUTCH]), delivered)
         deviation = ('engine_torque_deviation_n_m', repr(delivered - demand))
-        return Command(command.clutch_torque, (*status, deviation), request)
+        return Command(self._own_torque, (*status, deviation), request)

@@ -5,34 +5,28 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_controllers.interface import ControllerContext, Measurement, Status
-from ddct_controllers.mpc.observer import NoiseLevels
+from ddct_controllers.mpc.build import make_wear_observer
+from ddct_controllers.mpc.disturbances import offset_free_model
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_options, mpc4_settings
-from ddct_controllers.mpc.transmission_model import (
-    LOAD_TORQUE,
-    TransmissionModel,
-    transmission_model,
-    with_disturbances,
-)
+from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
-from ddct_controllers.mpc.wear_observer import WearNoise, WearObserver
+from ddct_controllers.mpc.wear_noise import WearNoise
+from ddct_controllers.mpc.wear_observer import WearObserver
+from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
 from ddct_plant.engine import EngineAuthority
-from ddct_plant.initial import initial_state
 
 NAME = 'mpc4_wear'
 SLIP_ACCELERATION_WEIGHT = 0.05
 """Per rad/s^2 of dw_d/dt: an error of the slip then decays with a time constant of 0.11 s."""
 DEMAND_WEIGHT = 0.05
 """Per N m: C_m returns to the demand with a time constant of 0.8 s, far slower than the slip."""
+WEAR_NOISE = WearNoise(clutch_drift_n_m=0.0)
+"""With a gain beyond its bounds an estimated error of C_f would make this loop oscillate."""
 
 
 class TwoInputWearMpc(TwoInputController):
-    """
-    Predicts with the clutch gain K_usura that is estimated.
-
-    Slip is linear in K_usura times the request, so that with everything else divided by K_usura,
-    C_m included, the program of a new clutch holds at every wear, as in `WearMpc`.
-    """
+    """Predicts with the clutch gain K_usura that is estimated, as `WearMpc` does."""
 
     def __init__(
         self,
@@ -41,38 +35,36 @@ class TwoInputWearMpc(TwoInputController):
         settings: MpcSettings,
         authority: EngineAuthority,
     ) -> None:
-        """Take the model of a new clutch with the error of C_load as its disturbance."""
+        """Take the `offset_free_model` of a new clutch."""
         self._wear_observer = observer
         super().__init__(model, observer, settings, authority)
+
+    @property
+    def observer(self) -> WearObserver:
+        """What estimates its state and K_usura."""
+        return self._wear_observer
+
+    def _output_divisor(self) -> float:
+        return self._wear_observer.wear_gain
 
     def _solve(
         self, state: np.ndarray, before: np.ndarray, jump: np.ndarray, measurement: Measurement
     ) -> tuple[np.ndarray, Status]:
         """Solve with everything but the request divided by K_usura; `state` already is."""
-        gain = self._wear_observer.wear_gain
-        divided = replace(
-            measurement,
-            load_torque=measurement.load_torque / gain,
-            slip_reference=[speed / gain for speed in measurement.slip_reference],
-            slip_reference_rate=[rate / gain for rate in measurement.slip_reference_rate],
-        )
-        moves, status = self._solve_divided(state, before, jump, divided, gain)
-        return moves, (*status, ('wear_gain_estimate', repr(gain)))
+        observer = self._wear_observer
+        gain = observer.wear_gain
+        # What the engine can reach follows from the demand itself.
+        scaled = replace(divided(measurement, gain), engine_torque=measurement.engine_torque)
+        moves, status = self._solve_divided(state, before, jump, scaled, gain)
+        return moves, (*status, *wear_status(observer))
 
 
 def make_two_input_wear_mpc(context: ControllerContext) -> TwoInputWearMpc:
     """Build `mpc4_wear`; raise ParameterError for a key that it does not take."""
     scenario = context.settings.scenario
     settings = mpc4_settings(SLIP_ACCELERATION_WEIGHT, DEMAND_WEIGHT)
-    model = transmission_model(scenario.driveline)
-    observer = WearObserver(
-        model,
-        NoiseLevels(),
-        WearNoise(),
-        scenario.driveline.halfshaft_stiffness,
-        initial_state(context.settings).torque_request,
-    )
-    augmented = with_disturbances(model, model.b[:, LOAD_TORQUE : LOAD_TORQUE + 1])
-    return TwoInputWearMpc(
-        augmented, observer, mpc4_options(NAME, settings, context.gains), scenario.engine_authority
-    )
+    settings = mpc4_options(NAME, settings, context.gains, WEAR_OPTIONS)
+    wear = wear_noise(NAME, context.gains, WEAR_NOISE)
+    model = offset_free_model(scenario.driveline)
+    observer = make_wear_observer(context.settings, model, wear)
+    return TwoInputWearMpc(model, observer, settings, scenario.engine_authority)

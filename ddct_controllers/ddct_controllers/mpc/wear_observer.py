@@ -1,7 +1,5 @@
 """Kalman filter that estimates the wear gain of the clutch while torque flows."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ddct_controllers.mpc.observer import NoiseLevels
@@ -13,36 +11,31 @@ from ddct_controllers.mpc.transmission_model import (
     STATES,
     TransmissionModel,
 )
+from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
+from ddct_controllers.mpc.wear_noise import (
+    CLUTCH_ERROR,
+    DRIVELINE,
+    GAIN,
+    LOAD_ERROR,
+    SIZE,
+    WearNoise,
+    process_noise,
+)
 
-LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
-"""Bounds of the estimate, beyond the 0.7 to 1.3 that a clutch is taken to reach."""
 LEAST_TORQUE_N_M = 5.0
-"""Below which the estimate rests; C_f may be wrong by as much anyway."""
-_DRIVELINE = 4
-_SIZE = _DRIVELINE + 2
-_GAIN, _LOAD = _DRIVELINE, _DRIVELINE + 1
-
-
-@dataclass(frozen=True)
-class WearNoise:
-    """What the filter believes of K_usura and of the load's error."""
-
-    initial_gain: float = 0.2
-    """Standard deviation of K_usura about 1 before the first measurement."""
-    gain_drift: float = 0.01
-    """Per period; within a second, an engagement, 0.1: the fade of a hot clutch."""
-    load_drift_n_m: float = 47.0
-    """Per period, of the error of C_load; the same as in the offset-free controllers."""
+"""Of the actuator, below which K_usura does not drift; C_f may be wrong by as much anyway."""
 
 
 class WearObserver:
     """
-    Time-varying Kalman filter of w_m, w_p, w_r, theta_sr, K_usura and the error of C_load.
+    Time-varying Kalman filter of w_m, w_p, w_r, theta_sr, K_usura and the errors of C_f, C_load.
 
     The actuator's torque follows from the requests alone, so it is known, and the clutch transmits
     K_usura times as much. Then K_usura enters the driveline's equations linearly, times a known
-    signal: x+ = a x + K_usura g_k + b u, and the filter needs no linearisation. Its covariance
-    tells how much each period says about K_usura: nothing without torque.
+    signal: x+ = a x + K_usura g_k + b u + b_d d, and the filter needs no linearisation. Its
+    covariance tells how much each period says about K_usura: nothing without torque. A constant
+    torque does not tell K_usura from an error of C_f, so the latter drifts only while a bound
+    holds the former.
     """
 
     def __init__(
@@ -54,84 +47,94 @@ class WearObserver:
         initial_request: float,
     ) -> None:
         """
-        Take the model of a new clutch, without disturbances.
+        Take the `offset_free_model` of a new clutch.
 
         Before the first measurement the half-shaft of `halfshaft_stiffness` in N m/rad balances
         the load and the actuator is at rest on `initial_request` in N m.
         """
-        driveline, actuator = slice(_DRIVELINE), slice(_DRIVELINE, STATES)
+        driveline, actuator = slice(DRIVELINE), slice(DRIVELINE, STATES)
         self._model = model
         self._wear = wear
         self._twist_per_torque = 1.0 / halfshaft_stiffness
         self._initial_request = initial_request
-        self._transition = np.eye(_SIZE)
+        self._transition = np.eye(SIZE)
         self._transition[driveline, driveline] = model.a[driveline, driveline]
-        self._transition[driveline, _LOAD] = model.b[driveline, LOAD_TORQUE]
+        self._transition[driveline, CLUTCH_ERROR:] = model.a[driveline, STATES:]
         self._known = model.b[driveline, [ENGINE_TORQUE, LOAD_TORQUE]]
         self._transmission = model.a[driveline, actuator]
         self._actuator_a = model.a[actuator, actuator]
         self._actuator_b = model.b[actuator, REQUEST]
-        self._process = _process_noise(model, noise, wear)
+        self._process = process_noise(model, noise, wear)
         self._measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
-        self._measured = np.eye(MEASURED, _SIZE)
-        self._identity = np.eye(_SIZE)
+        self._measured = np.eye(MEASURED, SIZE)
+        self._identity = np.eye(SIZE)
         self.reset()
 
     def reset(self) -> None:
         """Forget the estimate; the next measurement starts another one."""
         self._started = False
-        self._state = np.zeros(_SIZE)
-        self._state[_GAIN] = 1.0
-        self._actuator = np.zeros(STATES - _DRIVELINE)
-        self._covariance = np.zeros((_SIZE, _SIZE))
-        self._covariance[_GAIN, _GAIN] = self._wear.initial_gain**2
+        self._state = np.zeros(SIZE)
+        self._state[GAIN] = 1.0
+        self._actuator = np.zeros(STATES - DRIVELINE)
+        self._covariance = np.zeros((SIZE, SIZE))
+        self._covariance[GAIN, GAIN] = self._wear.initial_gain**2
 
     @property
     def wear_gain(self) -> float:
         """The estimate of K_usura; 1 before the first measurement."""
-        return float(self._state[_GAIN])
+        return float(self._state[GAIN])
 
     @property
     def wear_gain_deviation(self) -> float:
         """Standard deviation of the estimate by the filter's own account."""
-        return float(np.sqrt(self._covariance[_GAIN, _GAIN]))
+        return float(np.sqrt(self._covariance[GAIN, GAIN]))
+
+    @property
+    def wear_gain_at_bound(self) -> bool:
+        """Whether a bound holds the estimate, so that the error of C_f has the rest."""
+        return self.wear_gain in (LOWEST_GAIN, HIGHEST_GAIN)
 
     def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """
-        Return x_(k|k) divided by K_usura, (10,), for w_m, w_p, w_r in rad/s and C_load in N m.
+        Return x_(k|k) divided by K_usura, (11,), for w_m, w_p, w_r in rad/s and C_load in N m.
 
-        The last state is the error of C_load. Divided by K_usura, the driveline's states and what
-        drives them obey the equations of a new clutch with the actuator's states as they are.
+        The last states are the errors of C_f and C_load. Divided by K_usura, the driveline's
+        states and what drives them obey the equations of a new clutch with the actuator's states
+        as they are.
         """
         if self._started:
             self._update(speeds)
         else:
             self._start(speeds, load_torque)
-        gain = self._state[_GAIN]
+        gain = self._state[GAIN]
         return np.concatenate(
-            (self._state[:_DRIVELINE] / gain, self._actuator, self._state[_LOAD:] / gain)
+            (self._state[:DRIVELINE] / gain, self._actuator, self._state[CLUTCH_ERROR:] / gain)
         )
 
     def predict(self, inputs: tuple[float, float, float]) -> None:
         """Advance by one period with the saturated request, C_m and C_load in N m."""
         request, engine_torque, load_torque = inputs
         transition = self._transition
-        transition[:_DRIVELINE, _GAIN] = self._transmission @ self._actuator
+        effect = self._transmission @ self._actuator
+        transition[:DRIVELINE, GAIN] = effect
         self._state = transition @ self._state
-        self._state[:_DRIVELINE] += self._known @ (engine_torque, load_torque)
+        self._state[:DRIVELINE] += self._known @ (engine_torque, load_torque)
         self._covariance = transition @ self._covariance @ transition.T + self._process
-        if self._actuator[-1] > LEAST_TORQUE_N_M:
-            self._covariance[_GAIN, _GAIN] += self._wear.gain_drift**2
+        # The constant torque of a new clutch that would change w_m as much.
+        if effect[0] / self._model.clutch[0] > LEAST_TORQUE_N_M:
+            self._covariance[GAIN, GAIN] += self._wear.gain_drift**2
+        if self.wear_gain_at_bound:
+            self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += self._wear.clutch_drift_n_m**2
         self._actuator = self._actuator_a @ self._actuator + self._actuator_b * request
 
     def _start(self, speeds: tuple[float, float, float], load_torque: float) -> None:
         twist = load_torque * self._twist_per_torque
         start = self._model.at_rest(speeds, twist, self._initial_request)
-        self._actuator = start[_DRIVELINE:]
-        self._state[:_DRIVELINE] = start[:_DRIVELINE]
+        self._actuator = start[DRIVELINE:STATES]
+        self._state[:DRIVELINE] = start[:DRIVELINE]
         # A second's drift of the load, which has twisted the half-shaft by as much.
-        load = np.zeros(_SIZE)
-        load[[_DRIVELINE - 1, _LOAD]] = self._twist_per_torque, 1.0
+        load = np.zeros(SIZE)
+        load[[DRIVELINE - 1, LOAD_ERROR]] = self._twist_per_torque, 1.0
         load *= 10.0 * self._wear.load_drift_n_m
         self._covariance += np.outer(load, load)
         self._covariance[:MEASURED, :MEASURED] = self._measurement_noise
@@ -142,18 +145,7 @@ class WearObserver:
         innovation = covariance[:MEASURED, :MEASURED] + self._measurement_noise
         gain = np.linalg.solve(innovation, covariance[:MEASURED]).T
         self._state = self._state + gain @ (speeds - self._state[:MEASURED])
-        self._state[_GAIN] = min(max(self._state[_GAIN], LOWEST_GAIN), HIGHEST_GAIN)
         # Joseph's form: it stays symmetric and positive whatever is rounded.
         kept = self._identity - gain @ self._measured
         self._covariance = kept @ covariance @ kept.T + gain @ self._measurement_noise @ gain.T
-
-
-def _process_noise(model: TransmissionModel, noise: NoiseLevels, wear: WearNoise) -> np.ndarray:
-    """Return the covariance (6, 6) that a period adds, without the drift of K_usura."""
-    torques = np.zeros((_SIZE, 3))
-    torques[:_DRIVELINE, 0] = noise.engine_torque_n_m * model.b[:_DRIVELINE, ENGINE_TORQUE]
-    torques[:_DRIVELINE, 1] = noise.load_torque_n_m * model.b[:_DRIVELINE, LOAD_TORQUE]
-    torques[:_DRIVELINE, 2] = noise.clutch_torque_n_m * model.clutch[:_DRIVELINE]
-    process = torques @ torques.T
-    process[_LOAD, _LOAD] = wear.load_drift_n_m**2
-    return process
+        self._state = within_bounds(self._state, self._covariance)

@@ -1,13 +1,13 @@
 """Decoupled PID control of engine speed and slip speed, after [3] of the thesis (Section 1.3)."""
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.measured import measured_speeds
 from ddct_controllers.state_of_art.engine_share import EngineShare
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.pid import Pid, placed_gains
 from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.slow_clutch import SlowClutch
 from ddct_controllers.state_of_art.speed_plan import SpeedPlan
-from ddct_controllers.state_of_art.speeds import measured_speeds
 
 NAME = 'decoupled_pid'
 OPTIONS = {

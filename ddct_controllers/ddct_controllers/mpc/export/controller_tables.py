@@ -1,5 +1,6 @@
 """Everything that the exported C needs to know of one predictive controller, as numbers."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,8 @@ import numpy as np
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.export.dual_form import DualForm, dual_form
 from ddct_controllers.mpc.export.known_columns import known_columns
+from ddct_controllers.mpc.horizon import CondensedProgram
+from ddct_controllers.mpc.limits import CLUTCH, ROOM
 from ddct_controllers.mpc.observer import Observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import MpcSettings
@@ -53,7 +56,8 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
     form = dual_form(program.structure)
     columns = known_columns(program, len(model.a), settings)
     at_rest = observer.first_estimate((0.0, 0.0, 0.0), 0.0)
-    clutch = settings.inputs[0]
+    clutch = settings.inputs[CLUTCH]
+    limits_rate = math.isfinite(clutch.rate_n_m_s)
     engine = _engine_macros(controller) if isinstance(controller, TwoInputController) else {}
     return ControllerTables(
         public={
@@ -75,7 +79,9 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
             'ACTIVE': form.capacity,
             'LEAST_CLUTCH': clutch.lowest,
             'MOST_CLUTCH': clutch.highest,
+            'LIMITS_RATE': int(limits_rate),
             'CLUTCH_CHANGE': clutch.rate_n_m_s * PERIOD_S,
+            'ROOM': ROOM,
             **engine,
         },
         arrays={
@@ -86,16 +92,16 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
             'AT_REST_PER_LOAD': observer.first_estimate((0.0, 0.0, 0.0), 1.0) - at_rest,
             'GRADIENT': form.to_dual @ columns.gradient,
             'MOVES': form.moves,
-            **_rows(controller, form, columns.shift),
+            **_rows(controller, form, columns.shift, limits_rate=limits_rate),
         },
     )
 
 
 def _rows(
-    controller: PredictiveController, form: DualForm, shift: np.ndarray
+    controller: PredictiveController, form: DualForm, shift: np.ndarray, *, limits_rate: bool
 ) -> dict[str, np.ndarray]:
     """Return the tables that have one entry or row for each constraint."""
-    settings, program, scale = controller.settings, controller.program, form.scale
+    program, scale = controller.program, form.scale
     rows = {
         'NORMAL': form.normals,
         'RELAXATION': form.relaxation,
@@ -103,10 +109,12 @@ def _rows(
         'UPPER': program.upper[form.kept] * scale,
         'SHIFT': shift[form.kept] * scale[:, None],
     }
+    # Bounds that each period sets: C has no use for these arrays without them.
+    if limits_rate:
+        rows['CLUTCH_PERIODS_AHEAD'] = _periods_ahead(program, CLUTCH)[form.kept]
     if controller.commands_engine:
-        # Bounds that each period sets, of the deviation 1, 2, ... periods ahead.
-        limited = program.lower == settings.inputs[ENGINE].lowest
-        rows['PERIODS_AHEAD'] = np.where(limited, np.cumsum(limited), 0.0)[form.kept]
+        rows['ENGINE_PERIODS_AHEAD'] = _periods_ahead(program, ENGINE)[form.kept]
+    if limits_rate or controller.commands_engine:
         rows['SCALE'] = scale
     if len(form.kept):
         return rows
@@ -116,6 +124,13 @@ def _rows(
         name: np.full((1, *table.shape[1:]), restricts_nothing.get(name, 0.0))
         for name, table in rows.items()
     }
+
+
+def _periods_ahead(program: CondensedProgram, of_input: int) -> np.ndarray:
+    """Return how far ahead each row limits the level of an input; 0 for other rows."""
+    periods, rows = np.zeros(len(program.lower)), program.level_rows[of_input]
+    periods[rows] = np.arange(1, len(rows) + 1)
+    return periods
 
 
 def _engine_macros(controller: TwoInputController) -> dict[str, float]:

@@ -1,5 +1,6 @@
 """Write a predictive controller and its observer as self-contained C99."""
 
+import math
 from pathlib import Path
 
 from ddct_controllers.interface import Controller
@@ -10,6 +11,7 @@ from ddct_controllers.mpc.export.controller_tables import (
     exportable,
 )
 from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.mpc.transmission_model import SLIP_SPEED
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.run_info import package_version
 from ddct_plant.output_file import write_text
@@ -102,6 +104,7 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
         f'Prediction over {chosen.prediction_steps} periods, moves over {chosen.control_steps}.',
         f'Clutch torque {clutch.lowest:g} to {clutch.highest:g} N m, its rate at most '
         f'{clutch.rate_n_m_s:g} N m/s (inf is none).',
+        f'Slip is softly kept above {_lowest_slip(chosen):g} rad/s (-inf is no limit).',
         '',
         'Call it every 10 ms (100 Hz). Units are SI: rad/s, rad/s^2, N m. C_load is a torque on',
         'the wheel, all others are on the engine side; a clutch torque above 0 slows the engine',
@@ -110,3 +113,8 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
         '',
         'SPDX-License-Identifier: Apache-2.0',
     ]
+
+
+def _lowest_slip(chosen: MpcSettings) -> float:
+    limits = (terms.lowest for terms in chosen.outputs if terms.output == SLIP_SPEED)
+    return max(limits, default=-math.inf)

@@ -41,7 +41,7 @@ static void correct(ddct_mpc *s, const ddct_mpc_measurement *m)
         for (int i = 0; i < MEASURED; ++i) {
             s->state[i] = speeds[i];
         }
-        s->open_loop_torque = m->open_loop_torque;
+        s->open_loop_torque = larger(m->open_loop_torque, 0.0);
         s->started = 1;
         return;
     }
@@ -87,38 +87,53 @@ static void gather(const ddct_mpc *s, const ddct_mpc_measurement *m, double *kno
     }
 }
 
+/* The rate goes before the level: a level that it cannot keep from the last request gives way to the
+ * nearest that it reaches. */
 static void bounds(const ddct_mpc *s, const double *known, double *lower, double *upper)
 {
+#if LIMITS_RATE
+    const double last = known[BEFORE] - known[JUMP];
+    const double room = ROOM * (1.0 + larger(last, -last));
+#endif
     for (int i = 0; i < ROWS; ++i) {
         const double shift = dot(SHIFT[i], known, SLIP);
-        lower[i] = LOWER[i] - shift;
-        upper[i] = UPPER[i] - shift;
-#if DDCT_MPC_COMMANDS_ENGINE
-        if (PERIODS_AHEAD[i] > 0.0) {
-            const double demand = known[ENGINE], periods = PERIODS_AHEAD[i];
-            lower[i] = SCALE[i] * reachable(s, demand, LEAST_TORQUE, periods) - shift;
-            upper[i] = SCALE[i] * reachable(s, demand, MOST_TORQUE, periods) - shift;
+        lower[i] = LOWER[i];
+        upper[i] = UPPER[i];
+#if LIMITS_RATE
+        if (CLUTCH_PERIODS_AHEAD[i] > 0.0) {
+            const double reach = CLUTCH_PERIODS_AHEAD[i] * CLUTCH_CHANGE - room;
+            lower[i] = smaller(lower[i], SCALE[i] * (last + reach));
+            upper[i] = larger(upper[i], SCALE[i] * (last - reach));
         }
 #endif
+#if DDCT_MPC_COMMANDS_ENGINE
+        if (ENGINE_PERIODS_AHEAD[i] > 0.0) {
+            const double demand = known[ENGINE], periods = ENGINE_PERIODS_AHEAD[i];
+            lower[i] = SCALE[i] * reachable(s, demand, LEAST_TORQUE, periods);
+            upper[i] = SCALE[i] * reachable(s, demand, MOST_TORQUE, periods);
+        }
+#endif
+        lower[i] -= shift;
+        upper[i] -= shift;
     }
     (void)s;
 }
 
-/* Take the next moves of the last plan, cut off at the rates and then at the levels. */
+/* Take the next moves of the last plan, cut off at the levels and then at the rates. */
 static void follow_plan(ddct_mpc *s, const double *known, double *moves)
 {
-    const double before = known[BEFORE], jump = known[JUMP];
-    double move;
+    const double before = known[BEFORE], last = before - known[JUMP];
+    double level;
     for (int i = 0; i < DDCT_MPC_MOVES; ++i) {
         const int next = i + INPUTS;
         s->plan[i] = next < DDCT_MPC_MOVES ? s->plan[next] : 0.0;
     }
-    move = smaller(larger(s->plan[0], -CLUTCH_CHANGE - jump), CLUTCH_CHANGE - jump);
-    moves[0] = smaller(larger(before + move, LEAST_CLUTCH), MOST_CLUTCH) - before;
+    level = smaller(larger(before + s->plan[0], LEAST_CLUTCH), MOST_CLUTCH);
+    moves[0] = smaller(larger(level, last - CLUTCH_CHANGE), last + CLUTCH_CHANGE) - before;
 #if DDCT_MPC_COMMANDS_ENGINE
     const double demand = known[ENGINE], asked = known[BEFORE + 1];
-    move = larger(asked + s->plan[1], reachable(s, demand, LEAST_TORQUE, 1.0));
-    moves[1] = smaller(move, reachable(s, demand, MOST_TORQUE, 1.0)) - asked;
+    level = larger(asked + s->plan[1], reachable(s, demand, LEAST_TORQUE, 1.0));
+    moves[1] = smaller(level, reachable(s, demand, MOST_TORQUE, 1.0)) - asked;
 #endif
     if (s->fallbacks < ULONG_MAX) {
         ++s->fallbacks;
@@ -185,6 +200,8 @@ ddct_mpc_status ddct_mpc_hold(ddct_mpc *s, const ddct_mpc_measurement *m)
     }
     correct(s, m);
     advance(s, m, m->open_loop_torque, m->engine_torque);
+    /* The rate counts from what the actuator was given. */
+    s->open_loop_torque = larger(m->open_loop_torque, 0.0);
     return DDCT_MPC_SOLVED;
 }
 

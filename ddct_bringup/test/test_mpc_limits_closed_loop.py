@@ -1,0 +1,97 @@
+"""Limits of the predictive controllers in the loop: which goes before which, and what is soft."""
+
+import numpy as np
+import pytest
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.headless import run_headless
+from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.units import rpm_from_rad_s
+
+START = load_scenario('thesis').control_start_step
+ONE_INPUT = ('mpc1', 'mpc2', 'mpc3', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear')
+
+
+def run(
+    name: str, *options: str, changes: tuple[str, ...] = (), wear_gain: float = 1.0
+) -> Trajectory:
+    given = [*changes, *(f'controllers.{name}.{option}' for option in options)]
+    settings = RunSettings(load_scenario('thesis', given), wear_gain=wear_gain)
+    return run_headless(settings, name)
+
+
+def solver_said(trajectory: Trajectory) -> set[str]:
+    return {dict(status)['qp_status'] for status in trajectory.status[START:]}
+
+
+@pytest.mark.parametrize('name', PREDICTIVE)
+def test_limits_that_contradict_each_other_at_control_start(name):
+    """C_fOL is 271 N m there: down to 150 N m at 150 N m/s, and no solver is at a loss."""
+    limited = run(name, 'highest_torque_n_m=150', 'torque_rate_n_m_s=150')
+    requests = limited.torque_request[START - 1 :]
+    assert requests[0] > 270.0
+    assert np.abs(np.diff(requests)).max() <= 1.5 + 1e-6
+    way = int(np.ceil((requests[0] - 150.0) / 1.5))
+    assert requests[: way + 1] == pytest.approx(
+        np.maximum(requests[0] - 1.5 * np.arange(way + 1), 150.0), abs=1e-4
+    )
+    assert requests[way:].max() <= 150.0 + 1e-6
+    assert solver_said(limited) == {'solved'}
+
+
+def test_the_rate_counts_from_what_the_actuator_was_given():
+    """C_fOL is below 0 on this slope without engine torque, and the actuator gives 0."""
+    downhill = ('load.slope_rad=-0.1', 'engine.torque_n_m=[0,0]', 'engine.time_s=[0,1]')
+    limited = run('mpc3', 'torque_rate_n_m_s=300', changes=downhill)
+    assert limited.torque_request[START - 1] < -3.0
+    given = np.maximum(limited.torque_request[START - 1 :], 0.0)
+    assert np.abs(np.diff(given)).max() <= 3.0 + 1e-6
+    assert limited.torque_request[START:].min() >= -1e-9
+    assert solver_said(limited) == {'solved'}
+
+
+@pytest.mark.parametrize('name', ONE_INPUT)
+def test_the_plates_do_not_pass_each_other(name):
+    """Free, the slip goes 2 to 7 rpm below zero; the soft limit leaves a tenth of an rpm."""
+    free, kept = run(name), run(name, 'lowest_slip_rpm=0')
+    lowest = [rpm_from_rad_s(each.slip_speed[START:].min()) for each in (free, kept)]
+    assert lowest[0] < -2.0
+    assert lowest[1] > -0.15
+    assert abs(rpm_from_rad_s(kept.slip_speed[-1])) < 0.1
+    assert solver_said(kept) == {'solved'}
+
+
+def test_what_the_page_says_of_the_plates():
+    lowest = {
+        option: rpm_from_rad_s(run('mpc3', *option).slip_speed[START:].min())
+        for option in ((), ('lowest_slip_rpm=0',))
+    }
+    assert list(lowest.values()) == [pytest.approx(-6.6, abs=0.05), pytest.approx(-0.1, abs=0.05)]
+    assert run('mpc2', 'lowest_slip_rpm=0').slip_speed[START:].min() > 0.0
+    assert run('mpc2', 'lowest_slip_rpm=-2').slip_speed[START:].min() < 0.0
+
+
+@pytest.mark.parametrize('name', PREDICTIVE)
+def test_a_lowest_slip_above_the_reference_is_kept_by_its_weight(name):
+    """It holds the slip up although the reference goes to zero."""
+    kept = run(name, 'lowest_slip_rpm=50')
+    assert rpm_from_rad_s(kept.slip_speed[START:].min()) == pytest.approx(50.0, abs=0.5)
+    assert solver_said(kept) == {'solved'}
+
+
+@pytest.mark.parametrize('name', ['mpc_wear', 'mpc4_wear'])
+def test_the_lowest_slip_is_that_of_the_worn_clutch(name):
+    kept = run(name, 'lowest_slip_rpm=50', wear_gain=0.7)
+    assert rpm_from_rad_s(kept.slip_speed[START:].min()) == pytest.approx(50.0, abs=0.5)
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_a_soft_limit_that_cannot_hold_leaves_a_solution(wear_gain):
+    """Together with hard limits, and slip that starts far below."""
+    limits = ('highest_torque_n_m=280', 'torque_rate_n_m_s=200', 'lowest_slip_rpm=2000')
+    kept = run('mpc3', *limits, wear_gain=wear_gain)
+    assert rpm_from_rad_s(kept.slip_speed[START]) < 2000.0
+    assert np.abs(np.diff(kept.torque_request[START - 1 :])).max() <= 2.0 + 1e-6
+    assert solver_said(kept) == {'solved'}

@@ -1,0 +1,56 @@
+"""Check of what a controller is told, before it keeps any of it."""
+
+import math
+
+from ddct_controllers.interface import Measurement
+from ddct_plant.errors import DdctError
+
+MOST = 1e9
+"""Largest size of a number, in its SI unit; far beyond any vehicle."""
+_SCALARS = {
+    'engine_speed': 'rad/s',
+    'shaft_speed': 'rad/s',
+    'wheel_speed': 'rad/s',
+    'engine_torque': 'N m',
+    'load_torque': 'N m',
+    'open_loop_torque': 'N m',
+}
+_REFERENCES = {'slip_reference': 'rad/s', 'slip_reference_rate': 'rad/s^2'}
+
+
+def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
+    """
+    Return w_m, w_p, w_r in rad/s.
+
+    Raise DdctError that names the first number that is not finite or larger than MOST, among them,
+    the torques and the references.
+    """
+    speeds = (measurement.engine_speed, measurement.shaft_speed, measurement.wheel_speed)
+    # One call at every step: what is within MOST together is so each by itself.
+    together = math.hypot(
+        *speeds,
+        measurement.engine_torque,
+        measurement.load_torque,
+        measurement.open_loop_torque,
+        *measurement.slip_reference,
+        *measurement.slip_reference_rate,
+    )
+    if not together <= MOST:
+        _require_each(measurement)
+    return speeds
+
+
+def _require_each(measurement: Measurement) -> None:
+    for name, unit in _SCALARS.items():
+        _require(name, getattr(measurement, name), unit, measurement.step)
+    for name, unit in _REFERENCES.items():
+        for ahead, value in enumerate(getattr(measurement, name)):
+            _require(f'{name}[{ahead}]', value, unit, measurement.step)
+
+
+def _require(name: str, value: float, unit: str, step: int) -> None:
+    if not abs(value) <= MOST:
+        raise DdctError(
+            f'{name} is {value:g} {unit} at step {step}, not a number within +-{MOST:g}: '
+            'mend what gives it, or the loop if it diverges'
+        )

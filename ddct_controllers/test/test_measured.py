@@ -1,0 +1,68 @@
+"""What a controller cannot go on with is refused by name, and leaves no trace."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from ddct_controllers.interface import Measurement
+from ddct_controllers.measured import MOST, measured_speeds
+from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.registry import make_controller
+from ddct_plant.errors import DdctError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+CONTROLLERS = (*PREDICTIVE, 'pedal_mpc', 'decoupled_pid', 'torque_estimator')
+SCALARS = (
+    *('engine_speed', 'shaft_speed', 'wheel_speed'),
+    *('engine_torque', 'load_torque', 'open_loop_torque'),
+)
+REFERENCES = ('slip_reference', 'slip_reference_rate')
+
+
+def measurement(step, preview):
+    references = [50.0 - i for i in range(preview + 1)], [-100.0] * (preview + 1)
+    return Measurement(step, 240.0, 190.0, 20.0, 6.5, 308.0, *references, 60.0, 271.0)
+
+
+def spoilt(good, field, value):
+    if field in REFERENCES:
+        return replace(good, **{field: [*getattr(good, field)[:-1], value]})
+    return replace(good, **{field: value})
+
+
+@pytest.mark.parametrize('name', CONTROLLERS)
+@pytest.mark.parametrize('way', ['hold', 'update'])
+@pytest.mark.parametrize('field', [*SCALARS, *REFERENCES])
+def test_no_number_is_refused_and_leaves_no_trace(name, way, field):
+    controllers = [make_controller(name, SETTINGS) for _ in range(2)]
+    preview = controllers[0].preview_steps
+    for each in controllers:
+        for step in range(58, 60):
+            each.hold(measurement(step, preview))
+    used, other = controllers
+    with pytest.raises(DdctError, match=rf'{field}.* is nan .* at step 60, .* mend what gives it'):
+        getattr(used, way)(spoilt(measurement(60, preview), field, math.nan))
+    assert used.update(measurement(60, preview)) == other.update(measurement(60, preview))
+
+
+@pytest.mark.parametrize('value', [math.inf, -math.inf, 1.1 * MOST, -1.1 * MOST])
+@pytest.mark.parametrize('field', [*SCALARS, *REFERENCES])
+def test_beyond_the_largest_size_is_refused(field, value):
+    with pytest.raises(DdctError, match=field):
+        measured_speeds(spoilt(measurement(3, 4), field, value))
+
+
+def test_the_period_ahead_is_named():
+    with pytest.raises(DdctError, match=r'slip_reference\[4\] is nan rad/s at step 3'):
+        measured_speeds(spoilt(measurement(3, 4), 'slip_reference', math.nan))
+
+
+def test_many_large_numbers_are_no_error():
+    """Together beyond the largest size, each by itself within."""
+    good = measurement(3, 4)
+    for field in (*SCALARS, *REFERENCES):
+        good = spoilt(good, field, MOST)
+    assert measured_speeds(good) == (MOST, MOST, MOST)

@@ -1,0 +1,118 @@
+"""The predictive controllers that use the estimate of the wear gain."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_controllers.interface import ControllerContext, Measurement
+from ddct_controllers.mpc.disturbances import offset_free_model
+from ddct_controllers.mpc.horizon import condense
+from ddct_controllers.mpc.transmission_model import (
+    STATES,
+    transmission_model,
+    with_disturbances,
+)
+from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
+from ddct_controllers.mpc.wear_mpc import make_wear_mpc
+from ddct_controllers.mpc.wear_noise import WearNoise
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+DRIVELINE = SETTINGS.scenario.driveline
+MAKERS = {'mpc_wear': make_wear_mpc, 'mpc4_wear': make_two_input_wear_mpc}
+
+
+def make_controller(options=None, name='mpc_wear'):
+    return MAKERS[name](ControllerContext(SETTINGS, options or {}))
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_dividing_by_the_gain_gives_the_moves_of_the_worn_clutch_s_own_program(wear_gain):
+    controller = make_controller()
+    settings = controller.settings
+    worn = transmission_model(DRIVELINE, wear_gain)
+    worn = with_disturbances(worn, offset_free_model(DRIVELINE).a[:STATES, STATES:])
+    weight = settings.inputs[0].move_weight * wear_gain
+    own = condense(
+        worn, replace(settings, inputs=(replace(settings.inputs[0], move_weight=weight),))
+    )
+    random = np.random.default_rng(1)
+    driveline, actuator, errors = random.normal(size=4), random.normal(size=5), [-15.0, 20.0]
+    before, known, target = 150.0, np.array([300.0, 70.0]), 0.0
+    references = random.normal(size=settings.prediction_steps)
+    given = np.concatenate([driveline, actuator, errors, [before], known, [target], references])
+    scale = np.ones(len(given))
+    scale[[*range(4), *range(9, 11), *range(12, 14), *range(15, len(given))]] = wear_gain
+    new = controller.program
+    expected = np.linalg.solve(own.structure.hessian, own.gradient @ given)
+    moves = np.linalg.solve(new.structure.hessian, new.gradient @ (given / scale))
+    np.testing.assert_allclose(moves, expected, rtol=1e-9)
+
+
+def measurement(step, speed=170.0):
+    return Measurement(
+        step=step,
+        engine_speed=speed,
+        shaft_speed=150.0,
+        wheel_speed=150.0 / DRIVELINE.total_ratio,
+        vehicle_speed=5.0,
+        engine_torque=200.0,
+        slip_reference=[20.0 - 0.5 * i for i in range(23)],
+        slip_reference_rate=[-50.0] * 23,
+        load_torque=60.0,
+        open_loop_torque=170.0,
+    )
+
+
+def test_a_reset_controller_is_a_new_one():
+    used, new = make_controller(), make_controller()
+    used.hold(measurement(0))
+    for step in range(1, 5):
+        used.update(measurement(step, 170.0 + step))
+    used.reset()
+    for step in range(4):
+        assert used.update(measurement(step)) == new.update(measurement(step))
+
+
+@pytest.mark.parametrize('name', MAKERS)
+def test_status_shows_the_estimate(name):
+    status = dict(make_controller(name=name).update(measurement(0)).status)
+    assert float(status['wear_gain_estimate']) == 1.0
+    assert float(status['wear_gain_deviation']) == pytest.approx(WearNoise().initial_gain)
+    assert status['wear_gain_at_bound'] == 'false'
+
+
+def test_nan_is_refused():
+    with pytest.raises(DdctError, match='at step 3'):
+        make_controller().update(measurement(3, float('nan')))
+
+
+@pytest.mark.parametrize('name', MAKERS)
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        ({'gain_drift': -0.1}, 'gain_drift is -0.1'),
+        ({'gain_drift': 1e160}, r'gain_drift is 1e\+160: it must be at most 1'),
+        ({'load_drift_n_m': None}, 'load_drift_n_m is None'),
+        ({'load_drift_n_m': 1e160}, 'load_drift_n_m is .* at most'),
+        ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m is .* at most'),
+        ({'torsion_weight': 1.0}, 'torsion_weight is not a key'),
+    ],
+)
+def test_bad_options_are_named(options, complaint, name):
+    with pytest.raises(ParameterError, match=f'controllers.{name}.{complaint}'):
+        make_controller(options, name)
+
+
+@pytest.mark.parametrize('name', MAKERS)
+def test_the_largest_drifts_that_are_taken_leave_a_finite_estimate(name):
+    controller = make_controller(
+        {'gain_drift': 1.0, 'load_drift_n_m': 1e6, 'clutch_drift_n_m': 1e6}, name
+    )
+    for step in range(20):
+        command = controller.update(measurement(step, 170.0 + step))
+        assert np.isfinite(command.clutch_torque)
+        assert np.isfinite(controller.observer.wear_gain_deviation)
