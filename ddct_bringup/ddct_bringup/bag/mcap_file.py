@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from mcap.writer import CompressionType, Writer
-
+from ddct_bringup.bag.mcap_writer import McapWriter
 from ddct_bringup.bag.metadata import (
     HASH_KEY,
     QOS_KEY,
@@ -21,7 +20,6 @@ from ddct_plant.errors import DdctError
 
 METADATA_FILE = 'metadata.yaml'
 
-_LATER_THAN_ALL_NS = 2**63
 _CHUNK_BYTES = 64 * 1024
 """About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
 
@@ -53,18 +51,9 @@ class McapFile:
         self._path = path
         self._channels = tuple(channels)
         self._custom_data = dict(custom_data)
-        self._counts = [0] * len(channels)
         self._schemas: dict[str, int] = {}
-        self._first_ns = _LATER_THAN_ALL_NS
-        self._last_ns = 0
         self._sink = _Sink(path)
-        self._writer = Writer(
-            cast(Any, self._sink),
-            chunk_size=_CHUNK_BYTES,
-            compression=CompressionType.ZSTD,
-            enable_data_crcs=True,
-        )
-        self._writer.start(profile='ros2', library='ddct_bringup')
+        self._writer = McapWriter(self._sink, 'ros2', 'ddct_bringup', _CHUNK_BYTES)
         self._ids = [self._register(channel) for channel in channels]
         self._add_metadata()
 
@@ -72,12 +61,7 @@ class McapFile:
         """Append a message to the channel with this index; raise DdctError when it fails."""
         if self._sink.closed:
             raise DdctError(f'{self._path}: the recording is already closed')
-        if stamp_ns < self._first_ns:
-            self._first_ns = stamp_ns
-        if stamp_ns > self._last_ns:
-            self._last_ns = stamp_ns
-        self._counts[channel] += 1
-        self._writer.add_message(self._ids[channel], stamp_ns, data, stamp_ns)
+        self._writer.add_message(self._ids[channel], stamp_ns, data)
 
     def finish(self) -> None:
         """Write the summary and `metadata.yaml`, once; do nothing after a failed write."""
@@ -96,21 +80,25 @@ class McapFile:
         # rosbag2 gives each type one schema, however many topics have it.
         schema = self._schemas.get(channel.type_name)
         if schema is None:
-            schema = self._schemas[channel.type_name] = self._writer.register_schema(
+            schema = self._schemas[channel.type_name] = self._writer.add_schema(
                 channel.type_name, 'ros2msg', channel.schema_text.encode()
             )
         metadata = {QOS_KEY: channel.qos, HASH_KEY: channel.type_hash}
-        return self._writer.register_channel(channel.topic, SERIALIZATION, schema, metadata)
+        return self._writer.add_channel(channel.topic, SERIALIZATION, schema, metadata)
 
     def _add_metadata(self) -> dict[str, Any]:
+        statistics = self._writer.statistics()
+        counts = statistics.channel_message_counts
         information = bag_information(
             self._path.name,
             [
-                TopicCount(each.topic, each.type_name, each.type_hash, each.qos, count)
-                for each, count in zip(self._channels, self._counts, strict=True)
+                TopicCount(
+                    each.topic, each.type_name, each.type_hash, each.qos, counts.get(key, 0)
+                )
+                for key, each in zip(self._ids, self._channels, strict=True)
             ],
-            self._first_ns if self._last_ns else 0,
-            self._last_ns,
+            statistics.message_start_time,
+            statistics.message_end_time,
             self._custom_data,
         )
         self._writer.add_metadata(RECORD_NAME, metadata_record(information))
@@ -140,7 +128,6 @@ class _Sink:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._written = 0
         self.closed = False
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -160,14 +147,7 @@ class _Sink:
         except OSError as error:
             self.close()
             raise _cannot_write(self._path, error) from error
-        self._written += len(data)
         return len(data)
-
-    def tell(self) -> int:
-        return self._written
-
-    def flush(self) -> None:
-        pass
 
     def close(self) -> None:
         self.closed = True
