@@ -1,6 +1,7 @@
 """One step of MPC3 as the controller takes it: filter, program and command, against peers."""
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -162,6 +163,8 @@ def _do_mpc(settings: MpcSettings) -> Controller:
 
     It has no control horizon: all 22 moves are free, where ours has 4.
     """
+    # It warns of every optional feature that is not installed, and of numpy's names.
+    warnings.simplefilter('ignore')
     from do_mpc_step import DoMpcController
 
     return DoMpcController(MODEL, make_observer(RUN, MODEL), settings)
