@@ -6,13 +6,14 @@ from pathlib import Path
 
 from ddct_bringup.report import REPORT_FILE, write_report
 from ddct_bringup.report_page.output import require_chart_library
+from ddct_bringup.report_page.runs import ReportRun, in_order, read_run
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.progress import run_with_progress
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
-from ddct_bringup.scores.scoring import Entry, score_bag, scores_document, unreadable_entry
+from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
 from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError, ParameterError
@@ -53,17 +54,18 @@ def _compare(argv: list[str]) -> int:
     settings = settings_of(options, [controller_label(name) for name in names])
     plans = [RunPlan(settings, name, options.layout) for name in names]
     folder = StagedFolder(options.out, overwrite=options.overwrite)
-    entries = [
+    runs = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ')
         for index, plan in enumerate(plans, start=1)
     ]
+    entries = [run.entry for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(entries))
     _report(entries, settings, options)
     failed = [entry['controller'] for entry in entries if not entry['valid']]
     if failed:
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
     write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
-    write_report([folder.path], str(folder.path / REPORT_FILE))
+    write_report(in_order(runs), str(folder.path / REPORT_FILE))
     folder.commit()
     print(
         f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
@@ -73,17 +75,19 @@ def _compare(argv: list[str]) -> int:
     return 0
 
 
-def _run(plan: RunPlan, out: Path, label: str) -> Entry:
-    """Return the scores of one run, or the invalid entry that says why there are none."""
+def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
+    """Carry out, read and score one run; without a bag the entry is invalid and says why."""
     bag = out / plan.name
     try:
         mark_folder(bag)
         run_with_progress(plan, bag, label)
-        return score_bag(bag, relative_to=out)
+        run = read_run(bag, out)
     except DdctError as error:
-        print(f'{PROGRAM}: {plan.name}: {error}', file=sys.stderr)
-        entry = unreadable_entry(bag, error, relative_to=out)
-        return {**entry, 'controller': plan.name}
+        run = ReportRun(unreadable_entry(bag, error, relative_to=out))
+    if run.recording is not None:
+        return run
+    print(f'{PROGRAM}: {plan.name}: {run.entry["reason"]}', file=sys.stderr)
+    return ReportRun({**run.entry, 'controller': plan.name})
 
 
 def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:

@@ -2,11 +2,10 @@
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import track
 
 from ddct_bringup.report_page.evidence import evidence_of
 from ddct_bringup.report_page.output import require_chart_library, require_writable
@@ -16,6 +15,7 @@ from ddct_bringup.report_page.runs import (
     read_run,
     require_one_scenario,
 )
+from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.scoring import bags_in
 from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError
@@ -45,25 +45,26 @@ def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
     require_writable(options.out)
-    runs = write_report(options.runs, options.out)
+    bags = with_progress(bags_in(options.runs), 'reading')
+    runs = in_order([read_run(*bag) for bag in bags])
+    write_report(runs, options.out)
     for run in runs:
         if not run.entry['valid']:
             print(f'{PROGRAM}: {run.entry["bag"]}: {run.entry["reason"]}', file=sys.stderr)
     return 0 if all(run.entry['valid'] for run in runs) else 1
 
 
-def write_report(paths: Sequence[Path], out: str) -> list[ReportRun]:
+def write_report(runs: Sequence[ReportRun], out: str) -> None:
     """
-    Write the page over every bag at the paths and return the runs on it.
+    Write the page over the runs, in their order.
 
-    `require_chart_library` must hold. A bag that cannot be read is on the page with its reason.
+    `require_chart_library` must hold. A bag that could not be read is on the page with its reason.
     Raise DdctError when none can be read, when they are of several scenarios, and when the page
     cannot be written.
     """
     # Some seconds to import, and absent where require_chart_library raises.
     from ddct_bringup.report_page.page import report_page
 
-    runs = in_order([read_run(*bag) for bag in _progress(bags_in(paths))])
     if all(run.recording is None for run in runs):
         reasons = '; '.join(run.entry['reason'] for run in runs)
         raise DdctError(f'none of the {len(runs)} bags can be read, so nothing to show: {reasons}')
@@ -71,14 +72,6 @@ def write_report(paths: Sequence[Path], out: str) -> list[ReportRun]:
     with Console(file=sys.stderr).status('frequency evidence'):
         evidence = evidence_of(runs)
     write_text(out, report_page(runs, evidence))
-    return runs
-
-
-def _progress(bags: Sequence[tuple[Path, Path | None]]) -> Iterable[tuple[Path, Path | None]]:
-    """Show progress on standard error while many bags are read, on a terminal only."""
-    console = Console(stderr=True)
-    hidden = not console.is_terminal or len(bags) < 2
-    return track(bags, 'reading', console=console, transient=True, disable=hidden)
 
 
 def _parser() -> argparse.ArgumentParser:

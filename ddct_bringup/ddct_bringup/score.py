@@ -4,14 +4,12 @@ import argparse
 import csv
 import io
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-
-from rich.console import Console
-from rich.progress import track
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.scores.scoring import (
     Entry,
@@ -56,7 +54,7 @@ def _score(argv: list[str]) -> int:
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
     runs = []
-    for bag, folder in _progress(bags_in(options.bags)):
+    for bag, folder in with_progress(bags_in(options.bags), 'scoring'):
         try:
             runs.append(_score_one(bag, folder, options))
         except DdctError as error:
@@ -91,18 +89,6 @@ def _write_signals(folder: Path, name: str, text: str) -> None:
         raise DdctError(f'{folder}: cannot make the folder: {error.strerror}') from error
     file = name.strip('./').replace('/', '_').removesuffix('.mcap')
     write_text(str(folder / f'{file}.csv'), text)
-
-
-def _progress(bags: Sequence[tuple[Path, Path | None]]) -> Iterable[tuple[Path, Path | None]]:
-    """Show progress on standard error while many bags are read, on a terminal only."""
-    console = Console(stderr=True)
-    return track(
-        bags,
-        description='scoring',
-        console=console,
-        transient=True,
-        disable=not console.is_terminal or len(bags) < 2,
-    )
 
 
 def _csv(runs: Sequence[Entry]) -> str:

@@ -38,6 +38,13 @@ def require_number(
     return number
 
 
+def require_rising(name: str, times: Sequence[float]) -> None:
+    """Raise ParameterError where one of `times`, called `name`, is not later than the last."""
+    for earlier, later in zip(times, times[1:], strict=False):
+        if later <= earlier:
+            raise ParameterError(f'{name} goes from {earlier:g} to {later:g}: it must rise')
+
+
 def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
     """Raise ParameterError that names the choices when `value` is none of them."""
     if value not in choices:

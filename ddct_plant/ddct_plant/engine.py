@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_plant.checks import require_number
+from ddct_plant.checks import require_number, require_rising
 from ddct_plant.errors import ParameterError
 from ddct_plant.timebase import PERIOD_S, time_of_step
 
@@ -30,11 +30,7 @@ class TorqueProfile:
                 f'engine has {len(self.time_s)} times and {len(self.torque_n_m)} torques: '
                 'give one torque for each time'
             )
-        for earlier, later in zip(self.time_s, self.time_s[1:], strict=False):
-            if later <= earlier:
-                raise ParameterError(
-                    f'engine.time_s goes from {earlier:g} to {later:g}: it must rise'
-                )
+        require_rising('engine.time_s', self.time_s)
 
 
 def _require_points(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.checks import require_number
+from ddct_plant.checks import require_number, require_rising
 from ddct_plant.errors import ParameterError
 
 
@@ -31,10 +31,7 @@ class EngineSpeedReference:
             )
         for index, time in enumerate(self.time_s):
             require_number(f'{name}.time_s[{index}]', time)
-            if index and time <= self.time_s[index - 1]:
-                raise ParameterError(
-                    f'{name}.time_s goes from {self.time_s[index - 1]:g} to {time:g}: it must rise'
-                )
+        require_rising(f'{name}.time_s', self.time_s)
         for index, speed in enumerate(self.speed_rad_s):
             require_number(f'{name}.speed_rad_s[{index}]', speed, at_least=0.0, at_most=1000.0)
 

@@ -4,6 +4,11 @@ import sys
 from collections.abc import Sequence
 
 
+def text_or_dash(value: float | None, form: str) -> str:
+    """Return a number in a format, or a dash for what does not exist or has no limit."""
+    return '-' if value is None else format(value, form)
+
+
 def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Print rows of text on standard output; every row has one cell per header."""
     if sys.stdout.isatty() and _print_rich(title, headers, rows):

@@ -4,14 +4,13 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from replay import measurements_of, times_of
 
-from ddct_bringup.headless import run_headless
-from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.interface import Measurement
 from ddct_controllers.mpc.export.c_text import constants, macros
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
@@ -71,28 +70,6 @@ int main(void)
 """
 
 
-class _Recorder(Controller):
-    """Passes on what it is asked and keeps it."""
-
-    def __init__(self, controller: Controller) -> None:
-        self._controller = controller
-        self.preview_steps = controller.preview_steps
-        self.commands_engine = controller.commands_engine
-        self.held: list[Measurement] = []
-        self.updated: list[Measurement] = []
-
-    def reset(self) -> None:
-        self._controller.reset()
-
-    def hold(self, measurement: Measurement) -> None:
-        self.held.append(measurement)
-        self._controller.hold(measurement)
-
-    def update(self, measurement: Measurement) -> Command:
-        self.updated.append(measurement)
-        return self._controller.update(measurement)
-
-
 def measure() -> dict[str, Any]:
     """
     Return for each case median and p99 per step of both in us, the C's sizes and iterations.
@@ -125,18 +102,13 @@ def print_table(figures: dict[str, Any]) -> None:
 
 def _measure(compiler: str, name: str, changes: tuple[str, ...]) -> dict[str, Any]:
     settings = RunSettings(load_scenario('thesis', list(changes)))
-    recorder = _Recorder(make_controller(name, settings))
-    run_headless(settings, recorder)
-    held, updated = recorder.held, recorder.updated
+    heard = measurements_of(settings, make_controller(name, settings))
     original = make_controller(name, settings)
-    times_us: list[float] = []
-    for _ in range(_ROUNDS):
-        original.reset()
-        times_us += _replay(original, held, updated)
+    times_us = times_of(original, heard, _ROUNDS)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         export_controller(original, name, settings, folder)
-        rows, sizes = _run_c(compiler, folder, held, updated)
+        rows, sizes = _run_c(compiler, folder, *heard)
     python_us, c_us = (np.percentile(times, [50, 99]) for times in (times_us, rows[:, 0]))
     return {
         'c_us': c_us.tolist(),
@@ -145,20 +117,6 @@ def _measure(compiler: str, name: str, changes: tuple[str, ...]) -> dict[str, An
         'iterations': int(rows[:, 1].max()),
         **sizes,
     }
-
-
-def _replay(
-    controller: Controller, held: list[Measurement], updated: list[Measurement]
-) -> list[float]:
-    """Return the times of the updates in us."""
-    for measurement in held:
-        controller.hold(measurement)
-    times_us = []
-    for measurement in updated:
-        started = time.perf_counter()
-        controller.update(measurement)
-        times_us.append(1e6 * (time.perf_counter() - started))
-    return times_us
 
 
 def _run_c(

@@ -1,16 +1,16 @@
 """One step of MPC3 as the controller takes it: filter, program and command, against peers."""
 
-import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from qp import compared
 from qp_peers import bare_osqp, cvxpy_osqp_and_clarabel
+from replay import measurements_of, times_of
 
-from ddct_bringup.headless import run_headless
-from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.build import make_observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.qp.solution import QpSolution
@@ -35,7 +35,7 @@ def measure() -> dict[str, Any]:
     named in `skipped`.
     """
     settings = thesis_settings(TABLE_4_1['mpc3'])
-    measurements = _measurements(_controller(settings))
+    heard = measurements_of(RUN, _controller(settings))
     ways: dict[str, tuple[Controller, int]] = {
         'ours, daqp': (_controller(settings), _ROUNDS),
         'ours, osqp': (_controller(replace(settings, backend='osqp')), _ROUNDS),
@@ -50,10 +50,10 @@ def measure() -> dict[str, Any]:
             ways[name] = (make(settings), rounds)
         except ImportError as error:
             skipped.append(f'{name} is not installed ({error})')
-    times = {name: _times(way, measurements, rounds) for name, (way, rounds) in ways.items()}
+    times = {name: times_of(way, heard, rounds) for name, (way, rounds) in ways.items()}
     ours = np.percentile(times['ours, daqp'], [50, 99])
     ways_figures = {
-        name: _figures(np.percentile(each, [50, 99]), ours) for name, each in times.items()
+        name: compared(np.percentile(each, [50, 99]), ours) for name, each in times.items()
     }
     return {'ways': ways_figures, 'skipped': skipped}
 
@@ -77,59 +77,6 @@ def print_table(figures: dict[str, Any]) -> None:
 
 def _controller(settings: MpcSettings) -> PredictiveController:
     return PredictiveController(MODEL, make_observer(RUN, MODEL), settings)
-
-
-class _Listening(Controller):
-    """Passes everything on and keeps the measurements."""
-
-    def __init__(self, controller: Controller) -> None:
-        self.controller, self.preview_steps = controller, controller.preview_steps
-        self.held: list[Measurement] = []
-        self.updated: list[Measurement] = []
-
-    def reset(self) -> None:
-        self.controller.reset()
-
-    def hold(self, measurement: Measurement) -> None:
-        self.held.append(measurement)
-        self.controller.hold(measurement)
-
-    def update(self, measurement: Measurement) -> Command:
-        self.updated.append(measurement)
-        return self.controller.update(measurement)
-
-
-def _measurements(controller: Controller) -> tuple[list[Measurement], list[Measurement]]:
-    listening = _Listening(controller)
-    run_headless(RUN, listening)
-    return listening.held, listening.updated
-
-
-def _times(
-    controller: Controller, run: tuple[list[Measurement], list[Measurement]], rounds: int
-) -> list[float]:
-    held, updated = run
-    times = []
-    for _ in range(rounds):
-        controller.reset()
-        for measurement in held:
-            controller.hold(measurement)
-        for measurement in updated:
-            started = time.perf_counter()
-            controller.update(measurement)
-            times.append(1e6 * (time.perf_counter() - started))
-    return times
-
-
-def _figures(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
-    median, p99 = times_us
-    median_ratio, p99_ratio = times_us / ours_us
-    return {
-        'median_us': float(median),
-        'p99_us': float(p99),
-        'median_ratio': float(median_ratio),
-        'p99_ratio': float(p99_ratio),
-    }
 
 
 class _Solver:

@@ -84,13 +84,14 @@ def _run(control: SlipControl, solvers: dict[str, Solve], exact: Solve | None) -
                 solutions[name].append(z)
     ours = np.percentile(times[DEFAULT_BACKEND], [50, 99])
     return {
-        name: _figures(np.percentile(taken, [50, 99]), ours)
+        name: compared(np.percentile(taken, [50, 99]), ours)
         | _error(control.structure.hessian, solutions[name][::_COMPARED], references)
         for name, taken in times.items()
     }
 
 
-def _figures(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
+def compared(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
+    """Return a median and a 99th percentile in us, (2,), and their ratios to ours."""
     ratios = times_us / ours_us
     return {
         'median_us': float(times_us[0]),

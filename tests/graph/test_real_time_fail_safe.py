@@ -1,7 +1,6 @@
 """Real time: the clutch opens by itself, at the stated rate, when the controller falls silent."""
 
 import signal
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from rosgraph_msgs.msg import Clock
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import START_S, Programs
 from support.runs import plan
+from support.silent_controller import run_until_silent
 from trajectory_msgs.msg import JointTrajectory
 
 from ddct_bringup.run.plan import RunPlan
@@ -83,7 +83,8 @@ def _run_without_a_stall(
     """Repeat a run in which a busy machine was too late for real time, at most twice."""
     for _ in range(3):
         with graph_of(run) as graph:
-            heard = _run_until_silent(graph, programs, signals)
+            heard = _Listener(context=graph.context)
+            run_until_silent(graph, programs, heard, heard.has_torque, signals, SILENT_AT_STEP)
             driveline = graph.nodes['driveline']
             assert isinstance(driveline, DrivelineNode)
             assert isinstance(driveline.owner, RealtimeOwner)
@@ -91,24 +92,6 @@ def _run_without_a_stall(
             if until_silent and driveline.owner.worst_lateness_s < STALL_S:
                 return heard
     raise AssertionError('this machine is too busy for real time')
-
-
-def _run_until_silent(
-    graph: InProcessGraph, programs: Programs, signals: list[signal.Signals]
-) -> _Listener:
-    """Run with the controller in a process of its own, which gets the signals at step 80."""
-    shared = graph.parameters['*'] | graph.parameters['controller']
-    controller = programs.start_node('ddct_controllers.controller_node', shared)
-    heard = _Listener(context=graph.context)
-    graph.add_other(heard)
-    graph.add_all(without=['controller'])
-    for number, sent in enumerate(signals):
-        step = SILENT_AT_STEP + 20 * number
-        graph.spin_until(partial(heard.has_torque, step), f'step {step}', START_S)
-        controller.send(sent)
-    graph.run()
-    controller.send(signal.SIGKILL)
-    return heard
 
 
 def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:

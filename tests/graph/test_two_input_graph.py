@@ -14,6 +14,7 @@ from sensor_msgs.msg import JointState
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import START_S, Programs
 from support.runs import bag_bytes, expected, plan, record
+from support.silent_controller import run_until_silent
 
 from ddct_bringup.run.plan import LAYOUTS
 from ddct_plant.fail_safe import REQUEST_TIMEOUT_S
@@ -111,7 +112,9 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
     run = plan('mpc4', mode='realtime', duration_s=1.8, changes=(LITTLE_SLEW,))
     for _ in range(3):
         with graph_of(run) as graph:
-            demands, torques = _run_until_silent(graph, programs, signals)
+            heard = _Listener(context=graph.context)
+            run_until_silent(graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP)
+            demands, torques = heard.demands, heard.torques
         gaps = [
             (last, first)
             for last, first in pairwise(sorted(torques))
@@ -215,21 +218,3 @@ def test_in_real_time_the_demand_is_delivered_until_the_first_request_and_not_he
     driver.tick(first + 1)
     graph.spin_until(lambda: len(driver.answers) == 2, 'the answer to a request')
     assert driver.answers == [(first, 308.0), (first + 1, 313.0)]
-
-
-def _run_until_silent(
-    graph: InProcessGraph, programs: Programs, signals: list[signal.Signals]
-) -> tuple[dict[int, float], dict[int, float]]:
-    """Run, send the controller the signals on the way, and return demands and torques by step."""
-    shared = graph.parameters['*'] | graph.parameters['controller']
-    controller = programs.start_node('ddct_controllers.controller_node', shared)
-    listener = _Listener(context=graph.context)
-    graph.add_other(listener)
-    graph.add_all(without=['controller'])
-    for number, sent in enumerate(signals):
-        step = SILENT_AT_STEP + 20 * number
-        graph.spin_until(partial(listener.has_come_to, step), f'step {step}', START_S)
-        controller.send(sent)
-    graph.run()
-    controller.send(signal.SIGKILL)
-    return listener.demands, listener.torques

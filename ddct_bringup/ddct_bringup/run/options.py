@@ -9,6 +9,7 @@ from ddct_plant.errors import ParameterError
 from ddct_plant.graph.run_info import package_version
 from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
 from ddct_plant.scenario_file import load_scenario, scenario_names
+from ddct_plant.scenario_options import add_scenario_options
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
@@ -19,12 +20,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
         metavar='NAME',
         help=f'{" | ".join(ARCHITECTURES)}; default: %(default)s',
     )
-    parser.add_argument(
-        '--scenario',
-        default='thesis',
-        metavar='NAME|FILE',
-        help='one that comes with the package, or a YAML file; default: %(default)s',
-    )
+    add_scenario_options(parser)
     parser.add_argument(
         '--clutch', default='linear', metavar='NAME', help='model; default: %(default)s'
     )
@@ -46,14 +42,6 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--seed', type=int, default=0, metavar='N', help='of random numbers; default: %(default)s'
-    )
-    parser.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        dest='overrides',
-        help='change a scenario key, such as load.slope_rad=0.05; may be repeated',
     )
     layout = parser.add_mutually_exclusive_group()
     layout.add_argument(

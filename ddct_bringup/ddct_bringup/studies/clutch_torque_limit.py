@@ -8,7 +8,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.thesis_table import THESIS_TABLE, ThesisRow
-from ddct_bringup.studies.scored_run import metrics_of, text
+from ddct_bringup.studies.scored_run import metrics_of
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
 from ddct_controllers.design.study import Study
 from ddct_controllers.mpc.qp.factory import make_backend
@@ -23,6 +23,7 @@ from ddct_controllers.mpc.transmission_model import (
 )
 from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 from ddct_plant.timebase import steps_in
 from ddct_plant.units import rpm_from_rad_s
 
@@ -86,12 +87,12 @@ def _cells(
     bound = limit_at(round(engagement_time_s, 2), strays_rad_s)
     return (
         label,
-        text(engagement_time_s, '.2f'),
-        text(strays_rad_s, '.1f'),
-        text(figures.torsion_speed_std_rpm, '.2f'),
-        text(bound.torsion_speed_std_rpm, '.2f'),
-        text(figures.acceleration_std_m_s2, '.3f'),
-        text(bound.acceleration_std_m_s2, '.3f'),
+        text_or_dash(engagement_time_s, '.2f'),
+        text_or_dash(strays_rad_s, '.1f'),
+        text_or_dash(figures.torsion_speed_std_rpm, '.2f'),
+        text_or_dash(bound.torsion_speed_std_rpm, '.2f'),
+        text_or_dash(figures.acceleration_std_m_s2, '.3f'),
+        text_or_dash(bound.acceleration_std_m_s2, '.3f'),
     )
 
 

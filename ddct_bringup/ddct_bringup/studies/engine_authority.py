@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ddct_bringup.headless import run_headless
-from ddct_bringup.studies.scored_run import metrics_of, text
+from ddct_bringup.studies.scored_run import metrics_of
 from ddct_bringup.studies.two_input_figures import HEADERS, cells
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
 from ddct_controllers.design.study import Study
 from ddct_plant.engine import EngineAuthority
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 
 CONTROLLERS = ('mpc4', 'mpc4_wear')
 DEVIATIONS_N_M = (40.0, 30.0, 20.0, 10.0, 5.0, 0.0)
@@ -45,6 +46,6 @@ def _cells(controller: str, authority: EngineAuthority) -> tuple[str, ...]:
     energy = metrics.friction_energy_j
     return (
         *cells(settings, trajectory),
-        text(metrics.peak_jerk_m_s3, '.1f'),
-        text(None if energy is None else energy / 1000.0, '.2f'),
+        text_or_dash(metrics.peak_jerk_m_s3, '.1f'),
+        text_or_dash(None if energy is None else energy / 1000.0, '.2f'),
     )

@@ -5,6 +5,7 @@ from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers.interface import Controller
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 
 FIGURE_HEADERS = ('t_a s', 'std w_sr rpm', 'std A_x m/s^2')
 
@@ -26,12 +27,7 @@ def scored_run(settings: RunSettings, controller: str | Controller) -> Metrics:
 def figures(metrics: Metrics) -> tuple[str, str, str]:
     """Return the cells below FIGURE_HEADERS; a dash for what is undefined."""
     return (
-        text(metrics.engagement_time_s, '.3f'),
-        text(metrics.torsion_speed_std_rpm, '.2f'),
-        text(metrics.acceleration_std_m_s2, '.3f'),
+        text_or_dash(metrics.engagement_time_s, '.3f'),
+        text_or_dash(metrics.torsion_speed_std_rpm, '.2f'),
+        text_or_dash(metrics.acceleration_std_m_s2, '.3f'),
     )
-
-
-def text(value: float | None, form: str) -> str:
-    """Return a number in a format, or a dash for None."""
-    return '-' if value is None else format(value, form)

@@ -6,13 +6,14 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless
-from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, metrics_of, text
+from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, metrics_of
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
 from ddct_controllers.design.study import Study
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 from ddct_plant.timebase import PERIOD_S
 from ddct_plant.units import rad_s_from_rpm, rpm_from_rad_s
 
@@ -63,7 +64,7 @@ def pedal_positions() -> Study:
                 f'{position:g}',
                 f'{engagement_time_s(ControllerContext(settings, {})):.2f}',
                 *figures(metrics_of(settings, trajectory)),
-                text(settled_s(settings, trajectory), '.2f'),
+                text_or_dash(settled_s(settings, trajectory), '.2f'),
             )
         )
     return Study(
@@ -81,7 +82,7 @@ def _row(name: str, settings: RunSettings) -> tuple[str, ...]:
         name,
         f'{settings.wear_gain:g}',
         *figures(metrics_of(settings, trajectory)),
-        text(settled_s(settings, trajectory), '.2f'),
+        text_or_dash(settled_s(settings, trajectory), '.2f'),
         f'{rpm_from_rad_s(trajectory.slip_speed[-1]):z.2f}',
         f'{deviation:.0f}',
     )

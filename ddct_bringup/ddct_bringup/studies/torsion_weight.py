@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
-from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, scored_run, text
+from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, scored_run
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
 from ddct_controllers.design.study import Study
 from ddct_controllers.mpc.offset_free_mpc import BASIS, default_torsion_weight
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 
 NAME = 'mpc_torsion'
 FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
@@ -45,6 +46,6 @@ def _row(factor: float) -> tuple[str, ...]:
         f'{weight:.2f}' + (' (default)' if factor == DEFAULT_FACTOR else ''),
         f'{factor:.3g}',
         *figures(metrics),
-        text(metrics.slip_rmse_rpm, '.2f'),
-        text(metrics.slip_final_rpm, 'z.2f'),
+        text_or_dash(metrics.slip_rmse_rpm, '.2f'),
+        text_or_dash(metrics.slip_final_rpm, 'z.2f'),
     )

@@ -3,8 +3,9 @@
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, metrics_of, text
+from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, metrics_of
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.table import text_or_dash
 from ddct_plant.timebase import PERIOD_S
 from ddct_plant.units import rpm_from_rad_s
 
@@ -26,9 +27,9 @@ def cells(settings: RunSettings, trajectory: Trajectory) -> tuple[str, ...]:
     start = settings.scenario.control_start_step
     return (
         engagement,
-        text(close_time_s(trajectory, start), '.2f'),
+        text_or_dash(close_time_s(trajectory, start), '.2f'),
         *deviations,
-        text(metrics.slip_final_rpm, '.1f'),
+        text_or_dash(metrics.slip_final_rpm, '.1f'),
         deviation_range(trajectory),
     )
 

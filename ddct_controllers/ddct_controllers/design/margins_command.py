@@ -9,7 +9,8 @@ from ddct_plant.errors import DdctError
 from ddct_plant.output_file import write_json
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
-from ddct_plant.table import print_table
+from ddct_plant.scenario_options import add_scenario_options
+from ddct_plant.table import print_table, text_or_dash
 
 _DESCRIPTION = """\
 Margins of the sampled loop with its hold and its 10 ms delay: at one wear gain, the
@@ -48,15 +49,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura of the margins'
     )
-    parser.add_argument('--scenario', default='thesis', metavar='NAME|FILE')
-    parser.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        dest='overrides',
-        help='change a scenario key, such as driveline.halfshaft_stiffness=8000; may be repeated',
-    )
+    add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
     parser.add_argument('--json', metavar='FILE', help='write all figures; - is standard output')
     parser.set_defaults(run=run)
 
@@ -98,13 +91,8 @@ def _row(entry: Evidence, wear_gain: float) -> list[str]:
     return [
         entry['controller'],
         'yes' if point['stable'] else 'no',
-        *(_text(point[key], form) for _, key, form in _POINT_COLUMNS),
-        _text((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
-        _text(entry['corners']['sensitivity_peak'], '.2f'),
+        *(text_or_dash(point[key], form) for _, key, form in _POINT_COLUMNS),
+        text_or_dash((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
+        text_or_dash(entry['corners']['sensitivity_peak'], '.2f'),
         str(entry['corners']['unstable']),
     ]
-
-
-def _text(value: float | None, form: str) -> str:
-    """Return a dash for what does not exist or has no limit."""
-    return '-' if value is None else format(value, form)

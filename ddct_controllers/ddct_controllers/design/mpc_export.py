@@ -8,6 +8,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings
 from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario_options import add_scenario_options
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -15,16 +16,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group('export to C (docs/control_unit.md)')
     group.add_argument('--export', type=Path, metavar='DIR', help='write C in place of studies')
     group.add_argument('--controller', metavar='NAME', help='(default: mpc3)')
-    group.add_argument('--scenario', metavar='NAME|FILE', help='(default: thesis)')
-    group.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        dest='overrides',
-        help='change a scenario key, such as controllers.mpc3.torque_rate_n_m_s=500; '
-        'may be repeated',
-    )
+    # Without defaults, so that one given without --export is noticed.
+    add_scenario_options(group, default=None, set_example='controllers.mpc3.torque_rate_n_m_s=500')
     group.add_argument('--architecture', choices=ARCHITECTURES, help='(default: detailed)')
     group.add_argument('--overwrite', action='store_true', help='replace an earlier export')
 

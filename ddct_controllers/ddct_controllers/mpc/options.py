@@ -7,6 +7,7 @@ from typing import Any
 from ddct_controllers.mpc.qp.factory import BACKENDS
 from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_controllers.mpc.transmission_model import SLIP_SPEED
+from ddct_controllers.option_keys import require_known_keys
 from ddct_plant.checks import require_choice, require_number
 from ddct_plant.errors import ParameterError
 from ddct_plant.units import rad_s_from_rpm
@@ -35,12 +36,7 @@ def with_options(
 
     `own` are further keys of this controller; it reads them itself.
     """
-    unknown = set(options) - set(OPTIONS) - set(own)
-    if unknown:
-        raise ParameterError(
-            f'controllers.{name}.{min(unknown, key=str)} is not a key of {name}: it has '
-            f'{", ".join((*own, *OPTIONS))}'
-        )
+    require_known_keys(name, options, (*own, *OPTIONS))
     changes: dict[str, Any] = {}
     for key, most in MOST_STEPS.items():
         if key in options:

@@ -1,5 +1,7 @@
 """A model predictive controller: observer, condensed program and solver at every period."""
 
+from typing import Generic, TypeVar
+
 import numpy as np
 
 from ddct_controllers.interface import Command, Controller, Measurement, Status
@@ -13,8 +15,10 @@ from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_plant.errors import ParameterError
 
+Estimator = TypeVar('Estimator', bound=StateEstimator)
 
-class PredictiveController(Controller):
+
+class PredictiveController(Controller, Generic[Estimator]):
     """
     Chooses the moves of the clutch torque that minimise the cost of `MpcSettings`.
 
@@ -26,7 +30,7 @@ class PredictiveController(Controller):
     """
 
     def __init__(
-        self, model: TransmissionModel, observer: StateEstimator, settings: MpcSettings
+        self, model: TransmissionModel, observer: Estimator, settings: MpcSettings
     ) -> None:
         """Build the program; raise ParameterError when the settings do not make one."""
         if len(settings.inputs) != 1 + self.commands_engine:
@@ -34,7 +38,8 @@ class PredictiveController(Controller):
                 f'MPC: {len(settings.inputs)} inputs given: {type(self).__name__} decides '
                 f'{1 + self.commands_engine}'
             )
-        self._observer = observer
+        self.observer = observer
+        """What estimates its state."""
         self.settings = settings
         """What it was built from."""
         self.program = condense(model, settings)
@@ -45,15 +50,10 @@ class PredictiveController(Controller):
         self.preview_steps = settings.prediction_steps if settings.preview else 0
         self.reset()
 
-    @property
-    def observer(self) -> StateEstimator:
-        """What estimates its state."""
-        return self._observer
-
     def reset(self) -> None:
         """Forget everything; the observer starts afresh from the next measurement."""
         self._solver.reset()
-        self._observer.reset()
+        self.observer.reset()
         self._own_torque = 0.0
         self._open_loop: float | None = None
         self._plan = np.zeros(self.program.structure.hessian.shape[0])
@@ -80,7 +80,7 @@ class PredictiveController(Controller):
         return Command(self._own_torque, status)
 
     def _correct(self, measurement: Measurement) -> np.ndarray:
-        return self._observer.correct(measured_speeds(measurement), measurement.load_torque)
+        return self.observer.correct(measured_speeds(measurement), measurement.load_torque)
 
     def _delivered(self, measurement: Measurement, request: float) -> float:
         """Return C_m over the period for a request in N m."""
@@ -90,7 +90,7 @@ class PredictiveController(Controller):
         """Keep the clutch torque request and predict its effect and that of C_m, in N m."""
         self._own_torque = clutch - measurement.open_loop_torque
         self._open_loop = measurement.open_loop_torque
-        self._observer.predict((max(clutch, 0.0), engine, measurement.load_torque))
+        self.observer.predict((max(clutch, 0.0), engine, measurement.load_torque))
 
     def _levels_before(self, measurement: Measurement) -> np.ndarray:
         """Return the inputs (inputs,) in N m if the controller did not move."""

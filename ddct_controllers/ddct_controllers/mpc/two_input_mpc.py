@@ -8,8 +8,7 @@ import numpy as np
 from ddct_controllers.interface import Command, Measurement, Status
 from ddct_controllers.mpc.engine_model import with_engine
 from ddct_controllers.mpc.limits import CLUTCH
-from ddct_controllers.mpc.observer import StateEstimator
-from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.predictive_controller import Estimator, PredictiveController
 from ddct_controllers.mpc.references import references_along_tangent
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.transmission_model import TransmissionModel
@@ -19,7 +18,7 @@ ENGINE = 1
 """Place of the engine among the inputs."""
 
 
-class TwoInputController(PredictiveController):
+class TwoInputController(PredictiveController[Estimator]):
     """
     Decides the clutch torque request and the engine's deviation from the driver's demand.
 
@@ -33,7 +32,7 @@ class TwoInputController(PredictiveController):
     def __init__(
         self,
         model: TransmissionModel,
-        observer: StateEstimator,
+        observer: Estimator,
         settings: MpcSettings,
         authority: EngineAuthority,
     ) -> None:

@@ -7,14 +7,11 @@ import numpy as np
 from ddct_controllers.interface import ControllerContext, Measurement, Status
 from ddct_controllers.mpc.build import make_wear_observer
 from ddct_controllers.mpc.disturbances import offset_free_model
-from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_options, mpc4_settings
-from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_controllers.mpc.wear_noise import WearNoise
 from ddct_controllers.mpc.wear_observer import WearObserver
 from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
-from ddct_plant.engine import EngineAuthority
 
 NAME = 'mpc4_wear'
 SLIP_ACCELERATION_WEIGHT = 0.05
@@ -25,38 +22,25 @@ WEAR_NOISE = WearNoise(clutch_drift_n_m=0.0)
 """With a gain beyond its bounds an estimated error of C_f would make this loop oscillate."""
 
 
-class TwoInputWearMpc(TwoInputController):
-    """Predicts with the clutch gain K_usura that is estimated, as `WearMpc` does."""
+class TwoInputWearMpc(TwoInputController[WearObserver]):
+    """
+    Predicts with the clutch gain K_usura that is estimated, as `WearMpc` does.
 
-    def __init__(
-        self,
-        model: TransmissionModel,
-        observer: WearObserver,
-        settings: MpcSettings,
-        authority: EngineAuthority,
-    ) -> None:
-        """Take the `offset_free_model` of a new clutch."""
-        self._wear_observer = observer
-        super().__init__(model, observer, settings, authority)
-
-    @property
-    def observer(self) -> WearObserver:
-        """What estimates its state and K_usura."""
-        return self._wear_observer
+    The model is the `offset_free_model` of a new clutch.
+    """
 
     def _output_divisor(self) -> float:
-        return self._wear_observer.wear_gain
+        return self.observer.wear_gain
 
     def _solve(
         self, state: np.ndarray, before: np.ndarray, jump: np.ndarray, measurement: Measurement
     ) -> tuple[np.ndarray, Status]:
         """Solve with everything but the request divided by K_usura; `state` already is."""
-        observer = self._wear_observer
-        gain = observer.wear_gain
+        gain = self.observer.wear_gain
         # What the engine can reach follows from the demand itself.
         scaled = replace(divided(measurement, gain), engine_torque=measurement.engine_torque)
         moves, status = self._solve_divided(state, before, jump, scaled, gain)
-        return moves, (*status, *wear_status(observer))
+        return moves, (*status, *wear_status(self.observer))
 
 
 def make_two_input_wear_mpc(context: ControllerContext) -> TwoInputWearMpc:

@@ -8,9 +8,7 @@ from ddct_controllers.mpc.disturbances import offset_free_model
 from ddct_controllers.mpc.offset_free_mpc import BASIS
 from ddct_controllers.mpc.options import with_options
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc import thesis_settings
-from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_controllers.mpc.wear_noise import WearNoise
 from ddct_controllers.mpc.wear_observer import WearObserver
 from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
@@ -18,38 +16,26 @@ from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noi
 _NAME = 'mpc_wear'
 
 
-class WearMpc(PredictiveController):
+class WearMpc(PredictiveController[WearObserver]):
     """
     A predictive controller whose prediction has the clutch gain K_usura that is estimated.
 
     Its program is that of a new clutch, condensed once, for everything `divided` by the estimate;
-    limits and moves remain those of the request. The cost is that of the transmitted torque's
+    limits and moves remain those of the request. The model is the `offset_free_model` of a new
+    clutch. The cost is that of the transmitted torque's
     moves, so that the closed loop is the same at every wear.
     """
 
-    def __init__(
-        self, model: TransmissionModel, observer: WearObserver, settings: MpcSettings
-    ) -> None:
-        """Take the `offset_free_model` of a new clutch."""
-        self._wear_observer = observer
-        super().__init__(model, observer, settings)
-
-    @property
-    def observer(self) -> WearObserver:
-        """What estimates its state and K_usura."""
-        return self._wear_observer
-
     def _output_divisor(self) -> float:
-        return self._wear_observer.wear_gain
+        return self.observer.wear_gain
 
     def _solve(
         self, state: np.ndarray, before: np.ndarray, jump: np.ndarray, measurement: Measurement
     ) -> tuple[np.ndarray, Status]:
         """Solve with everything that drives the slip divided by K_usura; `state` already is."""
-        observer = self._wear_observer
-        scaled = divided(measurement, observer.wear_gain)
+        scaled = divided(measurement, self.observer.wear_gain)
         moves, status = super()._solve(state, before, jump, scaled)
-        return moves, (*status, *wear_status(observer))
+        return moves, (*status, *wear_status(self.observer))
 
 
 def make_wear_mpc(context: ControllerContext) -> WearMpc:

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ddct_controllers.interface import ControllerContext
+from ddct_controllers.option_keys import require_known_keys
 from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,7 @@ def number_options(
 
     Raise ParameterError for a key that is not among them, or a value out of its range.
     """
-    unknown = set(context.gains) - set(options)
-    if unknown:
-        raise ParameterError(
-            f'controllers.{name}.{min(unknown, key=str)} is not a key of {name}: it has '
-            f'{", ".join(options)}'
-        )
+    require_known_keys(name, context.gains, options)
     return {
         key: require_number(
             f'controllers.{name}.{key}',

@@ -6,6 +6,7 @@ from ddct_controllers.design.h_infinity.cleaning import factor_text
 from ddct_controllers.design.h_infinity.report import Record
 from ddct_controllers.design.thesis.gate_tables import GateTable
 from ddct_plant.cascade import Factor
+from ddct_plant.table import text_or_dash
 
 _LOOP_HEADERS = (
     *('controller', 'loop', 'W_s S', 'W_t T', 'W_u T', 't_r s', 's^ %', 'met'),
@@ -86,7 +87,7 @@ def _weight_table(records: Sequence[Record]) -> GateTable:
             (
                 record['name'],
                 record['weights']['recipe'],
-                *(_text(record['weights'][key], form) for _, key, form in columns),
+                *(text_or_dash(record['weights'][key], form) for _, key, form in columns),
                 'yes' if record['weights']['hold_and_delay_in_plant'] else 'no',
             )
             for record in records
@@ -160,7 +161,7 @@ def _corner_table(records: Sequence[Record]) -> GateTable:
                 record['name'],
                 str(record['corners']['corners']),
                 str(record['corners']['unstable']),
-                _text(record['corners']['sensitivity_peak'], '.3f'),
+                text_or_dash(record['corners']['sensitivity_peak'], '.3f'),
                 f'{record["corners"]["wear_gain"]:.2f}',
                 ', '.join(f'{name} {x:g}' for name, x in record['corners']['factors'].items()),
             )
@@ -175,15 +176,15 @@ def _loop_cells(loop: Record) -> tuple[str, ...]:
     norms = loop['norms']
     return (
         *(f'{norms[key]:.3f}' for key in ('sensitivity', 'complementary', 'uncertainty')),
-        _text(loop['rise_time_s'], '.3f'),
+        text_or_dash(loop['rise_time_s'], '.3f'),
         f'{100.0 * loop["overshoot"]:.1f}',
         'yes' if loop['meets_specifications'] else 'no',
-        _text(loop['crossover_rad_s'], '.2f'),
-        _text(loop['sensitivity_peak'], '.3f'),
-        _text(loop['complementary_peak'], '.3f'),
-        _text(loop['phase_margin_deg'], '.1f'),
-        _text(loop['gain_margin_db'], '.1f'),
-        _text(loop['delay_margin_s'], '.3f'),
+        text_or_dash(loop['crossover_rad_s'], '.2f'),
+        text_or_dash(loop['sensitivity_peak'], '.3f'),
+        text_or_dash(loop['complementary_peak'], '.3f'),
+        text_or_dash(loop['phase_margin_deg'], '.1f'),
+        text_or_dash(loop['gain_margin_db'], '.1f'),
+        text_or_dash(loop['delay_margin_s'], '.3f'),
     )
 
 
@@ -191,8 +192,3 @@ def _product(factors: Sequence[Factor], variable: str) -> str:
     """Return factors; with 4 digits in z a slow pole would read as an integrator."""
     digits = 5 if variable == 'z' else 4
     return ' '.join(factor_text(factor, variable, digits) for factor in factors)
-
-
-def _text(value: float | None, form: str) -> str:
-    """Return a dash for what does not exist or has no limit."""
-    return '-' if value is None else format(value, form)

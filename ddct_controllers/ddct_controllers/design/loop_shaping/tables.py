@@ -8,6 +8,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
     rise_time_crossover_product,
 )
 from ddct_controllers.design.thesis.gate_tables import GateTable
+from ddct_plant.table import text_or_dash
 
 _LOOP_HEADERS = (
     *('unstable poles', 'w_c rad/s', 'PM deg', 'GM dB', 'M_s', 'M_t'),
@@ -113,18 +114,18 @@ def _peak_name(contour: Record) -> str:
 
 
 def _row(name: str, asked: float | None, found: float | None, unit: str) -> tuple[str, ...]:
-    return (name, _text(asked, '.3g'), _text(found, '.3g'), unit)
+    return (name, text_or_dash(asked, '.3g'), text_or_dash(found, '.3g'), unit)
 
 
 def _loop_cells(row: Record) -> tuple[str, ...]:
     kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
     return (
         str(row['unstable_poles']),
-        _text(row['crossover_rad_s'], '.2f'),
-        _text(row['phase_margin_deg'], '.1f'),
-        _text(row['gain_margin_db'], '.1f'),
-        _text(row['sensitivity_peak'], '.3f'),
-        _text(row['complementary_peak'], '.3f'),
+        text_or_dash(row['crossover_rad_s'], '.2f'),
+        text_or_dash(row['phase_margin_deg'], '.1f'),
+        text_or_dash(row['gain_margin_db'], '.1f'),
+        text_or_dash(row['sensitivity_peak'], '.3f'),
+        text_or_dash(row['complementary_peak'], '.3f'),
         'kept out of' if kept_out['S'] else 'crossed',
         'kept out of' if kept_out['T'] else 'crossed',
     )
@@ -137,8 +138,3 @@ def _factors(factors: Sequence[float | Sequence[float]]) -> str:
         else f'({", ".join(f"{number:.6g}" for number in factor)})'
         for factor in factors
     )
-
-
-def _text(value: float | None, form: str) -> str:
-    """Return a dash for what does not exist or has no limit."""
-    return '-' if value is None else format(value, form)

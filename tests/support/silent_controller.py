@@ -1,0 +1,36 @@
+"""A real-time run whose controller falls silent on the way."""
+
+import signal
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from support.in_process_graph import InProcessGraph
+from support.processes import START_S, Programs
+
+_APART_STEPS = 20
+
+
+def run_until_silent(
+    graph: InProcessGraph,
+    programs: Programs,
+    listener: Any,
+    has_come_to: Callable[[int], bool],
+    signals: Sequence[signal.Signals],
+    first_step: int,
+) -> None:
+    """
+    Run with the controller in a process of its own, which gets the signals from a step on.
+
+    `has_come_to(step)` says whether the listener, a node, has heard of that step.
+    """
+    shared = graph.parameters['*'] | graph.parameters['controller']
+    controller = programs.start_node('ddct_controllers.controller_node', shared)
+    graph.add_other(listener)
+    graph.add_all(without=['controller'])
+    for number, sent in enumerate(signals):
+        step = first_step + _APART_STEPS * number
+        graph.spin_until(partial(has_come_to, step), f'step {step}', START_S)
+        controller.send(sent)
+    graph.run()
+    controller.send(signal.SIGKILL)
