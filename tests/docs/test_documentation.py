@@ -1,6 +1,7 @@
 """Every command in the documentation runs, every link leads somewhere, every page is found."""
 
 import os
+import re
 import shutil
 import stat
 import subprocess
@@ -9,6 +10,8 @@ from pathlib import Path
 
 import pytest
 from support.documented import PAGES, ROOT, Block, blocks, links
+
+from ddct_bringup import compare
 
 NOT_RUN_HERE = {
     'make': 'would run this very test, or take its environment away; .ci/run and users run them',
@@ -172,3 +175,15 @@ def test_every_page_is_three_clicks_from_the_top():
     for _ in range(CLICKS):
         found |= {target for page in found if page.suffix == '.md' for target in links(page)}
     assert [str(page) for page in PAGES if page not in found] == []
+
+
+def test_the_table_of_the_readme_is_what_make_demo_prints(tmp_path, capsys):
+    """All but the line that rich draws as wide as its table."""
+    makefile = (ROOT / 'Makefile').read_text(encoding='utf-8')
+    (names,) = re.findall(r'compare \\\n\s+--controllers (\S+) --out runs/demo', makefile)
+    assert compare.main(['--controllers', names, '--headless', '--out', str(tmp_path / 'x')]) == 0
+    printed = {' '.join(line.split()) for line in capsys.readouterr().out.splitlines()}
+    (table,) = [block for block in blocks() if block.page == 'README.md' and 't_a' in block.text]
+    shown = [line for line in table.lines if '─' not in line]
+    assert len(shown) == 2 + len(names.split(','))
+    assert [line for line in shown if line not in printed] == []
