@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from ddct_controllers.design.h_infinity.bilinear import from_w_plane
 from ddct_plant.cascade import Factor
 from ddct_plant.checks import require_choice
 from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.input_file import read_text_file
 from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 from ddct_plant.timebase import PERIOD_S
+from ddct_plant.yaml_text import dump_yaml, parse_yaml
 
 FORMAT = 'ddct-linear-controller-1'
 """First value of every file; a change of meaning changes the number."""
@@ -69,7 +69,7 @@ class DesignedController:
             },
             'provenance': dict(self.provenance),
         }
-        return yaml.safe_dump(content, sort_keys=False, default_flow_style=None)
+        return dump_yaml(content, default_flow_style=None)
 
 
 def require_name(name: object) -> None:
@@ -90,16 +90,11 @@ def load_designed(file: str) -> DesignedController:
     """Read a controller; raise DdctError or ParameterError that names file, key and remedy."""
     path = Path(file)
     try:
-        content = yaml.safe_load(path.read_text(encoding='utf-8'))
+        text = read_text_file(path)
     except OSError as error:
         raise DdctError(f'controller file {path}: cannot be read ({error.strerror})') from error
-    except UnicodeDecodeError as error:
-        raise DdctError(f'controller file {path}: it is not UTF-8 text') from error
-    except yaml.YAMLError as error:
-        where = ' '.join(str(error).split())
-        raise DdctError(f'controller file {path}: not valid YAML: {where}') from error
     try:
-        return _from_mapping(content)
+        return _from_mapping(parse_yaml(text))
     except ParameterError as error:
         raise ParameterError(f'controller file {path}: {error}') from error
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from ddct_plant.errors import DdctError
+from ddct_plant.input_file import read_text_file
 
 Row = Sequence[str]
 
@@ -25,9 +26,9 @@ class PageTable(Protocol):
 def read_page(path: str) -> str:
     """Return the text of the page that `--write-doc` names; raise DdctError without one."""
     try:
-        return Path(path).read_text(encoding='utf-8')
-    except (OSError, UnicodeDecodeError) as error:
-        raise DdctError(f'--write-doc {path}: cannot be read ({error})') from error
+        return read_text_file(Path(path))
+    except OSError as error:
+        raise DdctError(f'--write-doc {path}: cannot be read ({error.strerror})') from error
 
 
 def marked_tables(page: str, program: str) -> list[str]:

@@ -9,6 +9,7 @@ from ddct_plant.engine import EngineAuthority, TorqueProfile
 from ddct_plant.engine_speed_reference import EngineSpeedReference
 from ddct_plant.errors import ParameterError
 from ddct_plant.load import LoadParameters
+from ddct_plant.names import require_name
 from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.timebase import steps_in
 from ddct_plant.vehicle import VehicleParameters
@@ -58,6 +59,7 @@ class Scenario:
     """One driving situation and how it is scored; see docs/scenario.md for every key."""
 
     name: str
+    """A plain name: files are called after it."""
     description: str
     duration_s: float
     """Length of the run, a multiple of 10 ms."""
@@ -79,7 +81,8 @@ class Scenario:
     """Gains and options by controller name, checked by the controller that takes them."""
 
     def __post_init__(self) -> None:
-        """Check times and pedal; raise ParameterError that names a bad one."""
+        """Check name, times and pedal; raise ParameterError that names a bad one."""
+        require_name('name', self.name)
         require_number('duration_s', self.duration_s, above=0.0, at_most=3600.0)
         require_number('control_start_s', self.control_start_s, at_least=0.0, at_most=3600.0)
         require_number('pedal_position', self.pedal_position, at_least=0.0, at_most=1.0)

@@ -5,27 +5,16 @@ import difflib
 import hashlib
 import importlib.resources
 import json
-import re
 import typing
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.input_file import read_text_file
 from ddct_plant.scenario import Scenario
+from ddct_plant.yaml_text import dump_yaml, parse_yaml
 
-
-class _Loader(yaml.SafeLoader):
-    """Reads 1e-3 as a number, as YAML 1.2 does; PyYAML follows 1.1, for which it is text."""
-
-
-_Loader.add_implicit_resolver(
-    'tag:yaml.org,2002:float',
-    re.compile(r'[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$'),
-    list('-+.0123456789'),
-)
 _PARTS = (
     'engine',
     'engine_authority',
@@ -55,10 +44,9 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     """
     text, default_name = _read(name_or_file)
     try:
-        content = yaml.load(text, _Loader)
-    except yaml.YAMLError as error:
-        where = ' '.join(str(error).split())
-        raise DdctError(f'scenario {name_or_file}: not valid YAML: {where}') from error
+        content = parse_yaml(text)
+    except ParameterError as error:
+        raise ParameterError(f'scenario {name_or_file}: {error}') from error
     if not isinstance(content, dict):
         raise DdctError(f'scenario {name_or_file}: the file must be a mapping of keys to values')
     content.setdefault('name', default_name)
@@ -84,7 +72,7 @@ def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
 
 def scenario_to_yaml(scenario: Scenario) -> str:
     """Return the YAML text that `load_scenario` reads back to an equal scenario."""
-    return yaml.safe_dump(_plain(dataclasses.asdict(scenario)), sort_keys=False)
+    return dump_yaml(_plain(dataclasses.asdict(scenario)))
 
 
 def scenario_digest(scenario: Scenario) -> str:
@@ -106,9 +94,9 @@ def _read(name_or_file: str) -> tuple[str, str]:
         return resource.read_text(encoding='utf-8'), name_or_file
     path = Path(name_or_file)
     try:
-        return path.read_text(encoding='utf-8'), path.stem
-    except (OSError, UnicodeDecodeError) as error:
-        raise DdctError(f'scenario {path}: cannot be read ({error})') from error
+        return read_text_file(path), path.stem
+    except OSError as error:
+        raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
 
 
 def _apply(content: dict[str, Any], override: str) -> None:
@@ -116,9 +104,9 @@ def _apply(content: dict[str, Any], override: str) -> None:
     if not equals or not key:
         raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
     try:
-        value = yaml.load(text, _Loader)
-    except yaml.YAMLError as error:
-        raise ParameterError(f'--set {override}: the value is not valid YAML') from error
+        value = parse_yaml(text)
+    except ParameterError as error:
+        raise ParameterError(f'--set {override}: {error}') from error
     *folders, leaf = key.split('.')
     target = content
     for folder in folders:

@@ -3,6 +3,8 @@
 import sys
 from collections.abc import Sequence
 
+from ddct_plant.printable import printable
+
 
 def text_or_dash(value: float | None, form: str) -> str:
     """Return a number in a format, or a dash for what does not exist or has no limit."""
@@ -11,6 +13,7 @@ def text_or_dash(value: float | None, form: str) -> str:
 
 def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Print rows of text on standard output; every row has one cell per header."""
+    title, rows = printable(title), [[printable(cell) for cell in row] for row in rows]
     if sys.stdout.isatty() and _print_rich(title, headers, rows):
         return
     widths = [max(len(cell) for cell in column) for column in zip(headers, *rows, strict=True)]

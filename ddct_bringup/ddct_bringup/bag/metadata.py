@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import yaml
+from ddct_plant.errors import ParameterError
+from ddct_plant.yaml_text import dump_yaml, parse_yaml
 
 ROOT_KEY = 'rosbag2_bagfile_information'
 RECORD_NAME = 'rosbag2'
@@ -70,7 +71,7 @@ def bag_information(
                     'name': topic.name,
                     'type': topic.type_name,
                     'serialization_format': SERIALIZATION,
-                    'offered_qos_profiles': yaml.safe_load(topic.qos),
+                    'offered_qos_profiles': parse_yaml(topic.qos),
                     'type_description_hash': topic.type_hash,
                 },
                 'message_count': topic.messages,
@@ -106,11 +107,11 @@ def metadata_yaml(information: Mapping[str, Any]) -> str:
 def information_of(record: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of a `rosbag2` metadata record; empty when it cannot be understood."""
     try:
-        information = yaml.safe_load(record.get(RECORD_KEY, ''))
-    except (yaml.YAMLError, ValueError):
+        information = parse_yaml(record.get(RECORD_KEY, ''))
+    except ParameterError:
         return {}
     return information if isinstance(information, dict) else {}
 
 
 def _dump(value: Any) -> str:
-    return yaml.safe_dump(value, sort_keys=False, allow_unicode=True, width=1000)
+    return dump_yaml(value, allow_unicode=True, width=1000)

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import yaml
-
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.run.timing_file import read_timing
@@ -20,6 +18,7 @@ from ddct_controllers.registry import controller_names
 from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import scenario_digest, scenario_from_mapping
+from ddct_plant.yaml_text import parse_yaml
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ def settings_of(recording: Recording) -> RunSettings | None:
     """Return the settings that a bag tells; None where it does not, or they are unknown here."""
     facts = recording.facts
     try:
-        content = yaml.safe_load(recording.custom_data.get('scenario_yaml', ''))
+        content = parse_yaml(recording.custom_data.get('scenario_yaml', ''))
         return RunSettings(
             scenario_from_mapping(content),
             facts.architecture,
@@ -84,7 +83,7 @@ def settings_of(recording: Recording) -> RunSettings | None:
             facts.mode,
             facts.seed,
         )
-    except (yaml.YAMLError, DdctError, TypeError, ValueError):
+    except (DdctError, TypeError, ValueError):
         return None
 
 

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.errors import ParameterError
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import scenario_to_yaml
+from ddct_plant.yaml_text import dump_yaml
 
 LAYOUTS = ('processes', 'single-process', 'headless')
 """One process per node, all nodes in one process, or no ROS graph at all."""
@@ -81,5 +80,5 @@ class RunPlan:
             '/**' if node == '*' else f'/**/{node}': {'ros__parameters': parameters}
             for node, parameters in self.node_parameters(folder, work).items()
         }
-        path.write_text(yaml.safe_dump(content, sort_keys=False), encoding='utf-8')
+        path.write_text(dump_yaml(content), encoding='utf-8')
         return path

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.input_file import read_text_file
 from ddct_plant.output_file import write_text
 from ddct_plant.page_tables import fill_tables, read_page
 
@@ -92,9 +93,7 @@ def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool)
         folder.mkdir(parents=True, exist_ok=True)
         taken = [path for path in files if path.exists()]
         page = folder / _PAGE
-        ours = not page.exists() or generator in page.read_text(encoding='utf-8')
-    except UnicodeDecodeError:
-        ours = False
+        ours = not page.exists() or generator in read_text_file(page)
     except OSError as error:
         raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
     if not ours:

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
-import yaml
-
 from ddct_controllers.design.thesis.thesis_number import ThesisNumber, Tolerance
 from ddct_plant.errors import ParameterError
+from ddct_plant.yaml_text import parse_yaml
 
 _KEYS = frozenset(field.name for field in fields(ThesisNumber))
 _NUMBERS = 'numbers'
@@ -28,7 +27,7 @@ def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
     It is a list of groups; each has a list `numbers` of entries, and any other key as default of
     all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one.
     """
-    numbers = tuple(_entries(yaml.safe_load(text)))
+    numbers = tuple(_entries(parse_yaml(text)))
     names = Counter(f'{number.section}, {number.item}' for number in numbers)
     repeated = [name for name, count in names.items() if count > 1]
     if repeated:

@@ -1,0 +1,44 @@
+"""Read files that a user names: regular ones only, and no more than fits into memory."""
+
+import errno
+import os
+import stat
+from pathlib import Path
+
+MOST_TEXT_BYTES = 1_000_000
+"""Of a scenario, a controller or a page: hundreds of times what they have."""
+_KINDS = {
+    stat.S_IFDIR: 'a folder',
+    stat.S_IFIFO: 'a pipe',
+    stat.S_IFCHR: 'a device',
+    stat.S_IFBLK: 'a device',
+    stat.S_IFSOCK: 'a socket',
+}
+
+
+def read_file(path: Path, most_bytes: int) -> bytes:
+    """
+    Return what a regular file holds.
+
+    Raise OSError, whose `strerror` is fit for a user, when it cannot be read, is something else
+    (a pipe would be waited for, a device may never end) or holds more than `most_bytes`.
+    """
+    # Without O_NONBLOCK it is the opening of a pipe that waits.
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    with open(descriptor, 'rb') as file:  # noqa: PTH123 - a descriptor has no path
+        kind = stat.S_IFMT(os.fstat(descriptor).st_mode)
+        if kind != stat.S_IFREG:
+            what = _KINDS.get(kind, 'no file')
+            raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
+    return data
+
+
+def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
+    """Return the UTF-8 text of a file as `read_file` does; OSError too when it is none."""
+    try:
+        return read_file(path, most_bytes).decode('utf-8')
+    except UnicodeDecodeError as error:
+        raise OSError(errno.EILSEQ, 'it is not UTF-8 text', str(path)) from error
