@@ -15,7 +15,7 @@ from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
 from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
-from ddct_plant.cli import ProgramParser, run_program
+from ddct_plant.cli import ProgramParser, complain, run_program
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.output_file import STDOUT, require_place, write_json
 from ddct_plant.run_settings import RunSettings
@@ -86,7 +86,7 @@ def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
         run = ReportRun(unreadable_entry(bag, error, relative_to=out))
     if run.recording is not None:
         return run
-    print(f'{PROGRAM}: {plan.name}: {run.entry["reason"]}', file=sys.stderr)
+    complain(PROGRAM, f'{plan.name}: {run.entry["reason"]}')
     return ReportRun({**run.entry, 'controller': plan.name})
 
 

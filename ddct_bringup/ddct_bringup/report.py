@@ -17,7 +17,7 @@ from ddct_bringup.report_page.runs import (
 )
 from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.scoring import bags_in
-from ddct_plant.cli import ProgramParser, run_program
+from ddct_plant.cli import ProgramParser, complain, run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import write_text
 
@@ -50,7 +50,7 @@ def _report(argv: list[str]) -> int:
     write_report(runs, options.out)
     for run in runs:
         if not run.entry['valid']:
-            print(f'{PROGRAM}: {run.entry["bag"]}: {run.entry["reason"]}', file=sys.stderr)
+            complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')
     return 0 if all(run.entry['valid'] for run in runs) else 1
 
 

@@ -22,9 +22,10 @@ from ddct_bringup.scores.scoring import (
 )
 from ddct_bringup.scores.signals_csv import signals_csv
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
-from ddct_plant.cli import ProgramParser, run_program
+from ddct_plant.cli import ProgramParser, complain, run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.output_file import STDOUT, write_json, write_text
+from ddct_plant.printable import printable
 
 PROGRAM = 'score'
 
@@ -58,7 +59,7 @@ def _score(argv: list[str]) -> int:
         try:
             runs.append(_score_one(bag, folder, options))
         except DdctError as error:
-            print(f'{PROGRAM}: {error}', file=sys.stderr)
+            complain(PROGRAM, error)
             runs.append(unreadable_entry(bag, error, relative_to=folder))
     if options.json:
         write_json(options.json, scores_document(runs))
@@ -73,7 +74,7 @@ def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> E
     if options.repair:
         repair = repair_bag(bag)
         if repair.original is not None:
-            print(f'{PROGRAM}: {repair}', file=sys.stderr)
+            complain(PROGRAM, repair)
     recording = read_bag(bag)
     name = bag_name(bag, folder)
     if options.signals_csv is not None:
@@ -93,7 +94,10 @@ def _write_signals(folder: Path, name: str, text: str) -> None:
 
 def _csv(runs: Sequence[Entry]) -> str:
     text = io.StringIO()
-    rows = flat(runs)
+    rows = [
+        {key: printable(value) if isinstance(value, str) else value for key, value in row.items()}
+        for row in flat(runs)
+    ]
     writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
     writer.writeheader()
     writer.writerows(rows)

@@ -1,12 +1,15 @@
 """What every program does around its work: one-line errors and honest exit codes."""
 
 import argparse
+import contextlib
+import errno
 import os
 import sys
 from collections.abc import Callable
 from typing import Any, NoReturn
 
 from ddct_plant.errors import DdctError
+from ddct_plant.printable import printable
 
 USAGE = 2
 """Exit code after options that do not make sense, as argparse gives it."""
@@ -14,6 +17,12 @@ INTERRUPTED = 130
 """Exit code after SIGINT, as shells give it."""
 PIPE_CLOSED = 141
 """Exit code after the reader of our output has gone, as shells give it for SIGPIPE."""
+_ADVICE = {
+    errno.ENAMETOOLONG: 'give a shorter one',
+    errno.ENOSPC: 'free some space',
+    errno.EDQUOT: 'free some space',
+    errno.EACCES: 'give another place, or yourself the right',
+}
 
 
 class ProgramParser(argparse.ArgumentParser):
@@ -36,19 +45,53 @@ def run_program(
     Run `main_function(argv)` and return the program's exit code.
 
     `argv` is without the program's name; None takes it from the command line. A DdctError is
-    printed on standard error as `<name>: <text>` and gives 1.
+    printed on standard error as `<name>: <text>` and gives 1, and so is what the operating system
+    refuses: a name that is too long, a full disk or standard output.
     """
     try:
-        code = main_function(sys.argv[1:] if argv is None else argv)
-        sys.stdout.flush()
+        try:
+            return main_function(sys.argv[1:] if argv is None else argv)
+        finally:  # argparse ends the program itself after --help
+            _flush()
     except DdctError as error:
-        print(f'{name}: {error}', file=sys.stderr)
+        complain(name, error)
         return 1
     except KeyboardInterrupt:
-        print(f'{name}: interrupted', file=sys.stderr)
+        complain(name, 'interrupted')
         return INTERRUPTED
     except BrokenPipeError:
-        # The interpreter flushes standard output once more when it ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return PIPE_CLOSED
-    return code
+    except OSError as error:
+        complain(name, _refused(error))
+        _drop_output()
+        return 1
+
+
+def complain(name: str, text: object) -> None:
+    """Print `<name>: <text>` as one line on standard error, fit for a terminal."""
+    print(f'{name}: {printable(text)}', file=sys.stderr, flush=True)
+
+
+def _flush() -> None:
+    if sys.stdout is not None:  # it is None when it was closed before the start
+        sys.stdout.flush()
+
+
+def _refused(error: OSError) -> str:
+    """Say what the operating system refused, and for what."""
+    what = error.filename
+    if what is None:
+        try:
+            _flush()
+        except OSError:
+            what = 'standard output'
+    reason = error.strerror or str(error)
+    advice = _ADVICE.get(error.errno or 0, 'give another one') if what else ''
+    return ': '.join(filter(None, (what, reason, advice)))
+
+
+def _drop_output() -> None:
+    """Let what is left of the output go nowhere: the interpreter flushes once more."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

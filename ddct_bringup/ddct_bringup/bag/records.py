@@ -12,12 +12,17 @@ from typing import Any
 from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
-from zstandard import ZstdError
+from zstandard import ZstdError, frame_content_size
 
 from ddct_bringup.bag.metadata import RECORD_NAME, information_of
 from ddct_plant.errors import DdctError
+from ddct_plant.input_file import read_file
 
 MAGIC = b'\x89MCAP0\r\n'
+MOST_BYTES = 1_000_000_000
+"""Of a bag's file; an hour's run has a quarter of that."""
+MOST_CHUNK_BYTES = 64_000_000
+"""Of one chunk unpacked; recorders make chunks of about 1 MB."""
 
 _READ_ERRORS = (
     McapError,
@@ -97,8 +102,7 @@ def read_records(path: Path) -> BagRecords:
     bag = BagRecords(path)
     try:
         _verify_summary(data)
-        reader = StreamReader(io.BytesIO(data), validate_crcs=True, record_size_limit=len(data))
-        bag.add(reader.records)
+        bag.add(_unpacked(data, validate_crcs=True))
     except _READ_ERRORS as error:
         raise DdctError(
             f'{path}: the recording is damaged ({_one_line(error)}): '
@@ -116,22 +120,38 @@ def salvage_records(path: Path) -> BagRecords:
     data = _bytes_of(path)
     bag = BagRecords(path)
     with contextlib.suppress(*_READ_ERRORS):  # what was read before the damage is kept
-        bag.add(_until_damage(data))
+        bag.add(_unpacked(data, validate_crcs=False))
     return bag
 
 
-def _until_damage(data: bytes) -> Iterator[McapRecord]:
-    reader = StreamReader(io.BytesIO(data), emit_chunks=True, record_size_limit=len(data))
+def _unpacked(data: bytes, *, validate_crcs: bool) -> Iterator[McapRecord]:
+    """Yield the records, those in chunks too; the checksums of chunks always count."""
+    reader = StreamReader(
+        io.BytesIO(data),
+        emit_chunks=True,
+        validate_crcs=validate_crcs,
+        record_size_limit=len(data),
+    )
     for record in reader.records:
         if isinstance(record, Chunk):
+            _require_bounded(record)
             yield from breakup_chunk(record, validate_crc=True)
         else:
             yield record
 
 
+def _require_bounded(chunk: Chunk) -> None:
+    """Raise ValueError for a small chunk that would fill the memory when it is unpacked."""
+    size = chunk.uncompressed_size
+    if chunk.compression == 'zstd':
+        size = max(size, frame_content_size(chunk.data))
+    if size > MOST_CHUNK_BYTES:
+        raise ValueError(f'a chunk has {size} bytes unpacked, more than {MOST_CHUNK_BYTES}')
+
+
 def _bytes_of(path: Path) -> bytes:
     try:
-        data = path.read_bytes()
+        data = read_file(path, MOST_BYTES)
     except OSError as error:
         raise DdctError(f'{path}: cannot read the bag: {error.strerror}') from error
     if not data.startswith(MAGIC):

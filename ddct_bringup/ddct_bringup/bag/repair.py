@@ -76,16 +76,19 @@ def _rewrite(mcap: Path) -> Repair:
 
 def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes]]) -> None:
     """Write messages with the channels of the damaged file, so that nothing else is needed."""
-    channels = [
-        Channel(
-            channel.topic,
-            records.schemas[channel.schema_id].name,
-            records.schemas[channel.schema_id].data.decode(),
-            channel.metadata[HASH_KEY],
-            channel.metadata[QOS_KEY],
-        )
-        for channel in records.channels.values()
-    ]
+    try:
+        channels = [
+            Channel(
+                channel.topic,
+                records.schemas[channel.schema_id].name,
+                records.schemas[channel.schema_id].data.decode(),
+                channel.metadata[HASH_KEY],
+                channel.metadata[QOS_KEY],
+            )
+            for channel in records.channels.values()
+        ]
+    except (LookupError, UnicodeDecodeError) as error:
+        raise DdctError(f'what it says of its channels is unusable ({error!r})') from error
     index = {channel.topic: i for i, channel in enumerate(channels)}
     file = McapFile(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'})
     for topic, stamp, data in messages:

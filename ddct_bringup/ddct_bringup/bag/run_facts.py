@@ -3,9 +3,18 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
-from ddct_plant.errors import DdctError
+from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.json_text import parse_json
+from ddct_plant.names import require_name
 from ddct_plant.timebase import steps_in
+
+_NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
+"""Facts that are plain names: they go into tables, labels and names of files."""
+
+_LARGEST = 1e9
+"""Of any number, in its unit."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +61,8 @@ class RunFacts:
         missing = [field.name for field in fields(cls) if field.name not in custom_data]
         if missing:
             raise DdctError(f'no {missing[0]} in the custom data: not a recording of this project')
+        for name in _NAMES:
+            _require_name(name, custom_data)
         first, last = _number_list('score_window_s', custom_data, 2)
         return cls(
             controller=custom_data['controller'],
@@ -67,9 +78,16 @@ class RunFacts:
         )
 
 
+def _require_name(key: str, custom_data: Mapping[str, str]) -> None:
+    try:
+        require_name(key, custom_data[key])
+    except ParameterError as error:
+        raise _unusable(key, custom_data) from error
+
+
 def _number(key: str, custom_data: Mapping[str, str]) -> float:
     value = _parsed(key, custom_data)
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if not _is_number(value):
         raise _unusable(key, custom_data)
     return value
 
@@ -78,15 +96,21 @@ def _number_list(key: str, custom_data: Mapping[str, str], length: int) -> list[
     values = _parsed(key, custom_data)
     if not isinstance(values, list) or len(values) != length:
         raise _unusable(key, custom_data)
-    if not all(isinstance(value, (int, float)) for value in values):
+    if not all(_is_number(value) for value in values):
         raise _unusable(key, custom_data)
     return values
 
 
-def _parsed(key: str, custom_data: Mapping[str, str]) -> object:
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return abs(value) <= _LARGEST
+
+
+def _parsed(key: str, custom_data: Mapping[str, str]) -> Any:
     try:
-        return json.loads(custom_data[key])
-    except ValueError as error:
+        return parse_json(custom_data[key])
+    except ParameterError as error:
         raise _unusable(key, custom_data) from error
 
 

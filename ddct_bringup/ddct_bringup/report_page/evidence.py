@@ -1,15 +1,17 @@
 """Frequency-domain evidence of the runs: what `compare` left beside the bags, or computed now."""
 
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.report_page.loop_columns import is_whole
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
 from ddct_controllers.design.analysis.evidence import Evidence, frequency_evidence
 from ddct_plant.errors import DdctError
+from ddct_plant.input_file import read_text_file
+from ddct_plant.json_text import parse_json
 
 COMPUTED = 'computed for this page'
 
@@ -61,17 +63,17 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
     if conditions.get('scenario_digest') != run.digest:
         return None
     for entry in entries:
-        if entry.get('controller') == controller:
-            evidence = LoopEvidence(controller, wear_gain, entry)
-            return evidence if evidence.point or not entry['linear'] else None
+        if isinstance(entry, dict) and entry.get('controller') == controller:
+            whole = is_whole(entry, wear_gain)
+            return LoopEvidence(controller, wear_gain, entry) if whole else None
     return None
 
 
 def _content(file: Path) -> dict[str, Any]:
     """Return the JSON object of a file, empty where it is absent or something else."""
     try:
-        content = json.loads(file.read_text(encoding='utf-8'))
-    except (OSError, ValueError):
+        content = parse_json(read_text_file(file))
+    except (OSError, DdctError):
         return {}
     return content if isinstance(content, dict) else {}
 

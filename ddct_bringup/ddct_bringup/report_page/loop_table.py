@@ -4,21 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_bringup.report_page.evidence import LoopEvidence
+from ddct_bringup.report_page.loop_columns import LOOP_COLUMNS
 from ddct_controllers.design.analysis.evidence import Evidence
-
-LOOP_COLUMNS = (
-    ('gain_margin_db', 'GM', 'dB', '.1f', 'Least increase of the gain that makes it unstable'),
-    ('phase_margin_deg', 'PM', '°', '.1f', 'Least change of phase that does'),
-    ('delay_margin_s', 'DM', 's', '.3f', 'Least additional delay that does'),
-    ('disk_margin', 'disk', '', '.2f', 'Disk margin α = 2 / max |S − T|'),
-    ('sensitivity_peak', 'M_s', '', '.2f', 'Peak of |1/(1 + L)|'),
-    ('complementary_peak', 'M_t', '', '.2f', 'Peak of |L/(1 + L)|'),
-    ('crossover_rad_s', 'w_c', 'rad/s', '.2f', 'Highest frequency with |L| = 1'),
-    ('bandwidth_rad_s', 'w_b', 'rad/s', '.2f', 'Lowest frequency with |T| below 0.71'),
-    ('driveline_mode_hz', 'mode', 'Hz', '.2f', 'Closed-loop pole pair nearest the zeros of P_2'),
-    ('driveline_mode_damping', 'damping', '', '.3f', 'Of that mode'),
-)
-"""Key of the evidence, symbol, unit, format and meaning."""
 
 NOT_LINEAR = 'not linear, so without a frequency response'
 

@@ -1,32 +1,40 @@
 """Read the wall-clock figures of a run, which stand beside its bag in `timing.json`."""
 
-import json
 from pathlib import Path
 
 from ddct_bringup.run.run_timing import TIMING_FILE, RunTiming
+from ddct_plant.checks import require_number
 from ddct_plant.errors import DdctError
+from ddct_plant.input_file import read_text_file
+from ddct_plant.json_text import parse_json
+
+MOST_BYTES = 50_000_000
+"""An hour's run has an eighth of that."""
 
 
 def read_timing(folder: Path) -> RunTiming | None:
     """Return the timing of a bag folder, None without one; raise DdctError if it is unusable."""
     path = folder / TIMING_FILE
     try:
-        text = path.read_text(encoding='utf-8')
+        text = read_text_file(path, MOST_BYTES)
     except FileNotFoundError:
         return None
-    except (OSError, UnicodeDecodeError) as error:
-        raise DdctError(f'{path}: cannot read the timing: {error}') from error
+    except OSError as error:
+        raise DdctError(f'{path}: cannot read the timing: {error.strerror}') from error
     try:
-        values = json.loads(text)
+        values = parse_json(text)
         return RunTiming(
-            update_times_us=[float(time) for time in values['update_times_us']],
-            missed_steps=int(values['missed_steps']),
-            resends=int(values['resends']),
-            late_messages=int(values['late_messages']),
-            wall_time_s=float(values['wall_time_s']),
-            steps=int(values['steps']),
+            update_times_us=[
+                require_number('update_times_us', time, at_least=0.0)
+                for time in values['update_times_us']
+            ],
+            wall_time_s=require_number('wall_time_s', values['wall_time_s'], at_least=0.0),
+            **{
+                name: int(require_number(name, values[name], at_least=0.0))
+                for name in ('missed_steps', 'resends', 'late_messages', 'steps')
+            },
         )
-    except (ValueError, KeyError, TypeError, OverflowError) as error:
+    except (DdctError, LookupError, TypeError) as error:
         raise DdctError(
             f'{path}: not the timing of a run ({error!r}): delete it to score without'
         ) from error

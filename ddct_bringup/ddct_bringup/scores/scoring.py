@@ -1,6 +1,7 @@
 """Score bags: from a recording to its entry in `scores.json`."""
 
 import dataclasses
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ Entry = dict[str, Any]
 """One run of `scores.json`: bag, controller, ..., valid, reason, metrics, fallbacks."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
+_COUNT = re.compile('[0-9]{1,9}')
 _FACT_NAMES = (
     'controller',
     'architecture',
@@ -86,7 +88,7 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     None for a controller whose status does not count them.
     """
     count = dict(trajectory.status[-1]).get('fallbacks', '')
-    return int(count) if count.isdigit() else None
+    return int(count) if _COUNT.fullmatch(count) else None
 
 
 def why_invalid(trajectory: Trajectory, steps: int) -> str:

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ddct_bringup.scores.scoring import Entry
+from ddct_plant.printable import printable
 
 UNDEFINED = '-'
 _PIPED_WIDTH = 200
@@ -68,17 +69,16 @@ def print_runs(
     for column in columns:
         table.add_column(column.heading, justify='right' if column.number else 'left')
     for run in runs:
-        table.add_row(*(Text(column.text(run)) for column in columns))
+        table.add_row(*(Text(printable(column.text(run))) for column in columns))
     console = Console(
         file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
     )
     console.print(table)
     for run in runs:
         if not run['valid']:
-            reason = f'{run["bag"]}: not valid: {run["reason"]}'
-            console.print(Text(reason, 'bold'), soft_wrap=True)
+            _note(console, f'{run["bag"]}: not valid: {run["reason"]}')
         elif run['fallbacks']:
-            console.print(Text(f'{run["bag"]}: {fallback_note(run)}', 'bold'), soft_wrap=True)
+            _note(console, f'{run["bag"]}: {fallback_note(run)}')
 
 
 def fallback_note(run: Entry) -> str:
@@ -87,6 +87,10 @@ def fallback_note(run: Entry) -> str:
         f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
         'time: the figures are partly those of its fallback'
     )
+
+
+def _note(console: Console, text: str) -> None:
+    console.print(Text(printable(text), 'bold'), soft_wrap=True)
 
 
 def _text(value: Any, form: str) -> str:

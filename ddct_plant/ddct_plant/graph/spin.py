@@ -10,6 +10,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.task import Future
 
+from ddct_plant.cli import run_program
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.arguments import (
     help_asked,
@@ -99,20 +100,20 @@ def run_node(
     as `arguments`, checked. 0 after its work is done, after SIGINT or SIGTERM, or after `--help`;
     1, with one line on standard error, after a DdctError.
     """
-    try:
+
+    def program(argv: list[str]) -> int:
         if arguments is None:
-            if help_asked(sys.argv):
+            if help_asked(argv):
                 print(node_help(name, factory, sys.argv))
                 return 0
-            require_ros_arguments(sys.argv[1:])
+            require_ros_arguments(argv)
         with stop_signals() as stops:
             error = _run(factory, arguments, lambda: bool(stops))
-    except DdctError as failure:
-        error = failure
-    if error is None:
+        if error is not None:
+            raise error
         return 0
-    print(f'{name}: {error}', file=sys.stderr, flush=True)
-    return 1
+
+    return run_program(name, program, None)
 
 
 def _run(

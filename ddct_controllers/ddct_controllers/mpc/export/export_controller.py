@@ -14,6 +14,7 @@ from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.transmission_model import SLIP_SPEED
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.run_info import package_version
+from ddct_plant.input_file import MOST_TEXT_BYTES, read_file
 from ddct_plant.output_file import write_text
 from ddct_plant.run_settings import RunSettings
 
@@ -58,7 +59,7 @@ def _require_free(folder: Path, *, overwrite: bool) -> None:
                 f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite'
             )
         for file in {HEADER, SOURCE, EXAMPLE} & set(present):
-            if _MARK not in (folder / file).read_text(encoding='utf-8', errors='replace'):
+            if _MARK not in read_file(folder / file, MOST_TEXT_BYTES).decode(errors='replace'):
                 raise DdctError(
                     f'--export {folder}: {file} is no such export; choose another folder'
                 )
