@@ -73,6 +73,7 @@ class Architecture:
         self._open_loop = open_loop
         self._load = load
         self._controller = controller
+        self._name = f'controller {controller.registered_name or type(controller).__name__!r}'
         self._start_step = feedback_start_step
 
     def update(self, measurement: Measurement) -> TorqueRequest:
@@ -110,18 +111,35 @@ class Architecture:
         """Return the command with plain floats; raise DdctError for any other answer."""
         if not isinstance(command, Command):
             raise DdctError(
-                f"the controller's answer at step {step} is of type {type(command).__name__}: "
+                f'{self._name}: its answer at step {step} is of type {type(command).__name__}: '
                 'return a ddct_controllers.interface.Command'
             )
-        clutch = _torque(f"the controller's torque at step {step}", command.clutch_torque)
+        if not _is_status(command.status):
+            raise DdctError(
+                f'{self._name}: its status at step {step} is {command.status!r}: give a tuple of '
+                "pairs of printable text, (('key', 'value'),)"
+            )
+        clutch = _torque(f'{self._name}: its torque at step {step}', command.clutch_torque)
         engine = command.engine_torque
         if self._controller.commands_engine:
-            engine = _torque(f"the controller's engine torque at step {step}", engine)
+            engine = _torque(f'{self._name}: its engine torque at step {step}', engine)
         elif engine is not None:
             raise DdctError(
-                f'the controller gave an engine torque at step {step}: set its commands_engine'
+                f'{self._name}: it gave an engine torque at step {step}: set its commands_engine'
             )
         return Command(clutch, command.status, engine)
+
+
+def _is_status(status: object) -> bool:
+    """Say whether the graph and a terminal can take it as `controller/status`."""
+    if type(status) is not tuple:
+        return False
+    return all(
+        type(pair) is tuple
+        and len(pair) == 2
+        and all(type(text) is str and text.isprintable() for text in pair)
+        for pair in status
+    )
 
 
 def _torque(source: str, torque: object) -> float:

@@ -90,6 +90,8 @@ class Controller(ABC):
     While its architecture holds feedback off, `hold` is called in place of `update`.
     """
 
+    registered_name: str = ''
+    """What errors call it: the registry gives it the name under which it was asked for."""
     preview_steps: int = 0
     """How many steps beyond the present one the controller wants the reference for."""
     commands_engine: bool = False

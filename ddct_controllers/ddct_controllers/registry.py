@@ -14,6 +14,7 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.names import require_name
 from ddct_plant.run_settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
@@ -41,7 +42,9 @@ def make_controller(name: str, settings: RunSettings) -> Controller:
     else:
         factory = _own_factories().get(name) or _third_party_factory(name)
     gains = settings.scenario.controllers.get(name, {})
-    return factory(ControllerContext(settings, gains))
+    controller = factory(ControllerContext(settings, gains))
+    controller.registered_name = name
+    return controller
 
 
 def controller_label(name: str) -> str:
@@ -84,6 +87,7 @@ def _linear_factory(name: str, model: FactoredTransferFunction | StateSpace) -> 
 def _third_party_factory(name: str) -> Factory:
     for point in _entry_points():
         if point.name == name:
+            require_name('controller name', name)  # it names the folder of the bag
             return _loaded(point)
     choices = ', '.join(controller_names())
     raise ParameterError(
@@ -109,9 +113,24 @@ def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
                 f'controller {point.name!r}: {point.value} returned '
                 f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
             )
+        _require_plain(point.name, controller)
         return controller
 
     return make
+
+
+def _require_plain(name: str, controller: Controller) -> None:
+    """Raise DdctError unless what the graph is built from is of the declared types."""
+    preview = controller.preview_steps
+    if type(preview) is not int or preview < 0:
+        raise DdctError(
+            f'controller {name!r}: its preview_steps is {preview!r}: give a whole number of steps'
+        )
+    if type(controller.commands_engine) is not bool:
+        raise DdctError(
+            f'controller {name!r}: its commands_engine is {controller.commands_engine!r}: '
+            'give True or False'
+        )
 
 
 def _entry_points() -> importlib.metadata.EntryPoints:

@@ -18,10 +18,9 @@ INTERRUPTED = 130
 PIPE_CLOSED = 141
 """Exit code after the reader of our output has gone, as shells give it for SIGPIPE."""
 _ADVICE = {
-    errno.ENAMETOOLONG: 'give a shorter one',
-    errno.ENOSPC: 'free some space',
-    errno.EDQUOT: 'free some space',
-    errno.EACCES: 'give another place, or yourself the right',
+    errno.ENAMETOOLONG: 'give a shorter name',
+    errno.ENOSPC: 'free some space or choose another place',
+    errno.EDQUOT: 'free some space or choose another place',
 }
 
 
@@ -35,7 +34,13 @@ class ProgramParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """End the program."""
-        self.exit(USAGE, f'{self.prog}: {message}: see {self.prog} --help\n')
+        self.exit(USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Write help or version; where argparse would pass over it, OSError tells of failure."""
+        stream = file or sys.stderr
+        if message and stream is not None:
+            stream.write(message)
 
 
 def run_program(
@@ -79,16 +84,10 @@ def _flush() -> None:
 
 
 def _refused(error: OSError) -> str:
-    """Say what the operating system refused, and for what."""
-    what = error.filename
-    if what is None:
-        try:
-            _flush()
-        except OSError:
-            what = 'standard output'
-    reason = error.strerror or str(error)
-    advice = _ADVICE.get(error.errno or 0, 'give another one') if what else ''
-    return ': '.join(filter(None, (what, reason, advice)))
+    """Say what the operating system refused; files that are written name themselves."""
+    what = 'the output' if error.filename is None else error.filename
+    advice = _ADVICE.get(error.errno or 0, 'choose another place')
+    return f'{what}: {error.strerror or error}: {advice}'
 
 
 def _drop_output() -> None:

@@ -13,6 +13,6 @@ def require_name(what: str, name: object) -> None:
     """Raise ParameterError unless `name` of `what` is a plain name, so never part of a path."""
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise ParameterError(
-            f'{what} is {name!r}: a name has up to {MOST_CHARACTERS} of A to Z, a to z, 0 to 9, '
-            'dots, dashes and underscores, and begins with none of the first two'
+            f'{what} is {name!r}: use up to {MOST_CHARACTERS} letters (A to Z, a to z), digits, '
+            'dots, dashes and underscores, no dot or dash first'
         )

@@ -4,13 +4,12 @@ import importlib
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import rclpy
 from rclpy.context import Context
 from rclpy.parameter import Parameter
-from rclpy.signals import SignalHandlerOptions
 
 from ddct_bringup.run.graph_nodes import GRAPH_NODES, NodeSpec
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
 
@@ -25,7 +24,7 @@ def run_single_process(
     KeyboardInterrupt when `stopped()` becomes true.
     """
     context = Context()
-    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    init_ros([], context)
     nodes: list[GraphNode] = []
     try:
         for spec in GRAPH_NODES:

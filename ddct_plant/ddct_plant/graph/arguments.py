@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Sequence
 
 import rclpy
+from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.errors import DdctError, ParameterError
@@ -12,6 +13,7 @@ from ddct_plant.graph.node import GraphNode
 
 HELP = ('-h', '--help')
 ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
+_NO_LOGS = 'failed to initialize logging'
 
 
 def help_asked(arguments: Sequence[str]) -> bool:
@@ -35,19 +37,25 @@ def require_ros_arguments(arguments: Sequence[str]) -> None:
             )
 
 
-def init_ros(arguments: Sequence[str] | None) -> None:
-    """Initialise rclpy with the arguments; raise DdctError for what it cannot use."""
+def init_ros(arguments: Sequence[str] | None, context: Context | None = None) -> None:
+    """
+    Initialise rclpy, or one context of it, with the arguments; None takes the command line's.
+
+    Raise DdctError for what it cannot use.
+    """
     require_domain()
     try:
         rclpy.init(
             args=None if arguments is None else list(arguments),
+            context=context,
             signal_handler_options=SignalHandlerOptions.NO,
         )
     except RuntimeError as error:  # so rcl refuses arguments and environment variables
         reason = str(error).split(', at /')[0]
-        raise DdctError(
-            f'{reason}: mend what stands behind {ROS_ARGUMENTS} or in ROS_*'
-        ) from error
+        advice = f'mend what stands behind {ROS_ARGUMENTS} or in ROS_*'
+        if _NO_LOGS in reason:
+            advice = 'ROS writes logs: set HOME or ROS_LOG_DIR to a folder that can be written'
+        raise DdctError(f'{reason}: {advice}') from error
 
 
 def require_declared(node: GraphNode) -> None:

@@ -5,11 +5,14 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from ddct_controllers.design.analysis.driveline_mode import driveline_mode
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
 from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
+from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.errors import DdctError
 from ddct_plant.lti import StateSpace
@@ -47,7 +50,7 @@ def frequency_evidence(names: Sequence[str], settings: RunSettings) -> Evidence:
 
 
 def _controller_evidence(name: str, settings: RunSettings, corners: PlantCorners) -> Evidence:
-    model = make_controller(name, settings).linear_model()
+    model = _linear_model(name, make_controller(name, settings))
     entry: Evidence = {'controller': controller_label(name), 'linear': model is not None}
     if model is None:
         return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
@@ -58,16 +61,36 @@ def _controller_evidence(name: str, settings: RunSettings, corners: PlantCorners
             for gain in sorted({*WEAR_GAINS, settings.wear_gain})
         }
         worst = _corner_evidence(model, corners)
-    except DdctError as error:
-        raise DdctError(
-            f'controller {name!r}: its linear_model cannot be used: {error}'
-        ) from error
+    except (DdctError, np.linalg.LinAlgError) as error:
+        raise _unusable(name, error) from error
     return entry | {
         'nominal': wear[1.0],
         'stable_wear_gain': _stable_wear_gain(wear[1.0]),
         'wear': list(wear.values()),
         'corners': worst,
     }
+
+
+def _linear_model(name: str, controller: Controller) -> StateSpace | None:
+    """Return the model; raise DdctError for what no loop can be closed with."""
+    try:
+        model: object = controller.linear_model()
+    except Exception as error:
+        raise _unusable(name, f'{type(error).__name__}: {error}') from error
+    if model is None:
+        return None
+    if not isinstance(model, StateSpace):
+        raise _unusable(
+            name, f'it is of type {type(model).__name__}, not ddct_plant.lti.StateSpace'
+        )
+    if model.d.shape != (1, 1):
+        outputs, inputs = model.d.shape
+        raise _unusable(name, f'it has {inputs} inputs and {outputs} outputs: give one of each')
+    return model
+
+
+def _unusable(name: str, reason: object) -> DdctError:
+    return DdctError(f'controller {name!r}: its linear_model cannot be used: {reason}')
 
 
 def loop_evidence(
