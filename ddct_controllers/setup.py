@@ -16,7 +16,7 @@ setup(
         (f'share/{PACKAGE}', ['package.xml']),
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
-    install_requires=['setuptools'],
+    install_requires=['setuptools', 'control', 'daqp', 'matplotlib', 'numpy', 'osqp', 'scipy'],
     extras_require={'test': ['pytest'], 'lmi': ['clarabel']},
     zip_safe=False,
     maintainer='DDCT team',

@@ -16,7 +16,7 @@ setup(
         (f'share/{PACKAGE}', ['package.xml']),
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
-    install_requires=['setuptools'],
+    install_requires=['setuptools', 'numpy', 'pyyaml', 'rich', 'scipy'],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='DDCT team',

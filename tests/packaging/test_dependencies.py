@@ -1,0 +1,122 @@
+"""What the product imports is what package.xml, setup.py and the way with apt tell to install."""
+
+import ast
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+ROS = {
+    *('ament_index_python', 'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs'),
+    *('rcl_interfaces', 'rclpy', 'rosgraph_msgs', 'sensor_msgs', 'std_msgs', 'trajectory_msgs'),
+}
+"""Modules of ROS packages, which package.xml names as they are and PyPI does not have."""
+FROM_PYPI = {
+    'bokeh': ('bokeh', 'python3-bokeh-pip'),
+    'clarabel': ('clarabel', None),
+    'control': ('control', 'python-control-pip'),
+    'daqp': ('daqp', None),
+    'foxglove': ('foxglove-sdk', None),
+    'jinja2': ('jinja2', 'python3-jinja2'),
+    'markupsafe': ('markupsafe', None),
+    'matplotlib': ('matplotlib', 'python3-matplotlib'),
+    'mcap': ('mcap', None),
+    'mcap_ros2': ('mcap-ros2-support', 'mcap-ros2-support'),
+    'numpy': ('numpy', 'python3-numpy'),
+    'osqp': ('osqp', None),
+    'rich': ('rich', 'python3-rich'),
+    'scipy': ('scipy', 'python3-scipy'),
+    'yaml': ('pyyaml', 'python3-yaml'),
+    'zstandard': ('zstandard', None),
+}
+"""By module its name on PyPI, and its key in ros/rosdistro's rosdep/python.yaml if it has one."""
+NOT_IMPORTED = {'ddct_controllers': {'control'}, 'ddct_reference': {'rclpy'}}
+"""Modules that a package declares and does not import: not yet, or only by another's class."""
+
+
+def imported(package: str) -> set[str]:
+    """Return the top-level modules that a package's code imports, other than Python's own."""
+    modules = {package}
+    for file in (ROOT / package / package).rglob('*.py'):
+        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.Import):
+                modules |= {alias.name.partition('.')[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                modules.add(node.module.partition('.')[0])
+    return modules - {package} - set(sys.stdlib_module_names)
+
+
+def declared_to_ros(package: str) -> set[str]:
+    """Return what a package's package.xml needs at run time."""
+    tree = ElementTree.parse(ROOT / package / 'package.xml')
+    return {element.text for element in tree.iter('exec_depend') if element.text}
+
+
+def declared_to_pip(package: str) -> tuple[set[str], set[str]]:
+    """Return what a package's setup.py requires, and what it has as extras for its users."""
+    tree = ast.parse((ROOT / package / 'setup.py').read_text(encoding='utf-8'))
+    call = next(
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == 'setup'
+    )
+    options = {option.arg: option.value for option in call.keywords}
+    required = set(ast.literal_eval(options['install_requires'])) - {'setuptools'}
+    extras = ast.literal_eval(options['extras_require'])
+    return required, {name for key, names in extras.items() if key != 'test' for name in names}
+
+
+def test_every_module_that_is_imported_is_in_one_of_the_tables() -> None:
+    modules = {module for package in PACKAGES for module in imported(package)}
+    assert modules <= {*PACKAGES, *ROS, *FROM_PYPI}
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_package_xml_names_exactly_what_is_imported_and_has_a_key(package: str) -> None:
+    expected = set()
+    for module in imported(package) | NOT_IMPORTED.get(package, set()):
+        key = FROM_PYPI[module][1] if module in FROM_PYPI else module
+        expected |= {key} if key else set()
+    assert declared_to_ros(package) == expected | implied_by_ros(package)
+
+
+def implied_by_ros(package: str) -> set[str]:
+    """Return what is imported by a name that is made when the program runs."""
+    # `wire.message_type` imports the package of each recorded topic's type.
+    if package != 'ddct_bringup':
+        return set()
+    from ddct_bringup.bag.topics import TOPICS
+
+    return {topic.type.partition('/')[0] for topic in TOPICS} | {'builtin_interfaces'}
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_setup_py_requires_exactly_what_is_imported_from_pypi(package: str) -> None:
+    modules = imported(package) | NOT_IMPORTED.get(package, set())
+    required, extras = declared_to_pip(package)
+    assert required | extras == {FROM_PYPI[each][0] for each in modules if each in FROM_PYPI}
+    assert not required & extras
+
+
+def test_the_page_on_apt_names_what_rosdep_cannot_install() -> None:
+    page = (ROOT / 'docs' / 'setup.md').read_text(encoding='utf-8')
+    told = set(re.findall(r'`([a-z0-9-]+)`', page.partition('## With apt')[2]))
+    modules = {module for package in PACKAGES for module in imported(package)}
+    assert {name for module in modules for name in without_key(module)} <= told
+
+
+def without_key(module: str) -> set[str]:
+    name, key = FROM_PYPI.get(module, (module, module))
+    return set() if key else {name}
+
+
+def test_the_requirements_of_the_wheel_path_name_all_of_it() -> None:
+    lines = (ROOT / 'requirements.in').read_text(encoding='utf-8').splitlines()
+    names = {re.split(r'[\[<=\s#]', line, maxsplit=1)[0] for line in lines}
+    assert {name for name, _ in FROM_PYPI.values()} <= names
