@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Protocol
 
+import numpy as np
+
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.checks import require_finite
@@ -81,13 +83,19 @@ class Architecture:
         load_torque = self._load.torque(measurement.vehicle_speed)
         open_loop = self._open_loop.update(measurement.engine_torque, load_torque)
         measurement = measurement.within(load_torque, open_loop)
-        if measurement.step >= self._start_step:
-            feedback = 'on'
-            command = self._checked(self._controller.update(measurement), measurement.step)
-        else:
-            feedback = 'held off'
-            self._controller.hold(measurement)
-            command = self._feedback_off(measurement)
+        try:
+            if measurement.step >= self._start_step:
+                feedback = 'on'
+                command = self._checked(self._controller.update(measurement), measurement.step)
+            else:
+                feedback = 'held off'
+                self._controller.hold(measurement)
+                command = self._feedback_off(measurement)
+        except np.linalg.LinAlgError as error:  # the numbers of a loop that diverges
+            raise DdctError(
+                f'{self._name}: it cannot go on at step {measurement.step} ({error}): the loop '
+                'diverges in this scenario, or its options do not suit it'
+            ) from error
         torque = open_loop + command.clutch_torque
         return TorqueRequest(
             torque,

@@ -3,10 +3,11 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from ddct_plant.cli import run_program
+from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError, ParameterError
 
 
@@ -41,6 +42,54 @@ def test_an_interrupt_gives_130(capsys):
 def test_a_fault_of_the_program_keeps_its_traceback():
     with pytest.raises(ZeroDivisionError):
         run_program('x', raising(ZeroDivisionError()), [])
+
+
+@pytest.mark.parametrize(
+    ('work', 'says'),
+    [
+        ("print('x' * 100_000)", 'the output: No space left on device'),
+        ("print('x')", 'the output: No space left on device'),
+        ("ProgramParser(prog='x').parse_args(['--help'])", 'the output: No space left on device'),
+        ("print('x'); raise DdctError('too much')", 'No space left on device'),
+        ("Path('a' * 300).exists()", f'{"a" * 300}: File name too long: give a shorter name'),
+        ("Path('/proc/x').write_text('')", '/proc/x: No such file or directory'),
+    ],
+)
+@pytest.mark.parametrize('unbuffered', ['', '1'])
+def test_what_the_system_refuses_is_one_line_without_a_traceback(work, says, unbuffered):
+    program = (
+        'import sys\n'
+        'from pathlib import Path\n'
+        'from ddct_plant.cli import ProgramParser, run_program\n'
+        'from ddct_plant.errors import DdctError\n'
+        f'def work(_):\n    {work}\n    return 0\n'
+        "sys.exit(run_program('x', work, []))"
+    )
+    environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(filter(None, sys.path))}
+    with Path('/dev/full').open('w') as full:
+        done = subprocess.run(
+            [sys.executable, '-c', program],
+            env={**environment, 'PYTHONUNBUFFERED': unbuffered},
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    (line,) = done.stderr.splitlines()
+    assert line.startswith('x: ')
+    assert says in line
+
+
+def test_without_a_standard_output_the_work_is_done(monkeypatch):
+    monkeypatch.setattr(sys, 'stdout', None)
+    assert run_program('x', lambda argv: 0, []) == 0
+
+
+def test_control_characters_on_the_command_line_do_not_reach_the_terminal(capsys):
+    with pytest.raises(SystemExit):
+        ProgramParser(prog='x').parse_args(['--\x1b[31m'])
+    assert capsys.readouterr().err == 'x: unrecognized arguments: --\\x1b[31m: see x --help\n'
 
 
 def test_a_reader_that_has_gone_ends_the_program_quietly():

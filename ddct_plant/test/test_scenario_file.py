@@ -1,5 +1,7 @@
 """Scenarios are read whole or refused with the key that is wrong."""
 
+import json
+
 import pytest
 
 from ddct_plant.errors import DdctError, ParameterError
@@ -74,6 +76,13 @@ def test_an_override_changes_one_key_and_the_digest(scenario_file):
         (MINIMAL.replace('duration_s: 1.0\n', ''), 'key duration_s is missing'),
         ('- 1', 'must be a mapping'),
         ('a: [', 'not valid YAML'),
+        (
+            MINIMAL + 'duration_s: 2.0',
+            "line 5: the key 'duration_s' is given twice, first in line 1",
+        ),
+        (MINIMAL + 'description: !!python/object/apply:os.getcwd []', 'the tag'),
+        (MINIMAL + 'load: &a {x: *a}', 'the alias *a'),
+        ('[' * 2000, 'nested more than'),
     ],
 )
 def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, complaint):
@@ -82,6 +91,40 @@ def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, complaint):
         load_scenario(path)
     assert complaint in str(caught.value)
     assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    'name',
+    [
+        *('../../../../evil', '/tmp/evil', 'a/b', '..', '.hidden', '-rf', '', ' ', 'a b', 'a\\b'),
+        *('x' * 65, 'x' * 300, 'a\nb', '\x1b[31m', 'ä', '\u0000'),
+    ],
+)
+def test_a_name_that_could_be_part_of_a_path_is_refused(scenario_file, name):
+    path = scenario_file(MINIMAL + f'name: {json.dumps(name)}')
+    with pytest.raises(ParameterError, match='name is .*use up to 64 letters'):
+        load_scenario(path)
+    with pytest.raises(ParameterError, match='name is .*use up to 64 letters'):
+        load_scenario('thesis', [f'name={json.dumps(name)}'])
+
+
+@pytest.mark.parametrize('name', ['thesis', 'up-hill_2.5', '_x', '9', 'x' * 64])
+def test_a_plain_name_is_taken(scenario_file, name):
+    assert load_scenario(scenario_file(MINIMAL + f'name: "{name}"')).name == name
+
+
+def test_a_file_whose_name_is_no_plain_one_needs_a_name_inside(tmp_path):
+    path = tmp_path / 'up the hill.yaml'
+    path.write_text(MINIMAL)
+    with pytest.raises(ParameterError, match="name is 'up the hill'"):
+        load_scenario(str(path))
+    path.write_text(MINIMAL + 'name: hill')
+    assert load_scenario(str(path)).name == 'hill'
+
+
+def test_text_that_reads_like_a_number_comes_back_as_text(scenario_file):
+    scenario = load_scenario(scenario_file(MINIMAL + 'name: "1e-3"\ndescription: "0o7"'))
+    assert load_scenario(scenario_file(scenario_to_yaml(scenario))) == scenario
 
 
 @pytest.mark.parametrize('override', ['slope', '=1', 'duration_s.x=1', 'load.slope_rad=[', 'a=1'])

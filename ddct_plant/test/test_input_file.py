@@ -1,0 +1,63 @@
+"""Files that a user names are read only when they are files, and not beyond a limit."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from ddct_plant.errors import DdctError
+from ddct_plant.input_file import read_file, read_text_file
+from ddct_plant.scenario_file import load_scenario
+
+
+def test_a_file_is_read_whole_through_links_too(tmp_path):
+    (tmp_path / 'file').write_bytes(b'abc')
+    (tmp_path / 'link').symlink_to('file')
+    assert read_file(tmp_path / 'file', 3) == b'abc'
+    assert read_text_file(tmp_path / 'link') == 'abc'
+
+
+@pytest.fixture
+def pipe(tmp_path):
+    """Return a pipe that nobody writes to: whoever opens it for reading waits."""
+    path = tmp_path / 'pipe.yaml'
+    os.mkfifo(path)
+    return path
+
+
+def test_a_pipe_is_not_waited_for(pipe):
+    with pytest.raises(OSError, match='it is a pipe: give a regular file'):
+        read_file(pipe, 10)
+
+
+@pytest.mark.parametrize(
+    ('path', 'what'), [('/dev/zero', 'a device'), ('/', 'a folder'), ('/nowhere', 'No such file')]
+)
+def test_what_is_no_file_is_called_what_it_is(path, what):
+    with pytest.raises(OSError, match=what):
+        read_file(Path(path), 10)
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path):
+    path = tmp_path / 'large'
+    with path.open('wb') as file:
+        file.truncate(10**12)  # takes no room on the disk
+    with pytest.raises(OSError, match='larger than 1000000 bytes'):
+        read_text_file(path)
+
+
+def test_bytes_that_are_no_text_are_an_error_of_the_file(tmp_path):
+    (tmp_path / 'binary').write_bytes(b'\xff\xfe')
+    with pytest.raises(OSError, match='not UTF-8 text'):
+        read_text_file(tmp_path / 'binary')
+
+
+@pytest.mark.parametrize('path', ['/dev/zero', '/dev/null', '/proc'])
+def test_no_scenario_is_read_from_a_device_or_folder(path):
+    with pytest.raises(DdctError, match=f'scenario {path}: cannot be read .it is a'):
+        load_scenario(path)
+
+
+def test_no_scenario_is_awaited_from_a_pipe(pipe):
+    with pytest.raises(DdctError, match='cannot be read .it is a pipe'):
+        load_scenario(str(pipe))

@@ -1,0 +1,33 @@
+"""JSON from files and bags is read in one way, or refused in one line."""
+
+import pytest
+
+from ddct_plant.errors import DdctError
+from ddct_plant.json_text import parse_json
+
+
+def test_values_come_back():
+    text = '{"a": [1, 2.5, true, null], "b": {"c": "\\ud83d\\ude97 \\u00e4"}}'
+    assert parse_json(text) == {'a': [1, 2.5, True, None], 'b': {'c': '\U0001f697 ä'}}
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        ('', 'not valid JSON'),
+        ('{"a": 1, "a": 2}', "the key 'a' is given twice"),
+        ('{"b": {"a": 1, "a": 2}}', "the key 'a' is given twice"),
+        ('[' * 100_000, 'nested too deeply'),
+        ('{"a":' * 100_000, 'nested too deeply'),
+        ('9' * 5000, 'not valid JSON'),
+        ('[NaN]', 'NaN is no number'),
+        ('-Infinity', '-Infinity is no number'),
+        ('["\\ud800"]', 'not valid JSON'),
+    ],
+)
+def test_what_could_do_harm_is_refused_in_one_line(text, complaint):
+    with pytest.raises(DdctError) as caught:
+        parse_json(text)
+    assert complaint in str(caught.value)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 300

@@ -1,0 +1,142 @@
+"""YAML becomes plain values as YAML 1.2 has them, or is refused with its line, at once."""
+
+import math
+import subprocess
+import sys
+import time
+
+import pytest
+import yaml
+
+from ddct_plant import yaml_text
+from ddct_plant.errors import DdctError
+from ddct_plant.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml
+
+MOST_VALUES = 1000
+"""Less than the limit itself, for which the parser in Python takes five seconds."""
+BOMB = 'a: &a [x]\n' + ''.join(
+    f'{new}: &{new} [{", ".join([f"*{old}"] * 10)}]\n'
+    for old, new in zip('abcdefgh', 'bcdefghi', strict=True)
+)
+AT_ONCE_S = 10.0
+"""Of processor time, slow machines included; what is refused takes a thousandth of it."""
+
+
+@pytest.fixture(params=['C', 'Python'])
+def parser(request, monkeypatch):
+    """Try both parsers: PyYAML may come without the one in C."""
+    name = {'C': 'CSafeLoader', 'Python': 'SafeLoader'}[request.param]
+    monkeypatch.setattr(yaml_text, '_PARSER', getattr(yaml, name))
+    monkeypatch.setattr(yaml_text, 'MOST_VALUES', MOST_VALUES)
+
+
+@pytest.mark.usefixtures('parser')
+@pytest.mark.parametrize(
+    ('text', 'value'),
+    [
+        ('', None),
+        ('a:', {'a': None}),
+        ('[1, -2, +3, 0x10, 0o17, 010]', [1, -2, 3, 16, 15, 10]),
+        ('[1e-3, -1e-2, .5, 1., +1.5E+2]', [1e-3, -1e-2, 0.5, 1.0, 150.0]),
+        ('[.inf, -.INF]', [math.inf, -math.inf]),
+        ('[true, False, null, ~]', [True, False, None, None]),
+        (
+            '[yes, "on", 1:30, 1_000, 2024-01-01, "1"]',
+            ['yes', 'on', '1:30', '1_000', '2024-01-01', '1'],
+        ),
+        ('{a: {b: [c]}, <<: d}', {'a': {'b': ['c']}, '<<': 'd'}),
+        ('|\n 12\n', '12\n'),
+        ('"\\e[31m \\u00e4"', '\x1b[31m ä'),
+        ('[' * MOST_DEPTH + ']' * MOST_DEPTH, eval('[' * MOST_DEPTH + ']' * MOST_DEPTH)),
+    ],
+)
+def test_the_values_are_those_of_yaml_1_2(text, value):
+    assert parse_yaml(text) == value
+
+
+def test_nan_is_a_number():
+    assert math.isnan(parse_yaml('.nan'))
+
+
+@pytest.mark.usefixtures('parser')
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        ('a: 1\nb: 2\na: 3', "line 3: the key 'a' is given twice, first in line 1"),
+        ('a: {b: 1,\n b: 2}', "line 2: the key 'b' is given twice, first in line 1"),
+        ('a: 1\n"a": 2', "line 2: the key 'a' is given twice"),
+        ('[' * 2000, f'line 1: nested more than {MOST_DEPTH} deep'),
+        ('{a: ' * 2000, f'line 1: nested more than {MOST_DEPTH} deep'),
+        ('[' * (MOST_DEPTH + 1) + ']' * (MOST_DEPTH + 1), 'nested more than'),
+        ('a: ' + '9' * 5000, 'line 1: a number of 5000 digits'),
+        ('a: 0.' + '9' * 5000, 'line 1: a number of 5002 digits'),
+        (r'a: "\uD800"', 'line 1: '),
+        ('a: \udcff', 'not UTF-8'),
+        (BOMB, 'line 2: the alias *a: write out'),
+        ('a: ' + 'x' * 10_000_000, 'longer than 1000000 characters'),
+        ('[' + '1,' * MOST_VALUES + ']', f'more than {MOST_VALUES} values'),
+        ('a: !!python/object/apply:os.getcwd []', 'line 1: the tag tag:yaml.org,2002:python/'),
+        ('a: !!python/name:os.getcwd', 'line 1: the tag'),
+        ('!mine 1', 'line 1: the tag !mine'),
+        ('a: 1\n---\nb: 2', 'line 2: a second document'),
+        ('[1]: 2', 'a list or mapping is used as a key'),
+        ('a: [', 'line '),
+        ('a: \x1b[31m', 'control characters|special characters'),
+    ],
+)
+def test_what_could_do_harm_is_refused_at_once_in_one_line(text, complaint):
+    started = time.process_time()
+    with pytest.raises(DdctError) as caught:
+        parse_yaml(text)
+    assert time.process_time() - started < AT_ONCE_S
+    message = str(caught.value)
+    assert message.startswith('not valid YAML: ')
+    assert any(each in message for each in complaint.split('|')), message
+    assert message.isprintable()
+    assert len(message) < 300
+
+
+@pytest.mark.parametrize('text', ['1e-3', '0o7', '-.5', '1.', 'yes', '1', 'null', '', '~', '.inf'])
+def test_text_comes_back_as_text_and_numbers_to_the_last_bit(text):
+    content = {'text': text, 'numbers': [1e-5, 5e-324, 1e300, 0.1, 3], 'none': None, 'on': True}
+    assert parse_yaml(dump_yaml(content)) == content
+
+
+def test_what_stands_twice_is_written_out():
+    values = [1.0, 2.0]
+    assert parse_yaml(dump_yaml({'a': values, 'b': values})) == {'a': values, 'b': values}
+
+
+def test_no_other_module_of_the_product_reads_yaml_or_json():
+    """`parse_yaml` and `parse_json` bound what they read."""
+    from pathlib import Path
+
+    root = Path(yaml_text.__file__).parents[2]
+    own = {'yaml_text.py', 'json_text.py', 'message_definitions.py'}
+    words = ('import yaml', 'yaml.load', 'safe_load', 'json.load')
+    for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup'):
+        for file in (root / package / package).rglob('*.py'):
+            text = file.read_text(encoding='utf-8')
+            assert file.name in own or not any(word in text for word in words), file
+
+
+def test_refusing_takes_no_memory_either():
+    program = (
+        'import resource, sys\n'
+        'from ddct_plant.yaml_text import parse_yaml\n'
+        'from ddct_plant.errors import DdctError\n'
+        'resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30))\n'
+        'for text in (sys.stdin.read(), "[" * 900_000):\n'
+        '    try: parse_yaml(text)\n'
+        '    except DdctError: pass\n'
+        '    else: sys.exit("taken")\n'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program],
+        input=BOMB,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={'PYTHONPATH': ':'.join(filter(None, sys.path)), 'OPENBLAS_NUM_THREADS': '1'},
+    )
+    assert done.returncode == 0, done.stderr
