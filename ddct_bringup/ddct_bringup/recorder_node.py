@@ -28,6 +28,7 @@ from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
 from ddct_plant.graph.run_info import RUN_INFO_TOPIC
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.names import require_name
 from ddct_plant.timebase import START_NS, stamp_of_step
 
 ACK = 'recorder/ack'
@@ -55,10 +56,10 @@ class RecorderNode(GraphNode):
         self._folder = Path(
             declare(self, 'out', 'recording', 'Folder of the bag, created if absent')
         )
-        self._bag_name = (
-            declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
-            or self._folder.name
-        )
+        name = declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
+        if name:
+            require_name('parameter name', name)
+        self._bag_name = name or self._folder.name
         self._two_input = declare(
             self, 'two_input', False, 'Record engine/torque_request of a two-input controller'
         )

@@ -19,6 +19,7 @@ FACTS = RunFacts(
     score_window_s=(0.6, 2.5),
     duration_s=3.0,
 )
+NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 
 
 def test_facts_come_back_to_the_last_bit():
@@ -44,8 +45,19 @@ def test_a_missing_fact_is_named(name):
         ('score_window_s', '0.6'),
         ('score_window_s', '[0.6]'),
         ('score_window_s', '[0.6, "a"]'),
+        ('score_window_s', '[0.6, true]'),
+        ('seed', '1e400'),
+        ('seed', 'NaN'),
+        ('duration_s', '1' + '0' * 400),
+        ('duration_s', '{"a": 1, "a": 2}'),
+        *((name, '../../evil') for name in NAMES),
+        *((name, '\x1b[31mred') for name in NAMES),
+        *((name, '</script>') for name in NAMES),
+        ('controller', 'x' * 300),
+        ('scenario', ''),
     ],
 )
 def test_an_unusable_fact_is_named(name, text):
-    with pytest.raises(DdctError, match=f'{name} is '):
+    with pytest.raises(DdctError, match=f'{name} is ') as caught:
         RunFacts.from_custom_data({**FACTS.to_custom_data(), name: text})
+    assert str(caught.value).isprintable()

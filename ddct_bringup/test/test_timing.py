@@ -1,5 +1,9 @@
 """Reading `timing.json`."""
 
+import json
+import os
+from dataclasses import asdict
+
 import pytest
 
 from ddct_bringup.run.run_timing import RunTiming
@@ -17,8 +21,30 @@ def test_a_folder_without_timing_gives_none(tmp_path):
     assert read_timing(tmp_path) is None
 
 
-@pytest.mark.parametrize('text', ['', '{}', '[]', '{"update_times_us": 3}', '\x00'])
+def changed(**values):
+    return json.dumps({**asdict(RunTiming([1.5], steps=1)), **values})
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        *('', '{}', '[]', '{"update_times_us": 3}', '\x00', '[' * 100_000),
+        changed(update_times_us=['nan']),
+        changed(update_times_us=[float('nan')]),
+        changed(wall_time_s=float('inf')),
+        changed(missed_steps=-1),
+        changed(missed_steps='many'),
+        changed(steps=None),
+        changed(steps=1)[:-1] + ', "steps": 2}',
+    ],
+)
 def test_unusable_timing_is_an_error_that_names_the_file(tmp_path, text):
     (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
     with pytest.raises(DdctError, match='timing.json: not the timing of a run'):
+        read_timing(tmp_path)
+
+
+def test_a_pipe_in_place_of_timing_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / 'timing.json')
+    with pytest.raises(DdctError, match='cannot read the timing: it is a pipe'):
         read_timing(tmp_path)

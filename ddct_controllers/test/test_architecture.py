@@ -3,11 +3,13 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.registry import make_controller
 from ddct_plant.errors import DdctError
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings
@@ -112,5 +114,49 @@ def test_a_negative_request_is_reported_as_saturated_but_passed_on():
 
 @pytest.mark.parametrize('torque', [math.nan, math.inf])
 def test_a_command_that_is_not_finite_ends_the_run(torque):
-    with pytest.raises(DdctError, match=f'torque at step {START} is'):
+    with pytest.raises(DdctError, match=f"'Recording': its torque at step {START} is"):
         make_architecture(SETTINGS, Recording(torque)).update(ON)
+
+
+@pytest.mark.parametrize(
+    'status',
+    [
+        *(None, 'solved', {'qp': 'solved'}, [('qp', 'solved')], ('qp', 'solved')),
+        *((('qp', 1),), (('qp',),), (('qp', 'a', 'b'),), (['qp', 'solved'],), ((b'qp', 'a'),)),
+        *((('qp', '\x1b[31m'),), (('qp', '\ud800'),), (('qp', 'a\0b'),), (('qp', 'a\nb'),)),
+    ],
+)
+def test_a_status_that_the_graph_cannot_carry_names_controller_and_step(status):
+    controller = Recording()
+    controller.registered_name = 'mine'
+    controller.update = lambda measurement: Command(7.0, status)
+    with pytest.raises(DdctError) as caught:
+        make_architecture(SETTINGS, controller).update(ON)
+    assert str(caught.value).startswith(f"controller 'mine': its status at step {START} is ")
+    assert str(caught.value).isprintable()
+
+
+def test_an_estimate_that_diverges_ends_the_run_with_the_controllers_name():
+    settings = RunSettings(load_scenario('thesis', ['driveline.total_ratio=15']))
+    controller = make_controller('mpc4_wear', settings)
+    architecture = make_architecture(settings, controller)
+    references = controller.preview_steps + 1
+    with (
+        np.errstate(all='ignore'),
+        pytest.raises(
+            DdctError, match="controller 'mpc4_wear': it cannot go on at step .*Singular"
+        ),
+    ):
+        for step in range(START, START + 200):
+            error = min(2.0 ** (step - START), 8e8)
+            architecture.update(
+                replace(
+                    ON,
+                    step=step,
+                    engine_speed=160.0 + error,
+                    shaft_speed=160.0 - error,
+                    wheel_speed=160.0 / 15.0 - error,
+                    slip_reference=[error] * references,
+                    slip_reference_rate=[0.0] * references,
+                )
+            )

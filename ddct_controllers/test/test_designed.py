@@ -1,5 +1,8 @@
 """Controllers in a file: read as written, refused by name, built by the registry."""
 
+import os
+import re
+
 import pytest
 
 from ddct_controllers.designed import DesignedController, load_designed
@@ -64,6 +67,11 @@ def test_it_may_not_take_the_name_of_another_controller(write):
         ('- 0.8361', '- [1.0, 2.0, 3.0]', 'is no factor'),
         ('- 0.0\n', '', 'has 3 zeros and 2 poles'),
         ('format:', '- format:', 'not valid YAML'),
+        ('name: mine', 'name: mine\nname: yours', "line 3: the key 'name' is given twice"),
+        ('method: by hand', 'a: &a [*a]', r'the alias \*a'),
+        ('method: by hand', 'a: !!python/object/apply:os.getcwd []', 'the tag'),
+        ('method: by hand', 'a: ' + '[' * 2000, 'nested more than'),
+        ('method: by hand', 'a: ' + '9' * 5000, 'a number of 5000 digits'),
     ],
 )
 def test_what_cannot_be_used_is_named_with_its_file(write, old, new, complaint):
@@ -71,6 +79,26 @@ def test_what_cannot_be_used_is_named_with_its_file(write, old, new, complaint):
     file = write(TEXT.replace(old, new))
     with pytest.raises(DdctError, match=f'controller file {file}: .*{complaint}'):
         make_controller(file, SETTINGS)
+
+
+@pytest.mark.parametrize('gain', ['-1e-2', '-.01', '-1.0e-02', '-0.01'])
+def test_numbers_are_written_as_in_scenarios(write, gain):
+    text = re.sub('gain: .*', f'gain: {gain}', TEXT)
+    assert load_designed(write(text)).transfer_function.gain == -0.01
+
+
+def test_no_object_is_built_from_a_file(write, tmp_path):
+    made = tmp_path / 'made'
+    evil = f'a: !!python/object/apply:os.mkdir ["{made}"]'
+    with pytest.raises(DdctError, match='the tag'):
+        load_designed(write(TEXT.replace('method: by hand', evil)))
+    assert not made.exists()
+
+
+def test_a_pipe_in_place_of_a_file_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / 'pipe.yaml')
+    with pytest.raises(DdctError, match='it is a pipe'):
+        load_designed(str(tmp_path / 'pipe.yaml'))
 
 
 @pytest.mark.parametrize('text', ['', 'just words', '[1, 2]'])

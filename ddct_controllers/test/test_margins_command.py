@@ -152,3 +152,30 @@ def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
     assert run('--controller', 'ls1') == 1
     message = "controller 'ls1': its linear_model cannot be used: controller is continuous"
     assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('model', 'complaint'),
+    [
+        ('text', 'it is of type str'),
+        ([[1.0]], 'it is of type list'),
+        (StateSpace([[0.0]], [[1.0, 1.0]], [[1.0]], [[0.0, 0.0]], 0.01), 'it has 2 inputs'),
+        (StateSpace([[0.0]], [[1.0]], [[1.0], [1.0]], [[0.0], [0.0]], 0.01), '2 outputs'),
+        (StateSpace([[0.0]], [[1.0]], [[1.0]], [[0.0]], 0.02), 'controller is sampled at 0.02 s'),
+    ],
+)
+def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, complaint):
+    stub(model)
+    assert run('--controller', 'ls1') == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("design: controller 'ls1': its linear_model cannot be used: ")
+    assert complaint in line
+
+
+def test_a_linear_model_that_fails_is_one_line(stub, monkeypatch, capsys):
+    stub(None)
+    broken = evidence.make_controller('ls1', None)
+    monkeypatch.setattr(type(broken), 'linear_model', lambda self: 1 / 0)
+    assert run('--controller', 'ls1') == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'cannot be used: ZeroDivisionError: division by zero' in line

@@ -81,3 +81,32 @@ def test_a_broken_entry_point_is_named(add_entry_point, value, complaint):
     add_entry_point('third', value)
     with pytest.raises(DdctError, match=complaint):
         make_controller('third', SETTINGS)
+
+
+@pytest.mark.parametrize('name', ['../evil', '/tmp/evil', '.hidden', 'a b', 'x' * 300])
+def test_an_entry_point_cannot_name_a_folder_elsewhere(add_entry_point, name):
+    add_entry_point(name, f'{__name__}:make_third')
+    with pytest.raises(ParameterError, match='controller name is'):
+        make_controller(name, SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ('attribute', 'value'),
+    [
+        *(('preview_steps', value) for value in (-1, 1.5, '3', None, True)),
+        *(('commands_engine', value) for value in (1, 'no', None)),
+    ],
+)
+def test_a_declaration_of_the_wrong_type_names_the_controller(
+    add_entry_point, monkeypatch, attribute, value
+):
+    monkeypatch.setattr(Third, attribute, value)
+    add_entry_point('third', f'{__name__}:make_third')
+    with pytest.raises(DdctError, match=f"controller 'third': its {attribute} is "):
+        make_controller('third', SETTINGS)
+
+
+def test_a_controller_knows_the_name_that_it_was_asked_for_by(add_entry_point):
+    add_entry_point('third', f'{__name__}:make_third')
+    assert make_controller('third', SETTINGS).registered_name == 'third'
+    assert make_controller('ls8', SETTINGS).registered_name == 'ls8'

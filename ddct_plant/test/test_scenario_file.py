@@ -122,6 +122,14 @@ def test_a_file_whose_name_is_no_plain_one_needs_a_name_inside(tmp_path):
     assert load_scenario(str(path)).name == 'hill'
 
 
+def test_no_object_is_built_from_a_file(scenario_file, tmp_path):
+    made = tmp_path / 'made'
+    evil = f'description: !!python/object/apply:os.mkdir ["{made}"]'
+    with pytest.raises(DdctError, match='the tag'):
+        load_scenario(scenario_file(MINIMAL + evil))
+    assert not made.exists()
+
+
 def test_text_that_reads_like_a_number_comes_back_as_text(scenario_file):
     scenario = load_scenario(scenario_file(MINIMAL + 'name: "1e-3"\ndescription: "0o7"'))
     assert load_scenario(scenario_file(scenario_to_yaml(scenario))) == scenario

@@ -37,6 +37,11 @@ class RunFacts:
     duration_s: float
     """Length that the run was meant to have."""
 
+    def __post_init__(self) -> None:
+        """Check the names, so that a bag neither gets nor gives another; ParameterError."""
+        for name in _NAMES:
+            require_name(name, getattr(self, name))
+
     @property
     def steps(self) -> int:
         """How many periods the run was meant to have."""
@@ -61,8 +66,6 @@ class RunFacts:
         missing = [field.name for field in fields(cls) if field.name not in custom_data]
         if missing:
             raise DdctError(f'no {missing[0]} in the custom data: not a recording of this project')
-        for name in _NAMES:
-            _require_name(name, custom_data)
         first, last = _number_list('score_window_s', custom_data, 2)
         return cls(
             controller=custom_data['controller'],
@@ -76,13 +79,6 @@ class RunFacts:
             score_window_s=(first, last),
             duration_s=_number('duration_s', custom_data),
         )
-
-
-def _require_name(key: str, custom_data: Mapping[str, str]) -> None:
-    try:
-        require_name(key, custom_data[key])
-    except ParameterError as error:
-        raise _unusable(key, custom_data) from error
 
 
 def _number(key: str, custom_data: Mapping[str, str]) -> float:

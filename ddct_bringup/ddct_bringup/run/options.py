@@ -7,6 +7,7 @@ from ddct_controllers.registry import controller_names
 from ddct_plant.clutch import CLUTCHES
 from ddct_plant.errors import ParameterError
 from ddct_plant.graph.run_info import package_version
+from ddct_plant.printable import printable
 from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
 from ddct_plant.scenario_file import load_scenario, scenario_names
 from ddct_plant.scenario_options import add_scenario_options
@@ -97,4 +98,4 @@ def print_choices() -> None:
         ('modes', MODES),
     )
     for title, names in rows:
-        print(f'{title + ":":15}{", ".join(names)}')
+        print(f'{title + ":":15}{printable(", ".join(names))}')
