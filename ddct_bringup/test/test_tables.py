@@ -91,3 +91,13 @@ def test_every_metric_can_be_a_column(name):
     column = metric(name, 'heading', '{:.1f}')
     assert isinstance(column, Column)
     assert column.text(run(**{name: 2})) == '2.0'
+
+
+@pytest.mark.parametrize('stream', [io.StringIO, Terminal])
+def test_no_control_character_of_a_bag_reaches_the_terminal(stream):
+    evil = '\x1b]0;title\x07\x1b[2J\x9b31m\nsecond line'
+    text = printed([run(evil, valid=False, reason=evil)], stream=stream())
+    assert not set(text) & set('\x07\x9b')
+    assert '\x1b]' not in text
+    assert '\x1b[2J' not in text
+    assert r'not valid: \x1b]0;title\x07\x1b[2J\x9b31m\nsecond line' in text

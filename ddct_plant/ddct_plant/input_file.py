@@ -25,14 +25,17 @@ def read_file(path: Path, most_bytes: int) -> bytes:
     """
     # Without O_NONBLOCK it is the opening of a pipe that waits.
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    kind = stat.S_IFMT(os.fstat(descriptor).st_mode)
+    status = os.fstat(descriptor)
+    kind = stat.S_IFMT(status.st_mode)
     if kind != stat.S_IFREG:
         os.close(descriptor)
         what = _KINDS.get(kind, 'no file')
         raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
     with os.fdopen(descriptor, 'rb') as file:
-        data = file.read(most_bytes + 1)
-    if len(data) > most_bytes:
+        # Some files of the system say that they are empty and are not.
+        fits = status.st_size <= most_bytes
+        data = file.read(most_bytes + 1) if fits else b''
+    if not fits or len(data) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
     return data
 

@@ -1,0 +1,116 @@
+"""What a bag says is text on the page, never a part of it."""
+
+import dataclasses
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.headless import run_headless
+from ddct_bringup.report_page.page import report_page, symbols
+from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.scores.scoring import score_recording, unreadable_entry
+from ddct_plant.errors import DdctError
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=0.7', 'score_window_s=[0.1,0.6]']))
+EVIL = '</script></textarea></style>--><evil onload="x"> \'"&amp; w_<evil>'
+"""Closes whatever is open and opens an element that no page has."""
+
+
+class Elements(HTMLParser):
+    """Collects the names of all elements and attributes, the text, and the scripts."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.names: set[str] = set()
+        self.text = ''
+        self.scripts: list[str] = []
+        self._script = False
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.names |= {tag, *(name for name, _ in attrs)}
+        self._script = tag == 'script'
+
+    def handle_endtag(self, tag: str) -> None:
+        self._script = False
+
+    def handle_data(self, data: str) -> None:
+        if self._script:
+            self.scripts.append(data)
+        else:
+            self.text += data
+
+
+def recording(text: str) -> Recording:
+    """Return a run whose bag holds `text` wherever it may hold any."""
+    scenario = SETTINGS.scenario
+    facts = RunFacts(
+        controller='pi',
+        architecture='detailed',
+        scenario='thesis',
+        clutch='linear',
+        wear_gain=1.0,
+        mode='lockstep',
+        seed=0,
+        control_start_s=scenario.control_start_s,
+        score_window_s=scenario.score_window_s,
+        duration_s=scenario.duration_s,
+    )
+    trajectory = run_headless(SETTINGS, 'pi')
+    status = tuple((*pairs, (text, text)) for pairs in trajectory.status)
+    return Recording(
+        path=Path('/nowhere') / text.replace('/', '_') / 'pi_0.mcap',
+        trajectory=dataclasses.replace(trajectory, status=status),
+        facts=facts,
+        custom_data={'commit': text, 'version': text, 'scenario_yaml': text},
+        run_info={text: {text: text}},
+        counts={text: 1},
+        missed={},
+    )
+
+
+@pytest.fixture(scope='module')
+def html() -> str:
+    whole = recording(EVIL)
+    runs = [
+        # Two of one controller, so that the labels of the charts name the bags.
+        *(ReportRun(score_recording(whole, bag), whole) for bag in (f'{EVIL}/a', f'{EVIL}/b')),
+        ReportRun(unreadable_entry(Path(EVIL), DdctError(f'damaged {EVIL}'))),
+    ]
+    return report_page(runs, [])
+
+
+def test_no_text_of_a_bag_becomes_an_element_or_an_attribute(html):
+    page = Elements(html)
+    assert not {'evil', 'onload'} & page.names
+    assert 'script' in page.names
+
+
+def test_the_text_is_shown_as_it_is(html):
+    page = Elements(html)
+    assert f'damaged {EVIL}' in page.text
+    assert page.text.count(EVIL) >= 6, 'commit, version, scenario, node, key and value'
+
+
+def test_the_data_of_the_charts_come_back_whole(html):
+    (data,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', html, re.DOTALL)
+    assert f'{EVIL}/a' in json.dumps(json.loads(data), ensure_ascii=False).replace('\\"', '"')
+
+
+@pytest.mark.parametrize(
+    ('text', 'shown'),
+    [
+        ('w_sr in rpm', 'w<sub>sr</sub> in rpm'),
+        ('<evil>', '&lt;evil&gt;'),
+        ('w_sr<evil>"\'&', 'w<sub>sr</sub>&lt;evil&gt;&#34;&#39;&amp;'),
+    ],
+)
+def test_symbols_get_their_index_and_everything_else_is_escaped(text, shown):
+    assert str(symbols(text)) == shown

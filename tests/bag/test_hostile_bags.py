@@ -1,0 +1,165 @@
+"""A bag from a stranger neither hangs, fills, nor takes over what reads it."""
+
+import os
+import resource
+import zlib
+from pathlib import Path
+
+import pytest
+import zstandard
+from mcap.opcode import Opcode
+from mcap.writer import CompressionType, Writer
+from support.complaints import assert_one_line
+from support.processes import Programs
+
+from ddct_bringup.bag import records
+from ddct_bringup.bag.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.bag.records import MAGIC, read_records
+from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.score import main as score
+from ddct_plant.errors import DdctError
+
+RED = '\x1b[31m'
+
+
+@pytest.mark.parametrize('program', ['score', 'report'])
+def test_a_pipe_is_not_waited_for(programs: Programs, tmp_path: Path, program: str) -> None:
+    pipe = tmp_path / 'run' / 'pi_0.mcap'
+    pipe.parent.mkdir()
+    os.mkfifo(pipe)
+    for path in (pipe, pipe.parent):
+        arguments = [str(path), *(['--out', '-'] if program == 'report' else [])]
+        run = programs.start_module(f'ddct_bringup.{program}', *arguments)
+        assert run.wait() == 1
+        assert_one_line(run.errors(), program, 'it is a pipe: give a regular file')
+
+
+def test_an_endless_device_is_not_read(capsys: pytest.CaptureFixture[str]) -> None:
+    assert score(['/dev/zero']) == 1
+    assert_one_line(capsys.readouterr().err, 'score', '/dev/zero', 'it is a device')
+
+
+def test_a_file_beyond_the_limit_is_not_read(tmp_path: Path) -> None:
+    path = tmp_path / 'large.mcap'
+    with path.open('wb') as file:
+        file.write(MAGIC)
+        file.truncate(10**12)  # takes no room on the disk
+    with pytest.raises(DdctError, match=f'larger than {records.MOST_BYTES} bytes'):
+        read_records(path)
+
+
+def packed(size: int, told: int) -> bytes:
+    """Return a recording with one chunk of `size` zeros that says it holds `told` bytes."""
+    data = zstandard.compress(bytes(size))
+    fields = [(0).to_bytes(8, 'little')] * 2
+    fields += [told.to_bytes(8, 'little'), zlib.crc32(bytes(size)).to_bytes(4, 'little')]
+    fields += [(4).to_bytes(4, 'little'), b'zstd', len(data).to_bytes(8, 'little'), data]
+    content = b''.join(fields)
+    chunk = bytes([Opcode.CHUNK]) + len(content).to_bytes(8, 'little') + content
+    return MAGIC + chunk + bytes(30) + MAGIC
+
+
+@pytest.mark.parametrize(('size', 'told'), [(10**9, 10**9), (10**9, 1000)])
+def test_a_small_file_that_would_fill_the_memory_is_not_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int, told: int
+) -> None:
+    path = tmp_path / 'bomb.mcap'
+    path.write_bytes(packed(size, told))
+    monkeypatch.setattr(records, '_verify_summary', lambda data: None)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(DdctError, match=f'a chunk has {size} bytes unpacked'):
+        read_records(path)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss == before
+
+
+def test_control_characters_of_a_bag_do_not_reach_the_terminal(
+    bags, trajectory, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def rename(messages):
+        old = b'driveshaft\x00'
+        new = f'{RED}shaft\x00'.encode().ljust(len(old), b'\x00')
+        return [(topic, stamp, data.replace(old, new)) for topic, stamp, data in messages]
+
+    bag = bags.rewrite(bags.write(trajectory), 'red', rename)
+    assert score([str(bag), '--csv', '-']) == 1
+    captured = capsys.readouterr()
+    assert r'the joints are engine, primary_shaft, wheel, \x1b[31mshaft' in captured.err
+    assert '\x1b' not in captured.err + captured.out
+
+
+def test_a_folder_with_control_characters_is_printed_without(
+    bags, trajectory, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag = bags.write(trajectory, folder=f'run{RED}')
+    for options in ([], ['--csv', '-']):
+        assert score([str(bag), *options]) == 0
+        captured = capsys.readouterr()
+        assert '\x1b' not in captured.err + captured.out
+        assert r'run\x1b[31m' in captured.out
+
+
+@pytest.mark.parametrize(
+    ('key', 'value'),
+    [
+        *(('controller', name) for name in ('../../evil', f'{RED}pi', 'x' * 300, '</script>')),
+        *(('scenario', name) for name in ('/tmp/evil', '')),
+        ('score_window_s', '[-1e308, 1e308]'),
+        ('control_start_s', '1e400'),
+        ('seed', 'NaN'),
+        ('duration_s', '0.005'),
+        ('wear_gain', '[' * 100_000),
+    ],
+)
+def test_a_fact_that_is_none_is_one_line(
+    bags, trajectory, capsys: pytest.CaptureFixture[str], key: str, value: str
+) -> None:
+    bag = bags.rewrite(bags.write(trajectory), 'odd', **{key: value})
+    assert score([str(bag)]) == 1
+    errors = capsys.readouterr().err
+    assert_one_line(errors, 'score', key)
+    assert errors.rstrip('\n').isprintable()
+
+
+@pytest.mark.parametrize(
+    'metadata',
+    [
+        'a: &a [x, x]\nb: &b [*a, *a]\ncustom_data: *b',
+        '[' * 100_000,
+        'custom_data: !!python/object/apply:os.abort []',
+        'custom_data: {controller: pi, controller: ls8}',
+    ],
+)
+def test_metadata_that_is_no_plain_yaml_counts_as_none(tmp_path: Path, metadata: str) -> None:
+    file = tmp_path / 'odd.mcap'
+    with file.open('wb') as stream:
+        writer = Writer(stream, compression=CompressionType.NONE)
+        writer.start(profile='ros2')
+        writer.add_metadata('rosbag2', {'serialized_metadata': metadata})
+        schema = writer.register_schema('sensor_msgs/msg/JointState', 'ros2msg', b'')
+        writer.register_channel('/driveline/joint_states', 'cdr', schema)
+        writer.finish()
+    with pytest.raises(DdctError, match='no controller in the custom data'):
+        read_bag(file)
+
+
+@pytest.mark.parametrize('damage', ['no hash', 'no schema', 'no text', 'no quality of service'])
+def test_repair_names_what_a_channel_does_not_say(
+    bags, trajectory, monkeypatch: pytest.MonkeyPatch, damage: str
+) -> None:
+    bag = bags.write(trajectory)
+    found = read_records(mcap_of(bag))
+    channel = next(iter(found.channels.values()))
+    if damage == 'no hash':
+        del channel.metadata[HASH_KEY]
+    elif damage == 'no schema':
+        del found.schemas[channel.schema_id]
+    elif damage == 'no text':
+        found.schemas[channel.schema_id].data = b'\xff'
+    else:
+        channel.metadata[QOS_KEY] = 'a: &a [*a]'
+    mcap_of(bag).write_bytes(MAGIC)
+    monkeypatch.setattr('ddct_bringup.bag.repair.salvage_records', lambda path: found)
+    with pytest.raises(DdctError, match='cannot be repaired: .*(channels is unusable|alias)'):
+        repair_bag(bag)
+    assert mcap_of(bag).read_bytes() == MAGIC
