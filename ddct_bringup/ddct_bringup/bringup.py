@@ -4,6 +4,7 @@ import argparse
 from contextlib import nullcontext
 from pathlib import Path
 
+from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
@@ -46,7 +47,15 @@ def _bringup(argv: list[str]) -> int:
     plan = RunPlan(settings, options.controller, options.layout)
     if options.live is not None and plan.layout != 'processes':
         raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-    mark_folder(options.out)
+    with held(options.out, shared=True):
+        mark_folder(options.out)
+        with held(options.out / plan.name):
+            _run(plan, options)
+    print(options.out / plan.name)
+    return 0
+
+
+def _run(plan: RunPlan, options: argparse.Namespace) -> None:
     folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
     with nullcontext() if options.live is None else live_view(options.live) as live:
         run_with_progress(plan, folder.path, live=live)
@@ -54,8 +63,6 @@ def _bringup(argv: list[str]) -> int:
     if not entry['valid']:
         raise DdctError(f'{folder.path}: {entry["reason"]}')
     folder.commit()
-    print(folder.final)
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:

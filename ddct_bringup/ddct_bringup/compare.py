@@ -7,6 +7,7 @@ from pathlib import Path
 from ddct_bringup.report import REPORT_FILE, write_report
 from ddct_bringup.report_page.output import require_chart_library
 from ddct_bringup.report_page.runs import ReportRun, in_order, read_run
+from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
@@ -53,6 +54,12 @@ def _compare(argv: list[str]) -> int:
     names = _controllers(options.controllers)
     settings = settings_of(options, [controller_label(name) for name in names])
     plans = [RunPlan(settings, name, options.layout) for name in names]
+    with held(options.out):
+        _run_all(plans, settings, options)
+    return 0
+
+
+def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace) -> None:
     folder = StagedFolder(options.out, overwrite=options.overwrite)
     runs = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ')
@@ -72,7 +79,6 @@ def _compare(argv: list[str]) -> int:
         f'{folder.final}',
         file=sys.stderr,
     )
-    return 0
 
 
 def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:

@@ -15,11 +15,12 @@ from ddct_bringup.report_page.runs import (
     read_run,
     require_one_scenario,
 )
+from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.scoring import bags_in
 from ddct_plant.cli import ProgramParser, complain, run_program
 from ddct_plant.errors import DdctError
-from ddct_plant.output_file import write_text
+from ddct_plant.output_file import STDOUT, write_text
 
 PROGRAM = 'report'
 REPORT_FILE = 'report.html'
@@ -45,9 +46,11 @@ def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
     require_writable(options.out)
-    bags = with_progress(bags_in(options.runs), 'reading')
-    runs = in_order([read_run(*bag) for bag in bags])
-    write_report(runs, options.out)
+    places = [] if options.out == STDOUT else [Path(options.out).parent]
+    with held(*filter(is_ours, places)):
+        bags = with_progress(bags_in(options.runs), 'reading')
+        runs = in_order([read_run(*bag) for bag in bags])
+        write_report(runs, options.out)
     for run in runs:
         if not run.entry['valid']:
             complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')

@@ -4,11 +4,12 @@ import argparse
 import csv
 import io
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.scores.scoring import (
@@ -54,20 +55,37 @@ def _score(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
+    bags = bags_in(options.bags)
+    with held(*_run_folders(options, [bag for bag, _ in bags])):
+        runs = _scored(bags, options)
+        if options.json:
+            write_json(options.json, scores_document(runs))
+        if options.csv:
+            write_text(options.csv, _csv(runs))
+    table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
+    print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
+    return 0 if all(run['valid'] for run in runs) else 1
+
+
+def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
+    """Return the folders of runs that these options write into."""
+    files = [Path(file) for file in (options.json, options.csv) if file not in (None, STDOUT)]
+    folders = [file.parent for file in files]
+    if options.signals_csv is not None:
+        folders.append(options.signals_csv)
+    repaired = [bag if bag.is_dir() else bag.parent for bag in bags] if options.repair else []
+    return [*filter(is_ours, folders), *repaired]
+
+
+def _scored(bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace) -> list[Entry]:
     runs = []
-    for bag, folder in with_progress(bags_in(options.bags), 'scoring'):
+    for bag, folder in with_progress(bags, 'scoring'):
         try:
             runs.append(_score_one(bag, folder, options))
         except DdctError as error:
             complain(PROGRAM, error)
             runs.append(unreadable_entry(bag, error, relative_to=folder))
-    if options.json:
-        write_json(options.json, scores_document(runs))
-    if options.csv:
-        write_text(options.csv, _csv(runs))
-    table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
-    print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
-    return 0 if all(run['valid'] for run in runs) else 1
+    return runs
 
 
 def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> Entry:

@@ -8,6 +8,8 @@ from ddct_plant.errors import DdctError
 
 MARKER = '.ddct-output'
 """Marks a folder as written by these programs, so that `--overwrite` may replace it."""
+PARTIAL = '.partial'
+"""Ends the name of a folder that is not complete yet."""
 _MARKER_TEXT = 'Written by ddct_bringup; --overwrite may replace this folder.\n'
 
 
@@ -17,12 +19,13 @@ class StagedFolder:
 
     Work goes to `<final>.partial` beside it. `commit` puts it in place of an earlier result, which
     stays untouched until then; after a failure the partial folder is left for inspection.
+    Whoever uses it holds the final folder (`folder_lock.held`).
     """
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
         """Create the partial folder; raise DdctError where something is in the way."""
         self.final = final
-        self.path = final.with_name(f'{final.name}.partial')
+        self.path = final.with_name(f'{final.name}{PARTIAL}')
         self._overwrite = overwrite
         self._require_free(final, 'choose another --out or add --overwrite')
         require_ours_or_empty(self.path)

@@ -1,0 +1,103 @@
+"""One folder, two programs: the second is refused by name, whatever it would write there."""
+
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.processes import START_S, Programs
+from support.waiting import wait_until
+
+from ddct_bringup import bringup, compare, report, score
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.run.folder_lock import SUFFIX, held
+from ddct_plant.errors import DdctError
+
+SHORT = ['--headless', '--duration', '0.7']
+PI = ['--controllers', 'pi', *SHORT]
+Main = Callable[[list[str]], int]
+
+
+@pytest.fixture(scope='module')
+def compared(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder of runs."""
+    out = tmp_path_factory.mktemp('shared') / 'runs'
+    assert bringup.main([*SHORT, '--out', str(out)]) == 0
+    return out
+
+
+def _files(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob('*')) if path.is_file()}
+
+
+def test_a_second_compare_is_refused_while_the_first_one_lives(
+    compared: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
+) -> None:
+    again = ['--controllers', 'pi', '--headless', '--overwrite', '--out', str(compared)]
+    first = programs.start_module('ddct_bringup.compare', *again, '--duration', '3600')
+    under_way = compared.with_name('runs.partial') / 'pi'
+    wait_until(under_way.exists, 'a compare under way', START_S)
+    before = _files(compared.parent)
+    assert compare.main([*again, *SHORT, '--wear-gain', '0.7']) == 1
+    words = ('compare', f'{compared}: process {first.process.pid} is writing there')
+    assert_one_line(capfd.readouterr().err, *words)
+    assert _files(compared.parent) == before
+    first.send(signal.SIGKILL)
+    first.wait()
+    assert compare.main([*again, *SHORT]) == 0, 'the lock must die with its process'
+    assert read_bag(compared / 'pi').facts.wear_gain == 1.0
+    assert [path.name for path in compared.parent.iterdir()] == ['runs']
+
+
+@pytest.mark.parametrize(
+    ('main', 'arguments'),
+    [
+        (compare.main, [*PI, '--overwrite', '--out', '']),
+        (bringup.main, [*SHORT, '--overwrite', '--out', '']),
+        (bringup.main, [*SHORT, '--controller', 'ls8', '--out', '']),
+        (report.main, ['', '--out', 'report.html']),
+        (score.main, ['', '--json', 'scores.json']),
+        (score.main, ['', '--csv', 'scores.csv']),
+        (score.main, ['', '--repair']),
+        (score.main, ['pi/pi_0.mcap', '--repair']),
+    ],
+    ids=lambda value: ' '.join(value) if isinstance(value, list) else value.__module__[13:],
+)
+def test_no_program_writes_into_the_folder_of_a_running_compare(
+    compared: Path, capfd: pytest.CaptureFixture[str], main: Main, arguments: list[str]
+) -> None:
+    paths = {'', 'report.html', 'scores.json', 'scores.csv', 'pi/pi_0.mcap'}
+    given = [str(compared / each) if each in paths else each for each in arguments]
+    with held(compared):
+        before = _files(compared.parent)
+        assert main(given) == 1
+        assert 'is writing there' in capfd.readouterr().err
+        assert _files(compared.parent) == before
+
+
+def test_a_folder_below_keeps_the_one_around_it(
+    compared: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with held(compared / 'pi'):
+        assert compare.main([*PI, '--overwrite', '--out', str(compared)]) == 1
+    assert_one_line(capfd.readouterr().err, 'compare', f'{compared}: process')
+
+
+def test_neighbours_share_the_folder_around_them(compared: Path) -> None:
+    with held(compared / 'pi'):
+        arguments = ['--controller', 'ls1', *SHORT, '--out', str(compared)]
+        assert bringup.main(arguments) == 0
+        with pytest.raises(DdctError, match='is writing there'), held(compared / 'pi.partial'):
+            pass
+
+
+@pytest.mark.parametrize('spelling', ['runs/../runs', 'link/runs', 'runs/'])
+def test_one_folder_spelt_in_two_ways_is_one(tmp_path: Path, spelling: str) -> None:
+    (tmp_path / 'link').symlink_to(tmp_path)
+    (tmp_path / 'runs').mkdir()
+    with held(tmp_path / 'runs'):
+        with pytest.raises(DdctError, match='is writing there'), held(tmp_path / spelling):
+            pass
+        assert (tmp_path / f'.runs{SUFFIX}').exists()
+    assert not (tmp_path / f'.runs{SUFFIX}').exists()
