@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.run.source_commit import UNKNOWN, short_commit
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
 _REPEATED = ('version', 'scenario', 'scenario_digest', *_CONDITIONS[1:])
@@ -18,6 +19,11 @@ class RunOrigin:
     nodes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     commit: str
     version: str
+
+    @property
+    def short_commit(self) -> str:
+        """The commit for a narrow column."""
+        return short_commit(self.commit)
 
 
 def scenario_text(recording: Recording) -> str:
@@ -40,6 +46,6 @@ def run_origin(run: ReportRun) -> RunOrigin:
     return RunOrigin(
         conditions,
         tuple((node, pairs) for node, pairs in nodes.items() if pairs),
-        custom.get('commit', 'unknown'),
-        custom.get('version', 'unknown'),
+        custom.get('commit', UNKNOWN),
+        custom.get('version', UNKNOWN),
     )

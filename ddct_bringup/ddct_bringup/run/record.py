@@ -1,9 +1,7 @@
 """What a run says of itself in its bag, the same from every process layout."""
 
-import subprocess
-from pathlib import Path
-
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.run.source_commit import source_commit
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller
 from ddct_plant.engine_info import engine_info
@@ -53,19 +51,3 @@ def run_info_of(settings: RunSettings, name: str, controller: Controller, steps:
         'recorder': {},
     }
     return {node: run_info_pairs(settings, pairs) for node, pairs in extra.items()}
-
-
-def source_commit() -> str:
-    """Return the git commit of the source tree, or 'unknown' outside a checkout."""
-    try:
-        result = subprocess.run(
-            ['git', 'rev-parse', 'HEAD'],
-            cwd=Path(__file__).resolve().parent,
-            capture_output=True,
-            text=True,
-            timeout=5.0,
-            check=True,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return 'unknown'
-    return result.stdout.strip()
