@@ -3,7 +3,8 @@ The graph's topics, hops and processes in bare rclpy, doing no work: the floor o
 
 Each node publishes its constant messages as soon as it has heard its inputs, with the same QoS,
 executor and message sizes as the real graph. Run one node per process with `python bare_chain.py
-NODE STEPS`, or all in one process with NODE `all`; `driveline` prints microseconds per step.
+NODE STEPS [PATIENCE_S]`, or all in one process with NODE `all`; `driveline` prints microseconds
+per step. Nothing is sent twice, so no node may miss the first message: see `_say_when_ready`.
 """
 
 import sys
@@ -12,8 +13,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
+from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
+from std_msgs.msg import Header
 
 from ddct_plant.graph import messages
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
@@ -60,11 +63,19 @@ WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
 """Inputs and outputs of each node, as in the real graph."""
 
 
+READY = 'ready'
+"""`ready/NODE` has a publisher, which sends nothing, once that node has all its matches."""
+POLL_S = 0.05
+PATIENCE_S = 60.0
+"""How long the driveline waits for the others to start, or for the answer to a tick."""
+
+
 class BareNode(Node):
     """Publish all outputs once every input has come once more."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f'bare_{name}')
+        self._name = name
         inputs, outputs = WIRING[name]
         self._wanted = len(inputs)
         self._heard = 0
@@ -77,6 +88,23 @@ class BareNode(Node):
             kind = type(EXAMPLES[topic]())
             qos = RECORDER_QOS if raw else LOOP_QOS
             self.create_subscription(kind, topic, self._hear, qos, raw=raw)
+        self._looks = self.create_timer(POLL_S, self._say_when_ready)
+
+    def _say_when_ready(self) -> None:
+        """
+        Look whether each of our endpoints is matched with those at its other end, and say so.
+
+        Discovery is not symmetric: that a writer knows its reader does not yet mean that the
+        reader takes in what it writes. Once both know each other, nothing is lost.
+        """
+        inputs = [topic for wiring in WIRING.values() for topic in wiring[0]]
+        matched = all(
+            publisher.get_subscription_count() == inputs.count(topic)
+            for (publisher, _), topic in zip(self._outputs, WIRING[self._name][1], strict=True)
+        )
+        if matched and all(each.get_publisher_count() == 1 for each in self.subscriptions):
+            self._looks.cancel()
+            self.create_publisher(Header, f'{READY}/{self._name}', 1)
 
     def _hear(self, _: Any) -> None:
         self._heard += 1
@@ -95,36 +123,35 @@ class BareNode(Node):
 
 
 class BareDriveline(BareNode):
-    """Begin each tick when the last is answered, once every publisher and reader is there."""
+    """Begin each tick when the last is answered, the first once every node is ready."""
 
     def __init__(self, steps: int) -> None:
         super().__init__('driveline')
         self.done: Future = Future()
-        self._left = steps
+        self.left = steps
         self._steps = steps
         self._started = 0.0
-        self._settled = 0
-        self._begin = self.create_timer(0.05, self._begin_when_matched)
+        self._begin = self.create_timer(POLL_S, self._begin_when_ready)
 
-    def _begin_when_matched(self) -> None:
-        topics = {topic for wiring in WIRING.values() for topics in wiring for topic in topics}
-        inputs = [topic for wiring in WIRING.values() for topic in wiring[0]]
-        whole = all(
-            self.count_publishers(topic) == 1
-            and self.count_subscribers(topic) == inputs.count(topic)
-            for topic in topics
-        )
-        # Discovery is not symmetric: others may see the last node a little later than we do.
-        self._settled = self._settled + 1 if whole else 0
-        if self._settled == 20:
+    def _begin_when_ready(self) -> None:
+        if not self._not_ready():
             self._begin.cancel()
             self._started = time.perf_counter()
             self.send()
 
+    def _not_ready(self) -> list[str]:
+        return [name for name in WIRING if not self.count_publishers(f'{READY}/{name}')]
+
+    def complaint(self, patience_s: float) -> str:
+        """Return what to say after waiting in vain."""
+        if not self._started:
+            return f'not ready after {patience_s:g} s: {", ".join(self._not_ready())}'
+        return f'no answer to step {self._steps - self.left} within {patience_s:g} s'
+
     def complete(self) -> None:
         """Count the tick and begin the next one."""
-        self._left -= 1
-        if self._left:
+        self.left -= 1
+        if self.left:
             self.send()
             return
         elapsed = time.perf_counter() - self._started
@@ -135,19 +162,32 @@ class BareDriveline(BareNode):
 def main() -> None:
     """Run the named node, or all of them, until the driveline has done its steps."""
     name, steps = sys.argv[1], int(sys.argv[2])
+    patience_s = float(sys.argv[3]) if len(sys.argv) > 3 else PATIENCE_S
     rclpy.init()
     names = list(WIRING) if name == 'all' else [name]
     nodes = [BareDriveline(steps) if one == 'driveline' else BareNode(one) for one in names]
     executor = make_executor()
     for node in nodes:
         executor.add_node(node)
-    done = nodes[-1].done if 'driveline' in names else Future()
     try:
-        while not done.done():
-            executor.spin_until_future_complete(done, SLICE_S)
+        if isinstance(nodes[-1], BareDriveline):
+            spin_driveline(executor, nodes[-1], patience_s)
+        while 'driveline' not in names:
+            executor.spin_once(SLICE_S)
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         pass
     rclpy.try_shutdown()
+
+
+def spin_driveline(executor: Executor, driveline: BareDriveline, patience_s: float) -> None:
+    """Spin until it is done; end the program with a line when nothing happens for too long."""
+    left, since = driveline.left, time.monotonic()
+    while not driveline.done.done():
+        executor.spin_until_future_complete(driveline.done, SLICE_S)
+        if driveline.left != left:
+            left, since = driveline.left, time.monotonic()
+        elif time.monotonic() - since > patience_s:
+            sys.exit(f'bare_chain: {driveline.complaint(patience_s)}')
 
 
 if __name__ == '__main__':

@@ -38,6 +38,8 @@ from ddct_plant.scenario_file import load_scenario
 PERIOD_US = 10_000.0
 WORST_RATIO = 1.5
 """What the graph's nodes may cost over a chain that does no work."""
+BARE_S = 300.0
+"""How long a bare chain may take; it ends by itself when a message is lost."""
 BARE = Path(__file__).with_name('bare_chain.py')
 
 
@@ -125,12 +127,16 @@ def _bare_us(layout: str, steps: int) -> float:
             for name in names
         ]
         try:
-            output, _ = processes[-1].communicate(timeout=300)
+            output, _ = processes[-1].communicate(timeout=BARE_S)
+        except subprocess.TimeoutExpired:
+            sys.exit(f'run.py: the bare chain of {steps} steps took more than {BARE_S:g} s')
         finally:
             for process in processes:
                 process.terminate()
             for process in processes:
                 process.wait(timeout=20)
+    if processes[-1].returncode:
+        sys.exit('run.py: the bare chain failed; its reason stands above')
     return float(output)
 
 
