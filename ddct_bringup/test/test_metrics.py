@@ -52,8 +52,9 @@ def score(run, timing=None, control_start_s=0.6):
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_engagement_time_is_interpolated_from_control_start(sign):
-    metrics = score(trajectory(slip_speed=sign * (20.0 - 16.0 * TIME)))
-    assert metrics.engagement_time_s == pytest.approx(20.0 / 16.0 - 0.6, abs=1e-12)
+    # The samples around the zero at 1.254 s are those of 1.25 s and 1.26 s.
+    metrics = score(trajectory(slip_speed=sign * 16.0 * (1.254 - TIME)))
+    assert metrics.engagement_time_s == pytest.approx(1.254 - 0.6, abs=1e-12)
     assert metrics.lockup_slip_acceleration_rad_s2 == pytest.approx(-16.0 * sign, rel=1e-9)
 
 

@@ -3,6 +3,7 @@
 import io
 
 import pytest
+from printed_table import value_under
 
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
@@ -31,11 +32,27 @@ def printed(runs, columns=(CONTROLLER, WEAR, *COLUMNS), stream=None):
     return stream.getvalue()
 
 
-def test_every_column_has_its_value():
-    text = printed([run(engagement_time_s=0.88, torsion_speed_std_rpm=0.7049)])
-    assert '0.880' in text
-    assert '0.705' in text
-    assert 'yes' in text
+@pytest.mark.parametrize(
+    ('heading', 'unit', 'metric_name', 'value', 'shown'),
+    [
+        ('t_a', 's', 'engagement_time_s', 0.88, '0.880'),
+        ('std w_sr', 'rpm', 'torsion_speed_std_rpm', 0.7049, '0.705'),
+        ('std A_x', 'm/s^2', 'acceleration_std_m_s2', 0.1806, '0.181'),
+        ('final', 'rpm', 'slip_final_rpm', -3.456, '-3.46'),
+        ('slip', 'rpm', 'slip_rmse_rpm', 7.891, '7.89'),
+        ('jerk', 'm/s^3', 'peak_jerk_m_s3', 12.345, '12.35'),
+    ],
+)
+def test_a_value_stands_under_its_heading_and_unit(heading, unit, metric_name, value, shown):
+    others = dict.fromkeys(METRIC_NAMES, 1000.0)
+    text = printed([run(**{**others, metric_name: value})])
+    assert value_under(text, heading, 'pi') == (unit, shown)
+
+
+def test_a_valid_run_is_told_from_one_that_is_not():
+    text = printed([run('pi'), run('ls8', valid=False)])
+    rows = {line.split()[0]: line.split()[-1] for line in text.splitlines() if line.split()}
+    assert (rows['pi'], rows['ls8']) == ('yes', 'NO')
 
 
 def test_an_undefined_metric_is_a_dash():

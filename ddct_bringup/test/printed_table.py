@@ -1,0 +1,21 @@
+"""Read a printed table of runs as a person does: a value stands under its heading."""
+
+import re
+
+
+def value_under(text: str, heading: str, controller: str, place: int = 0) -> tuple[str, str]:
+    """
+    Return (unit, value in the row of `controller`) of a column of numbers.
+
+    Numbers end where their headings end. Of headings that read the same it is the one at `place`.
+    """
+    lines = text.splitlines()
+    rule = next(number for number, line in enumerate(lines) if '──' in line)
+    names, units = lines[rule - 2 : rule]
+    end = [match.end() for match in re.finditer(re.escape(heading), names)][place]
+    (row,) = [line for line in lines[rule:] if controller in line.split()]
+    return _word_that_ends(units, end), _word_that_ends(row, end)
+
+
+def _word_that_ends(line: str, end: int) -> str:
+    return next(word[0] for word in re.finditer(r'\S+', line) if word.end() == end)

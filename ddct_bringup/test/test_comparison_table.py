@@ -1,0 +1,90 @@
+"""The table of `compare`: ours under our headings, the thesis's under its own, only where due."""
+
+import dataclasses
+import io
+
+import pytest
+from printed_table import value_under
+
+from ddct_bringup.scores.comparison_table import print_comparison
+from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+
+THESIS = load_scenario('thesis')
+OURS = {
+    'engagement_time_s': 0.111,
+    'torsion_speed_std_rpm': 2.222,
+    'acceleration_std_m_s2': 0.333,
+    'slip_final_rpm': -4.44,
+    'peak_jerk_m_s3': 5.55,
+}
+
+
+def entry(controller='ls8'):
+    return {
+        'bag': controller,
+        'controller': controller,
+        'wear_gain': 1.0,
+        'valid': True,
+        'reason': '',
+        'metrics': {**dict.fromkeys(METRIC_NAMES), **OURS},
+        'fallbacks': None,
+    }
+
+
+def printed(settings=None, overrides=()):
+    stream = io.StringIO()
+    print_comparison(
+        [entry('ls8'), entry('mpc4')], settings or RunSettings(THESIS), overrides, stream
+    )
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize('worn', [False, True])
+@pytest.mark.parametrize(
+    ('heading', 'unit', 'value'),
+    [
+        ('t_a', 's', '0.111'),
+        ('std w_sr', 'rpm', '2.222'),
+        ('std A_x', 'm/s^2', '0.333'),
+        ('final', 'rpm', '-4.44'),
+        ('jerk', 'm/s^3', '5.55'),
+    ],
+)
+def test_our_figures_stand_under_their_headings(heading, unit, value, worn):
+    text = printed(RunSettings(THESIS, wear_gain=0.7) if worn else None)
+    assert value_under(text, heading, 'ls8') == (unit, value)
+
+
+@pytest.mark.parametrize(
+    ('controller', 'printed_figures'),
+    # As Table 5.1 prints them: t_a, the deviation of w_sr, that of A_x.
+    [('ls8', ['0.71', '1.15', '0.20']), ('mpc4', ['0.52', '0.20', '0.06'])],
+)
+def test_each_figure_of_the_thesis_stands_right_of_ours(controller, printed_figures):
+    text = printed()
+    names = next(line for line in text.splitlines() if 't_a' in line)
+    shown = [value_under(text, 'thesis', controller, place) for place in range(3)]
+    assert shown == list(zip(['s', 'rpm', 'm/s^2'], printed_figures, strict=True))
+    words = names.replace('std ', 'std_').split()
+    for name in ('t_a', 'std_w_sr', 'std_A_x'):
+        assert words[words.index(name) + 1] == 'thesis'
+
+
+@pytest.mark.parametrize(
+    ('settings', 'overrides'),
+    [
+        (RunSettings(THESIS, wear_gain=0.7), ()),
+        (RunSettings(THESIS, wear_gain=1.3), ()),
+        (RunSettings(THESIS, architecture='feedforward'), ()),
+        (RunSettings(dataclasses.replace(THESIS, name='mine')), ()),
+        (RunSettings(THESIS), ('load.slope_rad=0.05',)),
+    ],
+    ids=['worn', 'thicker', 'architecture', 'scenario', 'changed scenario'],
+)
+def test_the_thesis_is_shown_beside_its_own_conditions_only(settings, overrides):
+    text = printed(settings, overrides).partition('\n')[2]
+    assert 'thesis' not in text
+    assert 'calibrated' not in text
+    assert '0.71' not in text
