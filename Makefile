@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test lint bench lock clean
+.PHONY: help setup demo test mutants lint bench lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -26,7 +26,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | demo | test | lint | bench | clean   (see docs/setup.md)'
+	@echo 'make setup | demo | test | mutants | lint | bench | clean   (see docs/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -81,6 +81,10 @@ test: setup
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \
 	exit $$status
+
+# MUTANTS='--claim TEXT' or files of tests/mutants try only those.
+mutants: setup
+	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
 
 lint: $(VENV_MADE)
 	@status=0; \

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
+from ddct_controllers.design.h_infinity import lmi as lmi_synthesis
 from ddct_controllers.design.h_infinity import problem as hinf_problem
+from ddct_controllers.design.h_infinity import synthesis as riccati_synthesis
 from ddct_controllers.design.h_infinity.coordinates import balanced
 from ddct_controllers.design.h_infinity.design import design_h_infinity, generalised_plant
 from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
@@ -124,6 +126,24 @@ def test_below_the_optimum_the_riccati_equations_have_solutions_and_the_loop_is_
     problem = balanced(generalised_plant(PRINTED))
     controller = central_controller(problem, 1.08, *stabilising_solutions(problem, 1.08))
     assert verified_norm(problem, controller) == math.inf
+
+
+@pytest.mark.parametrize(('method', 'excess'), [('riccati', 2e-5), ('lmi', 0.02)])
+def test_a_closed_loop_above_the_promised_level_is_refused(monkeypatch, method, excess):
+    """Stable, but above: neither the Riccati solutions nor the LMIs are taken at their word."""
+    if method == 'lmi':
+        pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
+    asked = []
+
+    def promised(plant, gamma, x, y):
+        asked.append(gamma)
+        return central_controller(plant, gamma, x, y)
+
+    for module in (riccati_synthesis, lmi_synthesis):
+        monkeypatch.setattr(module, 'central_controller', promised)
+        monkeypatch.setattr(module, 'verified_norm', lambda *_: asked[-1] * (1.0 + excess))
+    with pytest.raises(SynthesisError, match='closed loop'):
+        (synthesise_by_lmi if method == 'lmi' else synthesise)(simple_plant())
 
 
 def test_one_percent_above_the_optimum_the_fast_pole_is_gone():

@@ -1,0 +1,84 @@
+"""
+`make mutants`: seed every defect of tests/mutants/*.yaml in a scratch copy and run its tests.
+
+A defect that its tests do not notice lives, and the exit code is 1; so it is for an entry whose
+text is gone from its file, and for tests that fail without a defect.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from mutant_entries import Mutant, read_mutants
+from mutant_trials import TrialError, tests_pass
+
+WORKERS = 2
+CAUGHT, LIVED, ERROR = 'caught', 'LIVED', 'ERROR'
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Try the defects, print a table and return the exit code."""
+    here = Path(__file__).resolve().parent
+    parser = argparse.ArgumentParser(description='Seed defects and see whether tests catch them.')
+    parser.add_argument('files', nargs='*', type=Path, help='default: all of tests/mutants')
+    parser.add_argument('--claim', default='', help='only defects whose claim has this text')
+    parser.add_argument('--root', type=Path, default=here.parents[1], help='the repository')
+    options = parser.parse_args(arguments)
+    try:
+        mutants = [
+            mutant
+            for file in options.files or sorted(here.glob('*.yaml'))
+            for mutant in read_mutants(file)
+            if options.claim in mutant.claim
+        ]
+        for mutant in mutants:
+            mutant.defective(options.root)
+    except (OSError, ValueError) as error:
+        print(f'mutants: {error}', file=sys.stderr)
+        return 1
+    return try_all(options.root, mutants)
+
+
+def try_all(root: Path, mutants: Sequence[Mutant]) -> int:
+    """Try each set of tests without a defect, then each defect; return the exit code."""
+    with ThreadPoolExecutor(WORKERS) as pool:
+        test_sets = list(dict.fromkeys(mutant.tests for mutant in mutants))
+        sound = dict(
+            zip(test_sets, pool.map(lambda tests: _sound(root, tests), test_sets), strict=True)
+        )
+        outcomes = []
+        for mutant, outcome in zip(
+            mutants, pool.map(lambda m: _try(root, m, sound[m.tests]), mutants), strict=True
+        ):
+            print(f'{outcome:6}  {mutant.file}: {mutant.claim}', flush=True)
+            outcomes.append(outcome)
+    print(', '.join(f'{outcomes.count(kind)} {kind}' for kind in (CAUGHT, LIVED, ERROR)))
+    return int(any(outcome != CAUGHT for outcome in outcomes))
+
+
+def _sound(root: Path, tests: Sequence[str]) -> bool:
+    """Return whether the tests pass without a defect; tell on stderr when they do not."""
+    try:
+        if tests_pass(root, tests):
+            return True
+        print(f'mutants: without a defect these fail: {" ".join(tests)}', file=sys.stderr)
+    except TrialError as error:
+        print(f'mutants: {error}', file=sys.stderr)
+    return False
+
+
+def _try(root: Path, mutant: Mutant, sound: bool) -> str:
+    """Return whether the tests caught the defect."""
+    if not sound:
+        return ERROR
+    try:
+        return LIVED if tests_pass(root, mutant.tests, mutant) else CAUGHT
+    except TrialError as error:
+        print(f'mutants: {mutant.claim}: {error}', file=sys.stderr)
+        return ERROR
+
+
+if __name__ == '__main__':
+    sys.exit(main())

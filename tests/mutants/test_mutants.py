@@ -1,0 +1,98 @@
+"""`make mutants` tells which seeded defects live, and no entry of it goes stale."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from mutant_entries import read_mutants
+
+HERE = Path(__file__).resolve().parent
+ENTRY = """\
+- claim: {claim}
+  file: ddct_sums/ddct_sums/sums.py
+  find: "{find}"
+  replace: "{replace}"
+  tests: [{test}]
+"""
+
+
+@pytest.mark.parametrize('file', sorted(HERE.glob('*.yaml')), ids=lambda file: file.stem)
+def test_each_seeded_defect_has_its_text_exactly_once_in_its_file(file: Path) -> None:
+    for mutant in read_mutants(file):
+        mutant.defective(HERE.parents[1])
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """Make a repository of one package, whose tests know a + b only at b = 0."""
+    files = {
+        'ddct_sums/package.xml': '',
+        'ddct_sums/ddct_sums/__init__.py': '',
+        'ddct_sums/ddct_sums/sums.py': 'def add(a, b):\n    return a + b\n',
+        'ddct_sums/test_sums.py': (
+            'from ddct_sums.sums import add\n\ndef test_add():\n    assert add(2, 0) == 2\n'
+        ),
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding='utf-8')
+    for command in (['init', '-q'], ['add', '.']):
+        subprocess.run(['git', *command], cwd=tmp_path, check=True)
+    return tmp_path
+
+
+def entry(claim: str, find: str, replace: str, test: str = 'ddct_sums/test_sums.py') -> str:
+    return ENTRY.format(claim=claim, find=find, replace=replace, test=test)
+
+
+def run_mutants(repository: Path, *entries: str) -> subprocess.CompletedProcess[str]:
+    file = repository / 'seeded.yaml'
+    file.write_text(''.join(entries), encoding='utf-8')
+    command = [sys.executable, HERE / 'run.py', '--root', repository, file]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_a_defect_that_lives_is_reported_and_one_that_is_caught_is_told(repository: Path) -> None:
+    caught, lives = entry('it multiplies', 'a + b', 'a * b'), entry('-b', 'a + b', 'a - b')
+    ended = run_mutants(repository, caught, lives)
+    file = 'ddct_sums/ddct_sums/sums.py'
+    assert ended.stdout.splitlines() == [
+        f'caught  {file}: it multiplies',
+        f'LIVED   {file}: -b',
+        '1 caught, 1 LIVED, 0 ERROR',
+    ]
+    assert ended.returncode == 1
+    assert run_mutants(repository, caught).returncode == 0
+    assert 'return a + b' in (repository / file).read_text()
+
+
+@pytest.mark.parametrize(('find', 'times'), [('a - b', 0), ('a', 3)])
+def test_an_entry_whose_text_is_not_there_exactly_once_is_an_error(
+    repository: Path, find: str, times: int
+) -> None:
+    ended = run_mutants(repository, entry('stale', find, 'a * b'))
+    assert ended.returncode == 1
+    assert f'stale: `find` occurs {times} times' in ended.stderr
+
+
+def test_a_defect_is_not_caught_by_tests_that_fail_without_it_or_cannot_be_run(
+    repository: Path,
+) -> None:
+    tests = repository / 'ddct_sums' / 'test_sums.py'
+    breaks_import = entry('no import', 'return a + b', 'return a +')
+    assert '1 ERROR' in run_mutants(repository, breaks_import).stdout
+    tests.write_text(tests.read_text() + '    assert add(2, 0) == 3\n')
+    ended = run_mutants(repository, entry('it multiplies', 'a + b', 'a * b'))
+    assert (ended.returncode, '1 ERROR' in ended.stdout) == (1, True)
+    assert 'without a defect these fail: ddct_sums/test_sums.py' in ended.stderr
+
+
+def test_a_package_from_outside_the_copy_is_an_error(repository: Path) -> None:
+    source = repository / 'ddct_sums' / 'ddct_sums'
+    tests = repository / 'ddct_sums' / 'test_sums.py'
+    elsewhere = f'import sys\nsys.path.insert(0, {str(source.parent)!r})\n'
+    tests.write_text(elsewhere + tests.read_text())
+    ended = run_mutants(repository, entry('it multiplies', 'a + b', 'a * b'))
+    assert (ended.returncode, '1 ERROR' in ended.stdout) == (1, True)
+    assert 'imported from outside' in ended.stderr
