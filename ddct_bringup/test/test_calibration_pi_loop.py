@@ -5,8 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
+from ddct_bringup.calibration import record
 from ddct_bringup.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.calibration.problem import Fit, Problem
+from ddct_bringup.calibration.search import LocalOptimum, Search, lowest_stable
 from ddct_bringup.headless import run_headless
+from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario import Scenario
 from ddct_plant.scenario_file import load_scenario
@@ -49,3 +53,38 @@ def test_frozen_pi_is_stable_and_its_slip_dies_out():
 def test_too_much_proportional_gain_is_unstable_too():
     driveline = load_scenario('thesis').driveline
     assert pi_growth_rate(driveline, 0.1, 0.02) < 0.0 < pi_growth_rate(driveline, 3.0, 0.02)
+
+
+def optimum(proportional_gain: float, integral_gain: float, residual: float) -> LocalOptimum:
+    values = (0.0, 250.0, 0.5, 110.0, proportional_gain, integral_gain)
+    return LocalOptimum(Fit(Problem(2.0), values, np.array([residual])))
+
+
+def test_an_unstable_pi_does_not_leave_the_search_however_well_it_fits():
+    """Integral action alone grows, at 0.04 by 0.1/s."""
+    good, better = optimum(0.1, 0.02, 0.5), optimum(0.1, 0.03, 0.4)
+    unstable = [optimum(0.0, 0.14, 0.1), optimum(3.0, 0.02, 0.2), optimum(0.0, 0.04, 0.3)]
+    assert [one.pi_stable for one in unstable] == [False] * 3
+    assert 0.0 < unstable[-1].pi_growth_rate < 0.2
+    assert lowest_stable([good, *unstable, better]) is better
+
+
+def test_a_search_without_a_stable_pi_ends_with_the_reason():
+    with pytest.raises(DdctError, match='none of 1 fits has a stable PI loop'):
+        lowest_stable([optimum(0.0, 0.14, 0.1)])
+
+
+def test_a_pi_that_only_rounding_makes_unstable_does_not_leave_the_calibration(monkeypatch):
+    """K_p = 0.0023 stabilises K_i = 0.04, the 0.002 that the scenario would keep does not."""
+    chosen = optimum(0.0023, 0.04, 0.1)
+    assert chosen.pi_stable
+    monkeypatch.setattr(record, 'search', lambda _: Search((), (), chosen))
+    with pytest.raises(DdctError, match=r'gains 0\.002 and 0\.04 grows by 0\.0023/s'):
+        record.calibrate(print)
+
+
+def test_a_frozen_scenario_with_an_unstable_pi_is_refused():
+    scenario = load_scenario('thesis')
+    unstable = {'pi': {'proportional_gain': 0.0, 'integral_gain': 0.14}}
+    with pytest.raises(DdctError, match='gains 0 and 0.14 grows'):
+        record.check_frozen(dataclasses.replace(scenario, controllers=unstable), print)

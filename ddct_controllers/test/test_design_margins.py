@@ -86,6 +86,107 @@ def test_they_are_those_of_python_control(name):
         )
 
 
+def crossings_by_polynomials(loop: FactoredTransferFunction) -> tuple[np.ndarray, np.ndarray]:
+    """Return where N(s) N(-s) = D(s) D(-s) on the axis, rising, and the angle of -L there."""
+
+    def even(roots: np.ndarray) -> np.ndarray:
+        return np.polymul(np.poly(roots), (-1.0) ** len(roots) * np.poly(-roots)).real
+
+    roots = np.roots(np.polysub(loop.gain**2 * even(loop.zeros), even(loop.poles)))
+    omega = np.sort(roots[(np.abs(roots.real) < 1e-6) & (roots.imag > 0.0)].imag)
+    return omega, np.angle(-loop.frequency_response(omega))
+
+
+THIRD_OF_FIVE = FactoredTransferFunction(
+    18.8, ((0.2, 49.0), (0.2, 961.0)), (0.0, (1.0, 625.0), (1.0, 961.0))
+)
+LEADING_SECOND = FactoredTransferFunction(
+    6.9, (17.3, (0.2, 0.16), 0.6), ((1.0, 0.09), (0.5, 37.21), (0.5, 1.21), 0.0)
+)
+
+
+def test_phase_and_delay_margin_are_the_least_of_all_crossovers():
+    """Here those of the third of five."""
+    omega, angles = crossings_by_polynomials(THIRD_OF_FIVE)
+    delays = np.mod(angles, math.tau) / omega
+    assert len(omega) == 5
+    assert np.argmin(np.abs(angles)) == np.argmin(delays) == 2
+    margins = loop_margins(ContinuousLoop(THIRD_OF_FIVE))
+    assert margins.phase_margin_deg == pytest.approx(math.degrees(abs(angles[2])), rel=1e-6)
+    assert margins.delay_margin_s == pytest.approx(delays[2], rel=1e-6)
+    assert margins.crossover_rad_s == pytest.approx(omega[-1], rel=1e-6)
+
+
+def test_a_lead_takes_nearly_a_turn_of_delay():
+    """The second of three crossovers has 28 degrees of lead, the first 28 of lag."""
+    omega, angles = crossings_by_polynomials(LEADING_SECOND)
+    assert np.abs(angles / omega).argmin() == 1
+    margins = loop_margins(ContinuousLoop(LEADING_SECOND))
+    assert margins.delay_margin_s == pytest.approx(angles[0] / omega[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ('factored', 'least_increase'),
+    [
+        (
+            FactoredTransferFunction(
+                2.3,
+                ((-0.2, 0.64), (1.0, 60.84), (0.2, 79.21)),
+                ((1.0, 299.29), (0.5, 4.84), (1.0, 42.25), 0.0),
+            ),
+            True,
+        ),
+        (FactoredTransferFunction(56.1, ((1.0, 6.25),), ((0.5, 4.0), -1.0)), False),
+    ],
+)
+def test_of_several_critical_gains_the_nearest_is_the_margin(factored, least_increase):
+    """Stable at every gain on the way to it, by the closed loop's poles, and unstable beyond."""
+    margins = loop_margins(ContinuousLoop(factored))
+    if least_increase:
+        critical = 10.0 ** (margins.gain_margin_db / 20.0)
+    else:
+        critical = 10.0 ** (-margins.gain_reduction_margin_db / 20.0)
+    factors = np.geomspace(1.0, critical, 300)
+    factors[-1] *= 1.0 - math.copysign(1e-4, critical - 1.0)
+    stable = [by_poles(factored, factor) for factor in factors]
+    assert all(stable)
+    assert not by_poles(factored, critical * (1.0 + math.copysign(1e-4, critical - 1.0)))
+
+
+def by_poles(factored: FactoredTransferFunction, gain: float) -> bool:
+    """Return whether D + gain N has all its roots on the left."""
+    numerator = gain * factored.gain * np.poly(factored.zeros).real
+    roots = np.roots(np.polyadd(np.poly(factored.poles).real, numerator))
+    return bool(np.all(roots.real < 0.0))
+
+
+def test_a_sampled_loop_is_looked_at_up_to_half_the_sampling_rate():
+    """L = 0.4/(z - 0.5): closed-loop pole 0.5 - 0.4 k, at -1 for k = 3.75; M_s = 1/(1 + L(-1))."""
+    one = np.ones((1, 1))
+    margins = loop_margins(StateSpace(0.5 * one, one, 0.4 * one, 0.0 * one, PERIOD_S))
+    assert margins.gain_margin_db == pytest.approx(20.0 * math.log10(3.75), abs=1e-9)
+    assert margins.sensitivity_peak == pytest.approx(1.0 / (1.0 - 0.4 / 1.5), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ('a', 'c', 'period_s'),
+    [
+        ([[1.0]], [[0.0]], PERIOD_S),
+        ([[1.0]], [[2.0]], PERIOD_S),
+        ([[0.0, 1.0], [0.0, 0.0]], [[1.0, 0.0]], PERIOD_S),
+        ([[0.0]], [[0.0]], None),
+        ([[0.0, 1.0], [0.0, 0.0]], [[1.0, 0.0]], None),
+    ],
+    ids=['z = 1', 'z = -1', 'z = +-j', 's = 0', 's = +-j'],
+)
+def test_a_closed_loop_pole_on_the_boundary_is_not_stable(a, c, period_s):
+    b = [[0.0]] * (len(a) - 1) + [[1.0]]
+    loop = StateSpace(a, b, c, np.zeros((1, 1)), period_s)
+    assert unstable_poles(loop) == len(a)
+    assert not closed_loop_stable(loop)
+    assert not loop_margins(loop).stable
+
+
 @pytest.mark.parametrize('name', NAMES)
 def test_the_gain_margins_are_where_poles_reach_the_unit_circle(name):
     """Stable 0.1 % inside both, unstable 0.1 % outside, by eigenvalues of the closed loop."""

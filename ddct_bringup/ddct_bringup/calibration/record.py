@@ -14,7 +14,13 @@ from ddct_bringup.calibration.analysis import (
 )
 from ddct_bringup.calibration.parameters import BASE, LOWER, PARAMETERS, RANGE, TARGETS, TOLERANCES
 from ddct_bringup.calibration.problem import Fit, Problem, fit
-from ddct_bringup.calibration.search import LocalOptimum, Progress, rounded, search
+from ddct_bringup.calibration.search import (
+    LocalOptimum,
+    Progress,
+    require_stable_pi,
+    rounded,
+    search,
+)
 from ddct_bringup.scores.thesis_table import FIGURES
 from ddct_plant.errors import ParameterError
 from ddct_plant.scenario import Scenario
@@ -26,10 +32,11 @@ RETURN_TOLERANCE = 0.01
 
 
 def calibrate(progress: Progress) -> Record:
-    """Run the whole calibration and return its record."""
+    """Run the whole calibration and return its record; raise DdctError without a stable PI."""
     found = search(progress)
     optimum = found.chosen.fit
     frozen = rounded(optimum.values)
+    require_stable_pi(frozen)
     return {
         'objective': _objective(optimum),
         'score_window_s': [BASE.control_start_s, optimum.problem.window_end_s],
@@ -48,8 +55,13 @@ def calibrate(progress: Progress) -> Record:
 
 
 def check_frozen(scenario: Scenario, progress: Progress) -> Record:
-    """Return the residuals of a calibrated scenario and where a local refit moves it."""
+    """
+    Return the residuals of a calibrated scenario and where a local refit moves it.
+
+    Raise DdctError when its PI does not stabilise the slip speed.
+    """
     frozen = values_of(scenario)
+    require_stable_pi(frozen)
     problem = Problem(scenario.score_window_s[1], base=scenario)
     progress('local refit')
     refit = fit(problem, frozen)

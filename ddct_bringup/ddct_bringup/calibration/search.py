@@ -9,6 +9,7 @@ from functools import cached_property
 from ddct_bringup.calibration.parameters import BASE, DURATION_S, PARAMETERS, TARGETS
 from ddct_bringup.calibration.pi_loop import pi_growth_rate
 from ddct_bringup.calibration.problem import Fit, Problem, fit
+from ddct_plant.errors import DdctError
 
 Progress = Callable[[str], None]
 
@@ -85,8 +86,21 @@ def search(progress: Progress, window_ends_s: Sequence[float] = WINDOW_ENDS_S) -
 
 
 def lowest_stable(optima: Sequence[LocalOptimum]) -> LocalOptimum:
-    """Return the optimum with the lowest objective whose PI loop is stable."""
-    return min((one for one in optima if one.pi_stable), key=lambda one: one.fit.objective)
+    """Return that of the lowest objective among stable PI loops; raise DdctError without one."""
+    stable = [one for one in optima if one.pi_stable]
+    if not stable:
+        raise DdctError(f'none of {len(optima)} fits has a stable PI loop: narrow the bounds')
+    return min(stable, key=lambda one: one.fit.objective)
+
+
+def require_stable_pi(values: Sequence[float]) -> None:
+    """Raise DdctError unless the PI of the (6,) values of PARAMETERS stabilises the slip speed."""
+    rate = pi_growth_rate(BASE.driveline, *values[4:])
+    if not rate < 0.0:
+        raise DdctError(
+            f'the PI loop with gains {values[4]:g} and {values[5]:g} grows by {rate:.2g}/s: '
+            'no scenario may leave the calibration with it'
+        )
 
 
 def _one_of_each_kind(optima: Sequence[LocalOptimum]) -> list[LocalOptimum]:
