@@ -81,6 +81,14 @@ def test_a_longer_rise_time_slows_every_weight_alike():
     assert slow.effort.torque_n_m_per_rpm == fast.effort.torque_n_m_per_rpm / 2.0
 
 
+def test_the_effort_weight_costs_1_at_its_torque_and_rises_a_hundredfold_from_its_corner():
+    """(1 + s/w_c) / (1 + s/(100 w_c)) / u_max, by hand at 0, w_c, 100 w_c and infinity."""
+    weight = EffortWeight(torque_n_m_per_rpm=0.05, corner_rad_s=30.0).transfer_function()
+    found = np.abs(weight.frequency_response(np.array([0.0, 30.0, 3000.0, 1e12])))
+    by_hand = [20.0, 20.0 * math.sqrt(2.0 / 1.0001), 20.0 * math.sqrt(10001.0 / 2.0), 2000.0]
+    assert found == pytest.approx(by_hand, rel=1e-9)
+
+
 def test_what_is_given_overrides_the_recipe():
     weights = make_weights('sampled', THESIS_SPECIFICATIONS, 0.2, 30.0, 0.1, 1.05)
     assert weights.sensitivity.low_frequency_gain == 0.2

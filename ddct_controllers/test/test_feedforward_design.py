@@ -14,6 +14,7 @@ from ddct_controllers.design.feedforward.design import (
 from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_controllers.feedforward import Feedforward
 from ddct_plant.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
 from ddct_plant.errors import DdctError
 from ddct_plant.lti import StateSpace, discretise_zoh
@@ -162,6 +163,21 @@ def test_a_run_that_starts_with_torque_is_not_taken_for_a_ramp():
     started = response(FILTER, constant, state_at_rest(FILTER, 100.0))[0]
     ramping = response(FILTER, constant)[0]
     assert started < STATIC_GAINS[0] * 100.0 < ramping
+
+
+def test_a_run_under_constant_torque_starts_as_if_the_torque_had_never_risen():
+    """
+    Its first request is the direct gain of the level alone, without that of a rise.
+
+    A filter from zero would take the first torque for a step of 250 N m within a period and ask
+    for more; the settled request is the static one in both cases.
+    """
+    feedforward = Feedforward(DRIVELINE)
+    requests = [feedforward.update(250.0, 60.0) for _ in range(400)]
+    level = FILTER.d[0] + [FILTER.c[0, -1], 0.0]
+    assert requests[0] == pytest.approx(level @ [250.0, 60.0], rel=1e-12)
+    assert requests[0] < (FILTER.d @ [250.0, 60.0])[0] - 1.0
+    assert requests[-1] == pytest.approx(np.dot(STATIC_GAINS, [250.0, 60.0]), rel=1e-4)
 
 
 def test_a_driveline_without_a_filter_is_refused():

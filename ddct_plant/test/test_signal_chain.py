@@ -70,21 +70,11 @@ def test_actuator_at_rest_stays_at_rest():
         assert actuator.update(100.0) == pytest.approx([at_rest] * 11, rel=1e-12)
 
 
-def test_actuator_cuts_negative_requests_off():
-    actuator = Actuator(0.0)
-    for _ in range(50):
-        nodes = actuator.update(-300.0)
-    assert nodes == [0.0] * 11
-
-
-def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_function():
-    """Within 1e-8 of a tight-tolerance integration of G_a, at every 1 ms node."""
-    requests = [120.0, 40.0, 0.0, 300.0, 310.0, 90.0]
-    actuator = Actuator(0.0)
-    nodes = np.array([actuator.update(request) for request in requests])
+def integrated(held_n_m):
+    """Return G_a's torque at every 1 ms node, (n, 11), by a tight-tolerance integration."""
     model = ACTUATOR.to_state_space()
-    state, expected = np.zeros(len(model.a)), []
-    for held in [0.0, *requests[:-1]]:
+    state, nodes = np.zeros(len(model.a)), []
+    for held in held_n_m:
         solution = solve_ivp(
             lambda _, x, held=held: model.a @ x + model.b[:, 0] * held,
             (0.0, 0.01),
@@ -95,9 +85,35 @@ def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_funct
             atol=1e-9,
             max_step=2e-4,
         )
-        expected.append(model.c[0] @ solution.y)
+        nodes.append(model.c[0] @ solution.y)
         state = solution.y[:, -1]
+    return np.array(nodes)
+
+
+def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_function():
+    requests = [120.0, 40.0, 0.0, 300.0, 310.0, 90.0]
+    actuator = Actuator(0.0)
+    nodes = np.array([actuator.update(request) for request in requests])
+    assert np.abs(nodes - integrated([0.0, *requests[:-1]])).max() < 1e-8 * max(requests)
+
+
+def test_actuator_saturates_before_its_dynamics():
+    """
+    The request is cut off, not the torque, which undershoots zero after a fall.
+
+    Nothing of a negative request is kept: the next positive one comes through at once.
+    """
+    requests = [300.0] * 10 + [-300.0] * 10 + [150.0] * 4
+    actuator = Actuator(0.0)
+    nodes = np.array([actuator.update(request) for request in requests])
+    expected = integrated([0.0, *np.maximum(requests[:-1], 0.0)])
     assert np.abs(nodes - expected).max() < 1e-8 * max(requests)
+    assert nodes.min() < -1.0
+
+
+def test_actuator_starts_at_rest_on_what_it_can_give():
+    actuator = Actuator(-300.0)
+    assert [actuator.update(0.0) for _ in range(2)] == [[0.0] * 11] * 2
 
 
 def test_actuator_torque_is_continuous_from_period_to_period():
