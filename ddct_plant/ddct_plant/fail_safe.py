@@ -1,13 +1,18 @@
-"""What engine and actuator do in real time when their requests stop."""
+"""What actuator, engine and driveline do in real time when what they wait for stops coming."""
 
+import math
 from dataclasses import asdict, dataclass
 
 from ddct_plant.checks import require_number
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.timebase import PERIOD_NS, PERIOD_S
 
 REQUEST_TIMEOUT_S = 0.05
 """How long a missing request is waited for."""
 LEAST_REQUEST_TIMEOUT_S, MOST_REQUEST_TIMEOUT_S = PERIOD_S, 10.0
+CLUTCH_TIMEOUT_S = 0.1
+"""How long the driveline waits for a missing clutch torque: the actuator's fail-safe is first."""
+MOST_CATCH_UP_STEPS = round(MOST_REQUEST_TIMEOUT_S / PERIOD_S)
+"""Steps without a request that are made up for at most: none is held for longer."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,11 @@ class FailSafeSettings:
         return {name: repr(value) for name, value in asdict(self).items()}
 
 
+def steps_to_make_up(next_step: int, step: int) -> range:
+    """Return the steps before `step`, from the first not yet answered, that still count."""
+    return range(max(next_step, step - MOST_CATCH_UP_STEPS), step)
+
+
 class RequestWatch:
     """
     Notice that requests have stopped for longer than the timeout in s.
@@ -42,7 +52,8 @@ class RequestWatch:
     """
 
     def __init__(self, timeout_s: float) -> None:
-        self._timeout_s = timeout_s
+        # Stamps are whole ns, so the timeout is too: in floats some trip a step early.
+        self._timeout_ns = round(timeout_s * 1e9)
         self._last_step: int | None = None
         self.stopped = False
 
@@ -63,7 +74,7 @@ class RequestWatch:
 
     def too_long(self, since_step: int, step: int) -> bool:
         """Say whether more than the timeout lies between two steps."""
-        return (step - since_step) * PERIOD_S > self._timeout_s
+        return (step - since_step) * PERIOD_NS > self._timeout_ns
 
 
 class FailSafe:
@@ -82,13 +93,14 @@ class FailSafe:
     def request(self, step: int, torque: float) -> None:
         """Note the request in N m that came for `step`."""
         self.watch.request(step)
-        self._torque = max(torque, 0.0)
+        self._torque = torque
 
     def tick(self, step: int) -> bool:
         """Say at the start of `step` whether the fail-safe is engaged from now on."""
         return self.watch.tick(step)
 
-    def next_torque(self) -> float:
-        """Return the request in N m of the next period on the way to an open clutch."""
-        self._torque = max(self._torque - self._most_change, 0.0)
+    def next_torque(self, periods: int = 1) -> float:
+        """Return the request in N m on the way to an open clutch, so many periods later."""
+        left = max(abs(self._torque) - periods * self._most_change, 0.0)
+        self._torque = math.copysign(left, self._torque)
         return self._torque

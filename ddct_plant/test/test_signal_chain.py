@@ -8,7 +8,6 @@ from ddct_plant.actuator import Actuator
 from ddct_plant.clutch import LinearClutch
 from ddct_plant.engine import Engine, TorqueProfile
 from ddct_plant.errors import ParameterError
-from ddct_plant.fail_safe import FailSafe, FailSafeSettings
 from ddct_plant.load import LoadParameters, RoadLoad
 from ddct_plant.printed import ACTUATOR
 from ddct_plant.vehicle import VehicleParameters
@@ -121,24 +120,3 @@ def test_actuator_torque_is_continuous_from_period_to_period():
     nodes = [actuator.update(request) for request in (200.0, 0.0, 150.0, 80.0)]
     for earlier, later in zip(nodes, nodes[1:], strict=False):
         assert later[0] == pytest.approx(earlier[-1], abs=1e-9)
-
-
-def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():
-    fail_safe = FailSafe(FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0))
-    fail_safe.request(10, 25.0)
-    assert not any(fail_safe.tick(step) for step in range(11, 16))
-    assert fail_safe.tick(16)
-    assert [fail_safe.next_torque() for _ in range(4)] == [15.0, 5.0, 0.0, 0.0]
-
-
-def test_fail_safe_stays_engaged_when_requests_come_back():
-    fail_safe = FailSafe(FailSafeSettings())
-    fail_safe.request(0, 25.0)
-    assert fail_safe.tick(20)
-    fail_safe.request(21, 300.0)
-    assert fail_safe.tick(21)
-
-
-def test_fail_safe_does_not_engage_before_the_first_request():
-    fail_safe = FailSafe(FailSafeSettings())
-    assert not fail_safe.tick(1000)

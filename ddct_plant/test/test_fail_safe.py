@@ -1,0 +1,66 @@
+"""Silence is noticed at the stated step, and the ramp to an open clutch is as steep as stated."""
+
+from fractions import Fraction
+
+import pytest
+
+from ddct_plant.fail_safe import FailSafe, FailSafeSettings, RequestWatch, steps_to_make_up
+
+
+def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():
+    fail_safe = FailSafe(FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0))
+    fail_safe.request(10, 25.0)
+    assert not any(fail_safe.tick(step) for step in range(11, 16))
+    assert fail_safe.tick(16)
+    assert [fail_safe.next_torque() for _ in range(4)] == [15.0, 5.0, 0.0, 0.0]
+
+
+def test_fail_safe_stays_engaged_when_requests_come_back():
+    fail_safe = FailSafe(FailSafeSettings())
+    fail_safe.request(0, 25.0)
+    assert fail_safe.tick(20)
+    fail_safe.request(21, 300.0)
+    assert fail_safe.tick(21)
+
+
+def test_fail_safe_does_not_engage_before_the_first_request():
+    fail_safe = FailSafe(FailSafeSettings())
+    assert not fail_safe.tick(1000)
+
+
+def test_a_request_resets_the_silence():
+    watch = RequestWatch(0.05)
+    for step in range(0, 100, 5):
+        watch.request(step)
+        assert not watch.tick(step + 5)
+    assert watch.tick(101)
+
+
+@pytest.mark.parametrize('since', [0, 1, 77])
+def test_every_timeout_in_hundredths_of_a_second_trips_one_step_after_it(since):
+    for hundredths in range(1, 1001):
+        watch = RequestWatch(float(Fraction(hundredths, 100)))
+        assert not watch.too_long(since, since + hundredths), hundredths
+        assert watch.too_long(since, since + hundredths + 1), hundredths
+
+
+def test_the_ramp_over_several_periods_is_that_of_each():
+    one, several = (FailSafe(FailSafeSettings()) for _ in range(2))
+    for fail_safe in (one, several):
+        fail_safe.request(0, 300.0)
+    for _ in range(7):
+        last = one.next_torque()
+    assert several.next_torque(7) == last == 230.0
+    assert several.next_torque(10**12) == 0.0
+
+
+def test_a_negative_torque_runs_to_zero_too():
+    fail_safe = FailSafe(FailSafeSettings())
+    fail_safe.request(0, -15.0)
+    assert [fail_safe.next_torque() for _ in range(3)] == [-5.0, 0.0, 0.0]
+
+
+def test_the_steps_made_up_for_are_bounded_whatever_a_stamp_says():
+    assert list(steps_to_make_up(3, 6)) == [3, 4, 5]
+    assert len(steps_to_make_up(0, 214_748_364_800)) == 1000
+    assert steps_to_make_up(0, 214_748_364_800)[-1] == 214_748_364_799

@@ -1,0 +1,58 @@
+"""A commanded engine goes on over missing requests, and back to the demand when they stop."""
+
+import pytest
+
+from ddct_plant.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
+from ddct_plant.guarded_engine import GuardedEngine
+
+DEMAND = 308.0
+SLOW = EngineAuthority(slew_n_m_s=500.0, lag_s=0.03)
+
+
+def guarded(authority: EngineAuthority = SLOW) -> GuardedEngine:
+    return GuardedEngine(Engine(TorqueProfile((0.0,), (DEMAND,)), authority), 0.05)
+
+
+def bare(requests: list[float], authority: EngineAuthority = SLOW) -> list[float]:
+    response = EngineResponse(authority)
+    return [response.deliver(DEMAND, request) for request in requests]
+
+
+def test_with_every_request_it_is_the_engine_itself():
+    engine, requests = guarded(), [320.0, 330.0, 290.0]
+    answers = [engine.request(step, request) for step, request in enumerate(requests)]
+    assert answers == bare(requests)
+
+
+@pytest.mark.parametrize('skipped', [1, 2, 4])
+def test_slew_and_lag_go_on_over_steps_without_a_request(skipped):
+    engine = guarded()
+    engine.request(0, 400.0)
+    answer = engine.request(1 + skipped, 380.0)
+    assert answer == bare([400.0] * (1 + skipped) + [380.0])[-1]
+
+
+def test_the_demand_takes_over_one_step_after_the_timeout_and_no_request_counts_any_more():
+    engine = guarded(EngineAuthority(slew_n_m_s=500.0))
+    assert engine.request(0, 320.0) == 313.0
+    assert [engine.tick(step) for step in range(1, 6)] == [None] * 5
+    assert not engine.on_demand
+    assert engine.tick(6) == 315.0, 'the request was held for five steps, then the demand'
+    assert engine.on_demand
+    assert engine.request(7, 400.0) is None
+    assert [engine.tick(step) for step in (7, 7, 8, 9, 6)] == [310.0, 310.0, 308.0, 308.0, None]
+
+
+def test_until_the_first_request_the_demand_holds():
+    engine = guarded(EngineAuthority(slew_n_m_s=500.0))
+    assert engine.tick(5) is None
+    assert engine.tick(6) == DEMAND
+    assert not engine.on_demand
+    assert engine.request(6, 320.0) is None
+    assert engine.request(7, 320.0) == DEMAND + 5.0
+
+
+def test_a_pause_of_any_length_is_made_up_for_at_once():
+    engine = guarded()
+    engine.request(0, 400.0)
+    assert engine.tick(214_748_364_700) == pytest.approx(bare([400.0] * 1000 + [DEMAND])[-1])
