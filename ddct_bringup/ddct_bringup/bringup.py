@@ -1,16 +1,20 @@
 """Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
 
 import argparse
+import sys
 from contextlib import nullcontext
 from pathlib import Path
 
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.run.execution import kept_logs
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.progress import run_with_progress
-from ddct_bringup.scores.scoring import score_bag
+from ddct_bringup.scores.realtime_run import realtime_summary
+from ddct_bringup.scores.scoring import why_invalid
 from ddct_controllers.registry import controller_label
 from ddct_plant.cli import ProgramParser, run_program
 from ddct_plant.errors import DdctError, ParameterError
@@ -51,7 +55,6 @@ def _bringup(argv: list[str]) -> int:
         mark_folder(options.out)
         with held(options.out / plan.name):
             _run(plan, options)
-    print(options.out / plan.name)
     return 0
 
 
@@ -59,10 +62,21 @@ def _run(plan: RunPlan, options: argparse.Namespace) -> None:
     folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
     with nullcontext() if options.live is None else live_view(options.live) as live:
         run_with_progress(plan, folder.path, live=live)
-    entry = score_bag(folder.path)
-    if not entry['valid']:
-        raise DdctError(f'{folder.path}: {entry["reason"]}')
+    recording = read_bag(folder.path)
+    if reason := why_invalid(recording):
+        _tell(recording, folder.path)
+        raise DdctError(f'{folder.path}: not valid: {reason}')
     folder.commit()
+    print(folder.final, flush=True)
+    _tell(recording, folder.final)
+
+
+def _tell(recording: Recording, folder: Path) -> None:
+    """Say on standard error what a real-time run was like, and which logs hold warnings."""
+    if logs := kept_logs(folder):
+        print(f'{PROGRAM}: warnings are in {", ".join(map(str, logs))}', file=sys.stderr)
+    if not recording.facts.lockstep:
+        print(f'{PROGRAM}: {realtime_summary(recording)}', file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:

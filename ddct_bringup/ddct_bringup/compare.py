@@ -2,11 +2,13 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_bringup.report import REPORT_FILE, write_report
 from ddct_bringup.report_page.output import require_chart_library
 from ddct_bringup.report_page.runs import ReportRun, in_order, read_run
+from ddct_bringup.run.execution import kept_logs
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
@@ -70,10 +72,12 @@ def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Name
     _report(entries, settings, options)
     failed = [entry['controller'] for entry in entries if not entry['valid']]
     if failed:
+        _tell_of_logs(folder.path, plans)
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
     write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
     write_report(in_order(runs), str(folder.path / REPORT_FILE))
     folder.commit()
+    _tell_of_logs(folder.final, plans)
     print(
         f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
         f'{folder.final}',
@@ -94,6 +98,12 @@ def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
         return run
     complain(PROGRAM, f'{plan.name}: {run.entry["reason"]}')
     return ReportRun({**run.entry, 'controller': plan.name})
+
+
+def _tell_of_logs(folder: Path, plans: Sequence[RunPlan]) -> None:
+    logs = [str(log) for plan in plans for log in kept_logs(folder / plan.name)]
+    if logs:
+        print(f'{PROGRAM}: warnings are in {", ".join(logs)}', file=sys.stderr)
 
 
 def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:

@@ -12,6 +12,7 @@ from std_msgs.msg import Header
 
 from ddct_bringup.bag.cdr import CdrNormaliser
 from ddct_bringup.bag.message_definitions import load_definition
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
 from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
 from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
@@ -25,16 +26,17 @@ from ddct_plant.graph.message_values import status_name_of, status_pairs_of
 from ddct_plant.graph.messages import ack_message
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
+from ddct_plant.graph.refusals import Refusals
 from ddct_plant.graph.run_info import RUN_INFO_TOPIC
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.stamp_limit import StampLimit
 from ddct_plant.names import require_name
 from ddct_plant.timebase import START_NS, stamp_of_step
 
 ACK = 'recorder/ack'
 TIMING = 'controller/timing'
 DIAGNOSTICS = '/diagnostics'
-DIAGNOSTICS_SOURCE = 'driveline: ticks'
 PATIENCE_S = 5.0
 """How long to wait for the other nodes before saying for whom."""
 _STEADY = Clock(clock_type=ClockType.STEADY_TIME)
@@ -76,7 +78,10 @@ class RecorderNode(GraphNode):
         self._held: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
+        self._limit = None if self.settings.lockstep else StampLimit(from_t0=True)
+        self._refusals = Refusals(self)
         self._timing = RunTiming()
+        self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
         self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
         # Acknowledgements differ in nothing but the stamp.
@@ -93,6 +98,7 @@ class RecorderNode(GraphNode):
                 raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
             self._timing.late_messages += self._buffer.dropped
+            self._timing.refused_messages = self._refusals.count
             self._timing.write(self._folder)
         except DdctError as error:
             self.finish(error)
@@ -117,10 +123,15 @@ class RecorderNode(GraphNode):
         return self.guarded(receive)
 
     def _tick_receiver(self, topic: str) -> Callable[[bytes], None]:
-        offer = self._buffer.offer
+        offer, limit = self._buffer.offer, self._limit
 
         def receive(cdr: bytes) -> None:
-            ready = offer(topic, stamp_of_cdr(cdr), cdr)
+            stamp = stamp_of_cdr(cdr)
+            reason = limit.why_refused(topic, stamp) if limit else ''
+            if reason:
+                self._refusals.add(reason)
+                return
+            ready = offer(topic, stamp, cdr)
             if ready:
                 self._write_ticks(ready)
 
@@ -139,12 +150,16 @@ class RecorderNode(GraphNode):
 
     def _on_diagnostics(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
-        if not message.status or status_name_of(message) != DIAGNOSTICS_SOURCE:
+        facts = self._realtime
+        if not message.status:
             return
-        counts = dict(status_pairs_of(message))
-        self._timing.resends = int(counts['resends'])
-        self._timing.missed_steps = int(counts['missed_steps'])
-        self._timing.late_messages = int(counts['late_messages'])
+        if not facts.hear(status_name_of(message), dict(status_pairs_of(message))):
+            return
+        self._timing.resends = facts.resends
+        self._timing.missed_steps = facts.missed_steps
+        self._timing.late_messages = facts.late_messages
+        self._timing.worst_lateness_us = facts.worst_lateness_us
+        self._timing.safe_states = facts.safe_states
         self._record_unordered(DIAGNOSTICS, cdr)
 
     def _record_unordered(self, topic: str, cdr: bytes) -> None:

@@ -200,4 +200,5 @@ def test_metrics_have_the_names_that_other_scripts_rely_on():
         'update_time_p99_us',
         'missed_steps',
         'resends',
+        'worst_lateness_us',
     ]

@@ -9,11 +9,13 @@ from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
 
 
-def run(controller='pi', *, valid=True, reason='', **metrics):
+def run(controller='pi', *, valid=True, reason='', mode='lockstep', safe_state=None, **metrics):
     return {
         'bag': controller,
         'controller': controller,
         'wear_gain': 1.0,
+        'mode': mode,
+        'safe_state': safe_state,
         'valid': valid,
         'reason': reason,
         'metrics': {**dict.fromkeys(METRIC_NAMES), **metrics},
@@ -101,6 +103,31 @@ def test_a_terminal_of_80_columns_shows_every_number(monkeypatch):
     text = printed([run('feedforward', **numbers)], stream=Terminal())
     for number in ('0.881', '12.345', '0.205', '-123.45', ' 123.45', '67.89', 'feedforward'):
         assert number in text
+
+
+WORDS = ('missed', 'latest', 'safe state')
+
+
+def test_a_real_time_run_shows_misses_lateness_and_safe_state_each_in_its_column():
+    columns = (CONTROLLER, *COLUMNS)
+    figures = {'missed_steps': 7, 'worst_lateness_us': 1234.5}
+    runs = [
+        run('ls8', mode='realtime', safe_state='actuator at 0.9 s', **figures),
+        run('pi', mode='realtime', safe_state='', **figures),
+        run('mpc3'),
+    ]
+    lines = printed(runs, columns).splitlines()
+    places = {word: next(line.index(word) for line in lines if word in line) for word in WORDS}
+    for controller, row in (
+        ('ls8', ('7', '1.23', 'actuator at 0.9 s')),
+        ('pi', ('7', '1.23', 'none')),
+        ('mpc3', ('-', '-', '-')),
+    ):
+        line = next(line for line in lines if controller in line)
+        ends = [places[word] + len(word) for word in WORDS[:2]]
+        assert tuple(line[:end].split()[-1] for end in ends) == row[:2]
+        assert line[places['safe state'] :].startswith(row[2])
+    assert 'missed' not in printed([run('mpc3')], columns)
 
 
 @pytest.mark.parametrize('name', METRIC_NAMES)

@@ -3,8 +3,9 @@
 import pytest
 
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
-from ddct_bringup.bag.topics import PLANT_TOPICS, TOPICS, recorded_topics, resolved_name
+from ddct_bringup.bag.topics import TOPICS, recorded_topics, resolved_name
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.stamp_limit import PLANT_TOPICS
 from ddct_plant.timebase import stamp_of_step
 
 

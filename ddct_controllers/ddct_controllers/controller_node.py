@@ -71,10 +71,10 @@ class ControllerNode(FollowerNode):
         self.publish_run_info(controller_info(controller_label(name), self._controller))
         self.follow(
             [
-                (JointState, 'driveline/joint_states'),
-                (TwistStamped, 'vehicle/twist'),
-                (WrenchStamped, self._engine_topic),
-                (JointTrajectory, 'clutch/slip_reference'),
+                (JointState, 'driveline/joint_states', read_joint_speeds),
+                (TwistStamped, 'vehicle/twist', read_vehicle_speed),
+                (WrenchStamped, self._engine_topic, read_torque),
+                (JointTrajectory, 'clutch/slip_reference', self._read_reference),
             ]
         )
 
@@ -103,20 +103,19 @@ class ControllerNode(FollowerNode):
         if self._update_times_us and self.join.last_step is not None:
             self._publish_timing(self.join.last_step)
 
+    def _read_reference(self, topic: str, message: Any) -> tuple[list[float], list[float]]:
+        return read_slip_reference(topic, message, self._controller.preview_steps)
+
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
-        joints, twist = 'driveline/joint_states', 'vehicle/twist'
-        torque, reference = self._engine_topic, 'clutch/slip_reference'
-        engine, shaft, wheel = read_joint_speeds(joints, inputs[joints])
-        speeds, rates = read_slip_reference(
-            reference, inputs[reference], self._controller.preview_steps
-        )
+        engine, shaft, wheel = inputs['driveline/joint_states']
+        speeds, rates = inputs['clutch/slip_reference']
         return Measurement(
             step=step,
             engine_speed=engine,
             shaft_speed=shaft,
             wheel_speed=wheel,
-            vehicle_speed=read_vehicle_speed(twist, inputs[twist]),
-            engine_torque=read_torque(torque, inputs[torque]),
+            vehicle_speed=inputs['vehicle/twist'],
+            engine_torque=inputs[self._engine_topic],
             slip_reference=speeds,
             slip_reference_rate=rates,
         )

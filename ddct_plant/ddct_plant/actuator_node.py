@@ -3,20 +3,21 @@
 from typing import Any, ClassVar
 
 from geometry_msgs.msg import WrenchStamped
-from rosgraph_msgs.msg import Clock
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_plant.actuator import Actuator
 from ddct_plant.errors import DdctError
-from ddct_plant.fail_safe import FailSafe, FailSafeSettings
+from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.arrivals import read_torque
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import TorquePointsMessage, stamp_ns
+from ddct_plant.graph.messages import TorquePointsMessage
 from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.settings import declare, declare_request_timeout
+from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_timeout
 from ddct_plant.graph.spin import run_node
+from ddct_plant.guarded_actuator import GuardedActuator
 from ddct_plant.initial import initial_state
-from ddct_plant.timebase import step_of_stamp
+
+REQUEST = 'clutch/torque_request'
 
 
 class ActuatorNode(FollowerNode):
@@ -34,84 +35,52 @@ class ActuatorNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the actuator at rest on the run's first request."""
         super().__init__('actuator', **kwargs)
-        self._held_request = initial_state(self.settings).torque_request
-        self._actuator = Actuator(self._held_request)
-        self._next_step = 0
+        fail_safe = FailSafeSettings(
+            declare_request_timeout(self, 'the clutch opens'), declare_fail_safe_ramp(self)
+        )
+        self._actuator = GuardedActuator(initial_state(self.settings).torque_request, fail_safe)
         self._torque = self.create_publisher(JointTrajectory, 'actuator/torque', LOOP_QOS)
         self._message = TorquePointsMessage()
-        fail_safe = self._declare_fail_safe()
-        self._fail_safe = FailSafe(fail_safe)
-        self._clock_heard = False
-        self._first_step: int | None = None
+        self._requests_without_clock = 0
         self.publish_run_info(fail_safe.info())
-        self.follow([(WrenchStamped, 'clutch/torque_request')])
+        self.follow([(WrenchStamped, REQUEST, read_torque)])
         if not self.settings.lockstep:
-            self.create_subscription(Clock, '/clock', self.guarded(self._on_clock), LOOP_QOS)
-
-    def _declare_fail_safe(self) -> FailSafeSettings:
-        return FailSafeSettings(
-            declare_request_timeout(self, 'the clutch opens'),
-            declare(
-                self,
-                'fail_safe_ramp_n_m_s',
-                FailSafeSettings.fail_safe_ramp_n_m_s,
-                'Rate at which it opens [N m/s]',
-            ),
-        )
+            self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the torque over the period of step k, after any steps that had no request."""
-        request = read_torque('clutch/torque_request', inputs['clutch/torque_request'])
-        self._require_clock(step)
-        if self._fail_safe.engaged or step < self._next_step:
-            return ()
-        self._catch_up(step)
-        self._fail_safe.request(step, request)
-        self._held_request = request
-        return self._advance(stamp_ns, request)
+        torques = self._actuator.request(step, inputs[REQUEST])
+        return () if torques is None else self._reply_at(stamp_ns, torques)
 
     def publish_reply(self) -> None:
         """Publish the torque, in real time once the fail-safe sees the time pass."""
-        if self._clock_heard or self.settings.lockstep:
+        if self.limit is None or self.limit.tick_seen:
             super().publish_reply()
 
-    def _require_clock(self, step: int) -> None:
-        if self._clock_heard or self.settings.lockstep:
+    def admits(self, topic: str, stamp: int) -> bool:
+        """Say whether a stamp may be true; raise DdctError when no tick tells, but requests do."""
+        true = super().admits(topic, stamp)
+        if not true and self.limit and not self.limit.tick_seen:
+            self._requests_without_clock += 1
+            if self._actuator.too_long(0, 1 + self._requests_without_clock):
+                raise DdctError(
+                    f'at stamp {stamp} ns: {REQUEST} comes without /clock, by which the fail-safe '
+                    'sees that requests stop: publish /clock (rosgraph_msgs/Clock) with the stamp '
+                    'of every tick'
+                )
+        return true
+
+    def on_tick(self, step: int, stamp: int) -> None:
+        """Open the clutch while requests have stopped."""
+        torques = self._actuator.tick(step)
+        if torques is None:
             return
-        if self._first_step is None:
-            self._first_step = step
-        if self._fail_safe.watch.too_long(self._first_step, step):
-            raise DdctError(
-                'clutch/torque_request comes without /clock, by which the fail-safe sees that '
-                'requests stop: publish /clock (rosgraph_msgs/Clock) with the stamp of every tick'
-            )
+        self._safe_state.tell(step, stamp, f'no {REQUEST} for too long: opening the clutch')
+        for publisher, message in self._reply_at(stamp, torques):
+            publisher.publish(message)
 
-    def _on_clock(self, message: Clock) -> None:
-        self._clock_heard = True
-        stamp = stamp_ns(message)
-        step = step_of_stamp(stamp)
-        was_engaged = self._fail_safe.engaged
-        if not self._fail_safe.tick(step) or step < self._next_step:
-            return
-        if not was_engaged:
-            self.get_logger().error(
-                f'no clutch/torque_request before stamp {stamp} ns: opening the clutch'
-            )
-        self._catch_up(step, ramping=was_engaged)
-        self._held_request = self._fail_safe.next_torque()
-        for publisher, torque in self._advance(stamp, self._held_request):
-            publisher.publish(torque)
-
-    def _catch_up(self, step: int, *, ramping: bool = False) -> None:
-        for _ in range(self._next_step, step):
-            if ramping:
-                self._held_request = self._fail_safe.next_torque()
-            self._actuator.update(self._held_request)
-        self._next_step = step
-
-    def _advance(self, stamp: int, request: float) -> Reply:
-        self._next_step += 1
-        return ((self._torque, self._message.fill(stamp, self._actuator.update(request))),)
+    def _reply_at(self, stamp: int, torques: list[float]) -> Reply:
+        return ((self._torque, self._message.fill(stamp, torques)),)
 
 
 def main() -> int:

@@ -22,12 +22,11 @@ class ClutchNode(FollowerNode):
         self._torque = self.create_publisher(JointTrajectory, 'clutch/torque', LOOP_QOS)
         self._message = TorquePointsMessage()
         self.publish_run_info()
-        self.follow([(JointTrajectory, 'actuator/torque')])
+        self.follow([(JointTrajectory, 'actuator/torque', read_torque_points)])
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the transmitted torque over the period of step k."""
-        actuator_torque = read_torque_points('actuator/torque', inputs['actuator/torque'])
-        transmitted = self._clutch.transmit(actuator_torque)
+        transmitted = self._clutch.transmit(inputs['actuator/torque'])
         return ((self._torque, self._message.fill(stamp_ns, transmitted)),)
 
 

@@ -12,7 +12,9 @@ from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory
 
 from ddct_plant.driveline import Driveline
+from ddct_plant.driveline_info import driveline_info
 from ddct_plant.errors import DdctError
+from ddct_plant.fail_safe import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.arrivals import read_torque, read_torque_points
 from ddct_plant.graph.messages import (
     accel_message,
@@ -25,7 +27,10 @@ from ddct_plant.graph.messages import (
 )
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.settings import declare
+from ddct_plant.graph.realtime_owner import RealtimeOwner
+from ddct_plant.graph.refusals import Refusals
+from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.settings import declare, declare_fail_safe_ramp, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.tick_owner import (
     CLUTCH,
@@ -33,7 +38,6 @@ from ddct_plant.graph.tick_owner import (
     LOAD,
     RECORDER_TOPIC,
     LockstepOwner,
-    RealtimeOwner,
     TickPlan,
 )
 from ddct_plant.initial import initial_state
@@ -61,7 +65,9 @@ class DrivelineNode(GraphNode):
     """
     Publish the tick t_k, wait for the torques (and the recorder), step, publish t_k+1.
 
-    In real time it steps on a steady 10 ms timer instead and counts what is missing.
+    In real time it steps on a steady 10 ms timer instead and counts what is missing; a bad torque
+    counts as a missing one. When `clutch/torque` stays away for `clutch_timeout_s`, the held
+    torque runs to zero at `fail_safe_ramp_n_m_s` and counts no more when it comes back.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p require_recorder:=true -p duration:=2.0',)
@@ -75,13 +81,14 @@ class DrivelineNode(GraphNode):
             scenario.driveline, scenario.vehicle, initial_state(self.settings)
         )
         self.owner = self._make_owner()
+        self.refusals = Refusals(self)
         self._create_publishers()
         self._subscribe(WrenchStamped, ENGINE, lambda m: read_torque(ENGINE, m))
         self._subscribe(WrenchStamped, LOAD, lambda m: read_torque(LOAD, m))
         self._subscribe(JointTrajectory, CLUTCH, lambda m: read_torque_points(CLUTCH, m))
         if self.plan.require_recorder:
             self._subscribe(Header, RECORDER_TOPIC, lambda m: m)
-        self.publish_run_info({'steps': str(self.plan.steps)})
+        self.publish_run_info(driveline_info(self.plan.steps, self.plan.clutch))
         self._start_timers()
 
     def _declare_plan(self) -> TickPlan:
@@ -95,6 +102,16 @@ class DrivelineNode(GraphNode):
             ),
             answer_timeout_s=declare(
                 self, 'answer_timeout_s', 60.0, 'Wall time to wait for a reply [s]', 0.1, 3600.0
+            ),
+            clutch=FailSafeSettings(
+                declare_timeout(
+                    self,
+                    'clutch_timeout_s',
+                    CLUTCH_TIMEOUT_S,
+                    'Real time: when clutch/torque stays away for longer [s], the clutch opens; '
+                    'give more than request_timeout_s of actuator',
+                ),
+                declare_fail_safe_ramp(self),
             ),
         )
 
@@ -122,6 +139,7 @@ class DrivelineNode(GraphNode):
         self._twist_out = _Output(self, TwistStamped, 'vehicle/twist', twist_message)
         self._accel_out = _Output(self, AccelStamped, 'vehicle/accel', accel_message)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', LOOP_QOS)
+        self._safe_state = SafeStateReport(self)
 
     def _subscribe(self, message_type: type, topic: str, read: Callable[[Any], Any]) -> None:
         def receive(message: Any) -> None:
@@ -129,10 +147,16 @@ class DrivelineNode(GraphNode):
             try:
                 reply = read(message)
             except DdctError as error:
-                raise DdctError(f'at stamp {stamp} ns: {error}') from error
+                self._on_bad_values(DdctError(f'at stamp {stamp} ns: {error}'))
+                return
             self.owner.offer(topic, stamp, reply)
 
         self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
+
+    def _on_bad_values(self, error: DdctError) -> None:
+        if self.settings.lockstep:
+            raise error
+        self.refusals.add(str(error))
 
     def _start_timers(self) -> None:
         self._start_timer = self.create_timer(0.0, self.guarded(self._begin), clock=_STEADY)
@@ -150,6 +174,9 @@ class DrivelineNode(GraphNode):
         self._joints_out.publish(stamp, now.positions, now.speeds, now.efforts)
         self._twist_out.publish(stamp, now.vehicle_speed)
         self._accel_out.publish(stamp, now.vehicle_accel)
+        if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
+            why = f'no {CLUTCH} for longer than clutch_timeout_s: opening the clutch'
+            self._safe_state.tell(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.plan.steps:
             self._diagnostics.publish(status_message(stamp, 'driveline: ticks', self._counts()))
 

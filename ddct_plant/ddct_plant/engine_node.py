@@ -8,13 +8,14 @@ from sensor_msgs.msg import JointState
 from ddct_plant.engine import Engine
 from ddct_plant.engine_info import engine_info
 from ddct_plant.errors import DdctError
-from ddct_plant.fail_safe import RequestWatch
-from ddct_plant.graph.arrivals import read_torque
+from ddct_plant.graph.arrivals import read_stamp_only, read_torque
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.messages import stamp_ns, torque_message
 from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.safe_state import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_request_timeout
 from ddct_plant.graph.spin import run_node
+from ddct_plant.guarded_engine import GuardedEngine
 from ddct_plant.timebase import step_of_stamp
 
 JOINT_STATES = 'driveline/joint_states'
@@ -42,9 +43,7 @@ class EngineNode(FollowerNode):
         scenario = self.settings.scenario
         self._engine = Engine(scenario.engine, scenario.engine_authority)
         timeout_s = declare_request_timeout(self, "the driver's demand takes over")
-        self._watch = RequestWatch(timeout_s)
-        self._alone_step = -1
-        self._alone_torque = 0.0
+        self._commanded = GuardedEngine(self._engine, timeout_s)
         self._demand = self.create_publisher(WrenchStamped, 'engine/torque_demand', LOOP_QOS)
         self._torque = self.create_publisher(WrenchStamped, 'engine/torque', LOOP_QOS)
         self._demand_message = WrenchStamped()
@@ -54,21 +53,25 @@ class EngineNode(FollowerNode):
             self.create_subscription(
                 JointState, JOINT_STATES, self.guarded(self._publish_demand), LOOP_QOS
             )
-            self.follow([(JointState, JOINT_STATES), (WrenchStamped, REQUEST)])
+            self.follow(
+                [
+                    (JointState, JOINT_STATES, read_stamp_only),
+                    (WrenchStamped, REQUEST, read_torque),
+                ]
+            )
         else:
             self.create_subscription(
                 WrenchStamped, REQUEST, self.guarded(self._refuse_request), LOOP_QOS
             )
-            self.follow([(JointState, JOINT_STATES)])
+            self.follow([(JointState, JOINT_STATES, read_stamp_only)])
+        if not self.settings.lockstep:
+            self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the torque over the period of step k, and the demand if it is not out yet."""
         if self._two_input:
-            request = read_torque(REQUEST, inputs[REQUEST])
-            self._watch.request(step)
-            if self._watch.stopped or step <= self._alone_step:
-                return ()  # too late: the demand has taken over, or answered this step
-            return (self._delivered(stamp_ns, self._engine.torque(step, request)),)
+            torque = self._commanded.request(step, inputs[REQUEST])
+            return () if torque is None else (self._delivered(stamp_ns, torque),)
         return (
             self._delivered(stamp_ns, self._engine.torque(step)),
             (self._demand, self._demand_at(step, stamp_ns)),
@@ -76,29 +79,23 @@ class EngineNode(FollowerNode):
 
     def _publish_demand(self, message: JointState) -> None:
         stamp = stamp_ns(message)
+        if not self.admits(JOINT_STATES, stamp):
+            return
         step = step_of_stamp(stamp)
         self._demand.publish(self._demand_at(step, stamp))
-        if not self.settings.lockstep and self._without_request(step, stamp):
+        if not self.settings.lockstep:
             self._answer_alone(step, stamp)
 
-    def _without_request(self, step: int, stamp: int) -> bool:
-        """Say whether this step is answered alone: requests have stopped, or not begun yet."""
-        if not self._watch.heard:
-            return self._watch.too_long(0, step)
-        took_over_before = self._watch.stopped
-        if self._watch.tick(step) and not took_over_before:
-            self.get_logger().error(
-                f'no {REQUEST} before stamp {stamp} ns: the demand holds until the engine is '
-                'started again'
-            )
-        return self._watch.stopped
-
     def _answer_alone(self, step: int, stamp: int) -> None:
-        """Publish the torque without a request; a tick that comes again gets the same one."""
-        if step > self._alone_step:
-            self._alone_step = step
-            self._alone_torque = self._engine.torque(step, self._engine.demand(step))
-        self._torque.publish(self._delivered(stamp, self._alone_torque)[1])
+        torque = self._commanded.tick(step)
+        if self._commanded.on_demand:
+            self._safe_state.tell(
+                step,
+                stamp,
+                f'no {REQUEST} for too long: the demand holds until the engine is started again',
+            )
+        if torque is not None:
+            self._torque.publish(self._delivered(stamp, torque)[1])
 
     def _refuse_request(self, _message: WrenchStamped) -> None:
         raise DdctError(

@@ -22,12 +22,11 @@ class LoadNode(FollowerNode):
         self._torque = self.create_publisher(WrenchStamped, 'load/torque', LOOP_QOS)
         self._message = WrenchStamped()
         self.publish_run_info()
-        self.follow([(TwistStamped, 'vehicle/twist')])
+        self.follow([(TwistStamped, 'vehicle/twist', read_vehicle_speed)])
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return C_load at the vehicle speed of t_k."""
-        speed = read_vehicle_speed('vehicle/twist', inputs['vehicle/twist'])
-        torque = self._load.torque(speed)
+        torque = self._load.torque(inputs['vehicle/twist'])
         return ((self._torque, torque_message(stamp_ns, torque, reuse=self._message)),)
 
 

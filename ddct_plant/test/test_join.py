@@ -3,7 +3,7 @@
 import pytest
 
 from ddct_plant.errors import DdctError
-from ddct_plant.graph.join import StampJoin, Verdict
+from ddct_plant.graph.join import MOST_WAITING, StampJoin, Verdict
 from ddct_plant.timebase import stamp_of_step
 
 
@@ -69,3 +69,20 @@ def test_inputs_that_were_passed_over_are_forgotten():
 def test_a_stamp_off_the_grid_is_an_error():
     with pytest.raises(DdctError, match='not on the grid'):
         StampJoin(['a']).offer('a', stamp_of_step(0) + 1, None)
+
+
+def test_in_lock_step_stamps_that_wait_without_end_are_an_error():
+    join = StampJoin(['a', 'b'])
+    for step in range(MOST_WAITING):
+        offer(join, 'b', step)
+    with pytest.raises(DdctError, match=f'b: step {MOST_WAITING} came while 10 others wait'):
+        offer(join, 'b', MOST_WAITING)
+
+
+def test_where_gaps_are_allowed_the_oldest_stamp_that_waits_is_given_up():
+    join = StampJoin(['a', 'b'], allow_gaps=True)
+    for step in range(MOST_WAITING + 1):
+        offer(join, 'b', step)
+    assert join.ignored == 1
+    assert offer(join, 'a', 0) is Verdict.WAIT
+    assert offer(join, 'a', 2) is Verdict.COMPLETE

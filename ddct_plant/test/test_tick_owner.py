@@ -3,13 +3,13 @@
 import pytest
 
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
 from ddct_plant.graph.tick_owner import (
     CLUTCH,
     ENGINE,
     LOAD,
     RECORDER_TOPIC,
     LockstepOwner,
-    RealtimeOwner,
     TickPlan,
 )
 from ddct_plant.timebase import stamp_of_step
@@ -138,18 +138,39 @@ def test_realtime_catches_up_after_a_late_timer(realtime):
     assert realtime.owner.worst_lateness_s == pytest.approx(0.0151)
 
 
-def test_realtime_does_not_wait_for_the_recorder_after_t0():
-    harness = Harness(RealtimeOwner, steps=1, require_recorder=True)
+@pytest.fixture
+def recorded():
+    """Return a harness at t_2, the last tick, of a run with a recorder that heard t_0 alone."""
+    harness = Harness(RealtimeOwner, steps=2, require_recorder=True)
     harness.owner.start()
     harness.answer(0)
     harness.now = 0.5
     harness.owner.tick()
-    assert harness.published == [0]
+    assert harness.published == [0], 't_0 waits for the recorder'
     harness.answer(0, topics=(RECORDER_TOPIC,))
-    harness.now = 0.6
+    harness.now = 0.511
     harness.owner.tick()
     harness.answer(1)
-    assert harness.ends == [None]
+    harness.now = 0.521
+    harness.owner.tick()
+    assert harness.published == [0, 1, 2], 't_1 does not'
+    harness.answer(2)
+    assert harness.ends == []
+    return harness
+
+
+def test_realtime_ends_when_the_recorder_has_the_last_tick(recorded):
+    recorded.answer(2, topics=(RECORDER_TOPIC,))
+    assert recorded.ends == [None]
+
+
+def test_realtime_sends_the_last_tick_again_for_the_recorder_and_ends_well_without_it(recorded):
+    recorded.now += 0.2
+    recorded.owner.watch()
+    assert recorded.published == [0, 1, 2, 2]
+    recorded.now += RECORDER_PATIENCE_S
+    recorded.owner.watch()
+    assert recorded.ends == [None]
 
 
 def test_realtime_gives_up_on_a_topic_that_stays_silent():
@@ -162,4 +183,71 @@ def test_realtime_gives_up_on_a_topic_that_stays_silent():
         harness.answer(step, topics=(ENGINE, LOAD))
         if harness.ends:
             break
-    assert str(harness.ends[0]).startswith('no clutch/torque since stamp 1000000000 ns')
+    assert str(harness.ends[0]) == (
+        'no clutch/torque since stamp 1000000000 ns, 1.01 s ago: check that the node which '
+        'publishes it is running'
+    )
+
+
+class Run(Harness):
+    """A long real-time run whose replies a test gives or leaves out, step by step."""
+
+    def __init__(self, steps=1000, **options):
+        super().__init__(RealtimeOwner, steps=steps, **options)
+        self.owner.start()
+        self.answer(0)
+
+    def go_to(self, last, topics=(ENGINE, LOAD, CLUTCH)):
+        """Step until t_last is out; `topics` answer each tick on the way, and it."""
+        for step in range(self.owner.step + 1, last + 1):
+            self.now = 0.01 * step + 0.0001
+            self.owner.tick()
+            self.answer(step, topics=topics)
+
+
+def test_a_reply_ends_a_silence():
+    run = Run()
+    for silent_to in (91, 182, 273):
+        run.go_to(silent_to - 1, topics=(ENGINE, CLUTCH))
+        run.go_to(silent_to)
+    assert run.owner.missed_replies[LOAD] == 3 * 90
+    assert run.ends == []
+
+
+def test_a_clutch_torque_that_stays_away_is_held_then_runs_to_zero_at_the_stated_rate():
+    run = Run()
+    run.go_to(20)
+    run.go_to(60, topics=(ENGINE, LOAD))
+    torques = [clutch for _, _, clutch in run.driveline.steps]
+    assert torques[20] == POINTS
+    assert torques[21:31] == [[10.0] * 11] * 10
+    # 10 N m at 1000 N m/s: the last period of the ramp is the first one.
+    assert torques[31] == pytest.approx([10.0 - i for i in range(11)])
+    assert torques[32:] == [[0.0] * 11] * len(torques[32:])
+    assert run.owner.safe
+
+
+def test_a_clutch_torque_that_comes_back_after_the_safe_state_counts_no_more():
+    run = Run()
+    run.go_to(20)
+    run.go_to(32, topics=(ENGINE, LOAD))
+    assert run.owner.safe
+    run.go_to(60)
+    assert run.owner.safe
+    assert run.driveline.steps[-1][2] == [0.0] * 11
+
+
+def test_a_clutch_torque_that_comes_back_in_time_is_taken():
+    run = Run()
+    run.go_to(20)
+    run.go_to(30, topics=(ENGINE, LOAD))
+    run.go_to(32)
+    assert not run.owner.safe
+    assert run.driveline.steps[-1][2] == POINTS
+
+
+def test_the_last_tick_waits_for_no_clutch_torque_in_the_safe_state():
+    run = Run(steps=40)
+    run.go_to(20)
+    run.go_to(40, topics=(ENGINE, LOAD))
+    assert run.ends == [None]

@@ -29,12 +29,11 @@ class ReferenceNode(FollowerNode):
         self._publisher = self.create_publisher(JointTrajectory, 'clutch/slip_reference', LOOP_QOS)
         self._message = SlipReferenceMessage(preview_steps)
         self.publish_run_info({'preview_steps': str(preview_steps)})
-        self.follow([(TwistStamped, 'clutch/slip')])
+        self.follow([(TwistStamped, 'clutch/slip', read_slip)])
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
-        slip_speed = read_slip('clutch/slip', inputs['clutch/slip'])
-        speeds, rates = self._reference.update(step, slip_speed)
+        speeds, rates = self._reference.update(step, inputs['clutch/slip'])
         return ((self._publisher, self._message.fill(stamp_ns, speeds, rates)),)
 
 

@@ -20,7 +20,7 @@ from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
 from ddct_plant.graph.messages import clock_message, torque_message
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
-from ddct_plant.graph.tick_owner import RealtimeOwner
+from ddct_plant.graph.realtime_owner import RealtimeOwner
 from ddct_plant.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 
 FAIL_SAFE = FailSafeSettings()
@@ -110,7 +110,9 @@ class _Bench(_Listener):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        self.time = -1
         self._clock = self.create_publisher(Clock, '/clock', LOOP_QOS)
+        self.create_subscription(Clock, '/clock', self._on_clock, LOOP_QOS)
         self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
 
     def connected(self) -> bool:
@@ -122,9 +124,12 @@ class _Bench(_Listener):
         """Publish the time of a step."""
         self._clock.publish(clock_message(stamp_of_step(step)))
 
-    def ask(self, step: int) -> None:
+    def ask(self, step: int, torque: float = 200.0) -> None:
         """Publish a request for a step."""
-        self._request.publish(torque_message(stamp_of_step(step), 200.0))
+        self._request.publish(torque_message(stamp_of_step(step), torque))
+
+    def _on_clock(self, message: Clock) -> None:
+        self.time = step_of_stamp(stamp_ns(message))
 
 
 @pytest.fixture
@@ -166,5 +171,7 @@ def test_a_clock_that_is_heard_late_makes_the_actuator_answer(
 
     graph.spin_until(answered_again, 'the answer to a request that comes again')
     for step in range(1, 2 * HELD_STEPS):
+        driver.tell_time(step)
+        graph.spin_until(lambda step=step: driver.time == step, 'the tick')
         driver.ask(step)
-    graph.spin_until(lambda: driver.has_torque(2 * HELD_STEPS - 1), 'the torque')
+        graph.spin_until(lambda step=step: driver.has_torque(step), 'the torque')

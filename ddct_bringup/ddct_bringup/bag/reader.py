@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from mcap_ros2.decoder import DecoderFactory
 
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.signals import ENGINE_REQUEST, SIGNALS, Signal
@@ -35,6 +36,8 @@ class Recording:
     """Messages per resolved topic name."""
     missed: dict[str, int]
     """Per reply topic, at how many stamps the last reply had to be held; real time only."""
+    realtime: RealtimeFacts
+    """What `/diagnostics` says; empty in lock-step."""
 
 
 def read_bag(path: Path) -> Recording:
@@ -77,7 +80,16 @@ def recording_of(records: BagRecords) -> Recording:
         run_info={status_name_of(each): dict(status_pairs_of(each)) for _, each in info},
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
+        realtime=_realtime(messages.get('/diagnostics', [])),
     )
+
+
+def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
+    facts = RealtimeFacts()
+    for _, message in messages:
+        if message.status:
+            facts.hear(status_name_of(message), dict(status_pairs_of(message)))
+    return facts
 
 
 def _facts(records: BagRecords) -> RunFacts:

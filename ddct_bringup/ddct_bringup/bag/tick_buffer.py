@@ -71,16 +71,22 @@ class TickBuffer:
     def _ready(self, give_up_step: int) -> list[tuple[int, Tick]]:
         ready = []
         while self._pending:
-            tick = self._pending.get(self._next_step, {})
-            whole = len(tick) == len(self.topics)
-            if not whole and (self.wait_for_all or self._next_step > give_up_step):
+            step = min(self._pending)
+            if step > self._next_step and not self._skip_to(step, give_up_step):
                 break
-            self._pending.pop(self._next_step, None)
-            if tick:
-                ready.append((self._next_step, tick))
-                self._last = tick
-            self._next_step += 1
+            tick = self._pending[step]
+            if len(tick) < len(self.topics) and (self.wait_for_all or step > give_up_step):
+                break
+            ready.append((step, self._pending.pop(step)))
+            self._last = tick
+            self._next_step = step + 1
         return ready
+
+    def _skip_to(self, step: int, give_up_step: int) -> bool:
+        """Give up the steps before `step`, of which nothing came; say whether all of them."""
+        if not self.wait_for_all:
+            self._next_step = max(self._next_step, min(step, give_up_step + 1))
+        return self._next_step == step
 
     def _check_repeat(self, step: int, topic: str, cdr: bytes) -> None:
         if topic not in self._last or step < self._next_step - 1:

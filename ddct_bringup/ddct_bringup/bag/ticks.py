@@ -3,8 +3,9 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
-from ddct_bringup.bag.topics import PLANT_TOPICS, TOPICS, resolved_name
+from ddct_bringup.bag.topics import TOPICS, resolved_name
 from ddct_plant.errors import DdctError
+from ddct_plant.graph.stamp_limit import PLANT_TOPICS
 from ddct_plant.timebase import stamp_of_step, step_of_stamp, time_of_step
 
 Stamps = Mapping[str, Sequence[int]]

@@ -63,15 +63,6 @@ TOPICS = (
 )
 """`run_info` comes first, at t_0; then the topics of each tick, `recorder/ack` last."""
 
-PLANT_TOPICS = (
-    '/clock',
-    'driveline/joint_states',
-    'clutch/slip',
-    'vehicle/twist',
-    'vehicle/accel',
-)
-"""What the owner of time publishes itself; the other topics of a tick are replies to it."""
-
 
 def recorded_topics(*, lockstep: bool, two_input: bool = False) -> tuple[TopicSpec, ...]:
     """Return the topics that a run records, in writing order."""

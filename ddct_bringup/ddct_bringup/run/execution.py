@@ -1,6 +1,6 @@
 """Carry out one planned run in its layout and leave its bag in a folder."""
 
-import shutil
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +16,8 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.errors import DdctError
 
 WORK_FOLDER = 'work'
-"""Scenario, parameters and logs of a run; kept only when it fails."""
+"""Scenario, parameters and logs of a run; of a run that ends well only logs with warnings stay."""
+_WARNING = re.compile(rb'^\[(WARN|ERROR|FATAL)\]', re.MULTILINE)
 
 
 def execute(
@@ -43,9 +44,23 @@ def execute(
                 _execute_processes(plan, folder, work, stopped, live)
             else:
                 _execute_single_process(plan, folder, work, stopped)
-        shutil.rmtree(work)
+        _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
+
+
+def kept_logs(folder: Path) -> list[Path]:
+    """Return the logs with warnings that a run has left in its bag's folder."""
+    return sorted((folder / WORK_FOLDER).glob('*.log'))
+
+
+def _keep_warnings(work: Path) -> None:
+    """Remove all but the logs in which a node warns of something, and the folder if none does."""
+    for path in work.iterdir():
+        if path.suffix != '.log' or not _WARNING.search(path.read_bytes()):
+            path.unlink()
+    if not any(work.iterdir()):
+        work.rmdir()
 
 
 def _execute_processes(

@@ -4,6 +4,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.run.source_commit import source_commit
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller
+from ddct_plant.driveline_info import driveline_info
 from ddct_plant.engine_info import engine_info
 from ddct_plant.fail_safe import FailSafeSettings
 from ddct_plant.graph.run_info import package_version, run_info_pairs
@@ -44,7 +45,7 @@ def run_info_of(settings: RunSettings, name: str, controller: Controller, steps:
         'engine': engine_info(controller.commands_engine),
         'load': {},
         'clutch': {},
-        'driveline': {'steps': str(steps)},
+        'driveline': driveline_info(steps),
         'actuator': FailSafeSettings().info(),
         'reference': {'preview_steps': str(controller.preview_steps)},
         'controller': controller_info(name, controller),

@@ -22,6 +22,12 @@ class RunTiming:
     """Ticks that were sent again."""
     late_messages: int = 0
     """Replies to a tick that was over."""
+    refused_messages: int = 0
+    """Messages with a stamp that could not be true, real time only."""
+    worst_lateness_us: float | None = None
+    """How much too late the driveline took a step at most; None in lock-step."""
+    safe_states: dict[str, int] = field(default_factory=dict)
+    """Per node that went to its safe state the stamp in ns, real time only."""
     wall_time_s: float = 0.0
     """From the first tick to the last."""
     steps: int = 0

@@ -24,17 +24,32 @@ def read_timing(folder: Path) -> RunTiming | None:
     try:
         values = parse_json(text)
         return RunTiming(
-            update_times_us=[
-                require_number('update_times_us', time, at_least=0.0)
-                for time in values['update_times_us']
-            ],
-            wall_time_s=require_number('wall_time_s', values['wall_time_s'], at_least=0.0),
-            **{
-                name: int(require_number(name, values[name], at_least=0.0))
-                for name in ('missed_steps', 'resends', 'late_messages', 'steps')
+            update_times_us=[_positive('update_times_us', x) for x in values['update_times_us']],
+            missed_steps=_count('missed_steps', values['missed_steps']),
+            resends=_count('resends', values['resends']),
+            late_messages=_count('late_messages', values['late_messages']),
+            refused_messages=_count('refused_messages', values.get('refused_messages', 0)),
+            worst_lateness_us=_optional(values.get('worst_lateness_us')),
+            safe_states={
+                str(node): _count('safe_states', stamp)
+                for node, stamp in values.get('safe_states', {}).items()
             },
+            wall_time_s=_positive('wall_time_s', values['wall_time_s']),
+            steps=_count('steps', values['steps']),
         )
-    except (DdctError, LookupError, TypeError) as error:
+    except (DdctError, LookupError, TypeError, AttributeError) as error:
         raise DdctError(
             f'{path}: not the timing of a run ({error!r}): delete it to score without'
         ) from error
+
+
+def _positive(name: str, value: object) -> float:
+    return require_number(name, value, at_least=0.0)
+
+
+def _count(name: str, value: object) -> int:
+    return int(_positive(name, value))
+
+
+def _optional(value: object) -> float | None:
+    return None if value is None else _positive('worst_lateness_us', value)

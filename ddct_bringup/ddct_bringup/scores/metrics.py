@@ -55,6 +55,8 @@ class Metrics:
     """Steps that went on without a reply, in real time."""
     resends: int | None
     """Ticks that the owner of time sent again, in lock-step."""
+    worst_lateness_us: float | None
+    """How much too late the driveline took a step at most, in real time; None in lock-step."""
 
     def as_dict(self) -> dict[str, float | int | None]:
         """Return the metrics by name."""
@@ -89,6 +91,7 @@ def compute_metrics(
         steps=trajectory.steps,
         missed_steps=timing.missed_steps if timing else None,
         resends=timing.resends if timing else None,
+        worst_lateness_us=timing.worst_lateness_us if timing else None,
     )
 
 

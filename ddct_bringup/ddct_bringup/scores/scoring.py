@@ -14,11 +14,12 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.timing_file import read_timing
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
+from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
 from ddct_plant.errors import DdctError
 from ddct_plant.timebase import time_of_step
 
 Entry = dict[str, Any]
-"""One run of `scores.json`: bag, controller, ..., valid, reason, metrics, fallbacks."""
+"""One run of `scores.json`: bag, controller, ..., valid, reason, ..., metrics, fallbacks."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
 _COUNT = re.compile('[0-9]{1,9}')
@@ -52,12 +53,13 @@ def score_recording(recording: Recording, bag: str) -> Entry:
         score_window_s=facts.score_window_s,
         timing=read_timing(recording.path.parent),
     )
-    reason = why_invalid(recording.trajectory, facts.steps)
+    reason = why_invalid(recording)
     return {
         'bag': bag,
         **{name: getattr(facts, name) for name in _FACT_NAMES},
         'valid': not reason,
         'reason': reason,
+        'safe_state': None if facts.lockstep else safe_state(recording),
         'metrics': metrics.as_dict(),
         'fallbacks': fallbacks_in(recording.trajectory),
     }
@@ -76,6 +78,7 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
         **{name: getattr(facts, name, None) for name in _FACT_NAMES},
         'valid': False,
         'reason': str(error),
+        'safe_state': None,
         'metrics': dict.fromkeys(METRIC_NAMES),
         'fallbacks': None,
     }
@@ -91,11 +94,12 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     return int(count) if _COUNT.fullmatch(count) else None
 
 
-def why_invalid(trajectory: Trajectory, steps: int) -> str:
-    """Return why a run that should have `steps` periods does not count; empty if it does."""
-    reasons = []
-    if trajectory.steps < steps:
-        reasons.append(f'ended early: {trajectory.steps} of {steps} steps')
+def why_invalid(recording: Recording) -> str:
+    """Return why a run does not count; empty if it does."""
+    trajectory, facts = recording.trajectory, recording.facts
+    reasons = [] if facts.lockstep else why_not_real_time(recording)
+    if trajectory.steps < facts.steps:
+        reasons.insert(0, _why_early(recording))
     for field in dataclasses.fields(trajectory):
         values = getattr(trajectory, field.name)
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():
@@ -104,6 +108,15 @@ def why_invalid(trajectory: Trajectory, steps: int) -> str:
         first = time_of_step(int(np.flatnonzero(~rows)[0]))
         reasons.append(f'non-finite value in {field.name} at {first:g} s')
     return '; '.join(reasons)
+
+
+def _why_early(recording: Recording) -> str:
+    got, wanted = recording.trajectory.steps, recording.facts.steps
+    if recording.realtime.steps >= wanted:
+        why = 'the driveline took them all, but the recorder did not hear the last'
+    else:
+        why = 'the run stopped, or was stopped, before its end'
+    return f'ended early: {got} of {wanted} steps: {why}'
 
 
 def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:

@@ -47,6 +47,12 @@ ACCELERATION_STD = metric('acceleration_std_m_s2', 'std A_x\nm/s^2', '{:.3f}')
 FINAL_SLIP = metric('slip_final_rpm', 'final\nw_d rpm', '{:.2f}')
 SLIP_RMSE = metric('slip_rmse_rpm', 'slip\nRMSE rpm', '{:.2f}')
 PEAK_JERK = metric('peak_jerk_m_s3', 'jerk\nm/s^3', '{:.2f}')
+MISSED = metric('missed_steps', 'missed\nsteps', '{:d}')
+LATENESS = Column(
+    'latest\nms',
+    lambda run: _text(_in_ms(run['metrics']['worst_lateness_us']), '{:.2f}'),
+)
+SAFE_STATE = Column('safe state', lambda run: _safe_state(run), number=False)
 VALID = Column('valid', lambda run: 'yes' if run['valid'] else 'NO', number=False)
 
 COLUMNS = (
@@ -60,11 +66,16 @@ COLUMNS = (
 )
 """What every table of runs shows, after the columns that tell the runs apart."""
 
+REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
+"""What a table also shows when one of its runs was in real time."""
+
 
 def print_runs(
     runs: Sequence[Entry], columns: Sequence[Column], stream: TextIO, title: str | None = None
 ) -> None:
     """Print one row per run, then why one is invalid or not quite the controller's."""
+    if any(run['mode'] == 'realtime' for run in runs):
+        columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
     table = Table(title=title, box=box.SIMPLE, pad_edge=False, collapse_padding=True)
     for column in columns:
         table.add_column(column.heading, justify='right' if column.number else 'left')
@@ -91,6 +102,14 @@ def fallback_note(run: Entry) -> str:
 
 def _note(console: Console, text: str) -> None:
     console.print(Text(printable(text), 'bold'), soft_wrap=True)
+
+
+def _safe_state(run: Entry) -> str:
+    return UNDEFINED if run['safe_state'] is None else run['safe_state'] or 'none'
+
+
+def _in_ms(time_us: float | None) -> float | None:
+    return None if time_us is None else time_us / 1e3
 
 
 def _text(value: Any, form: str) -> str:

@@ -17,6 +17,10 @@ from ddct_plant.graph.message_values import (
 from ddct_plant.timebase import SUBSTEPS
 
 
+def read_stamp_only(_topic: str, _message: Any) -> None:
+    """Read no value: the message only says that its stamp has come."""
+
+
 def read_torque(topic: str, message: Any) -> float:
     """Return the torque in N m of a WrenchStamped; raise DdctError unless finite."""
     return require_finite(topic, torque_of(message))

@@ -1,55 +1,95 @@
 """Base of the nodes that answer ticks: engine, load, clutch, actuator, reference, controller."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.publisher import Publisher
+from rosgraph_msgs.msg import Clock
 
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.join import StampJoin, Verdict
 from ddct_plant.graph.messages import stamp_ns
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.refusals import Refusals
+from ddct_plant.graph.stamp_limit import PLANT_TOPICS, StampLimit
+from ddct_plant.timebase import step_of_stamp
 
 Reply = Sequence[tuple[Publisher, Any]]
 """Messages in the order in which they are published."""
+Read = Callable[[str, Any], Any]
+"""Gives the checked values of a message on a topic; raises DdctError for bad ones."""
 
 
 class FollowerNode(GraphNode):
     """
     Pure data flow: join inputs by stamp, answer once per stamp, repeat the answer when asked.
 
-    A subclass gives its inputs to `follow` and computes the reply in `answer`. Nothing here reads
-    a clock, so the trajectory does not depend on when messages arrive.
+    A subclass gives its inputs to `follow` and computes the reply in `answer`. Nothing in the
+    trajectory reads a clock, so it does not depend on when messages arrive. In lock-step a bad
+    message ends the node; in real time it counts as a missing one, and so does a stamp that
+    `StampLimit` refuses.
     """
 
-    def follow(self, inputs: Sequence[tuple[type, str]]) -> None:
-        """Subscribe to (type, topic) inputs; the first is the trigger of `StampJoin`."""
-        self.join = StampJoin(
-            [topic for _, topic in inputs], allow_gaps=not self.settings.lockstep
-        )
+    def follow(self, inputs: Sequence[tuple[type, str, Read]]) -> None:
+        """Subscribe to (type, topic, reader) inputs; the first is the trigger of `StampJoin`."""
+        lockstep = self.settings.lockstep
+        self.join = StampJoin([topic for _, topic, _ in inputs], allow_gaps=not lockstep)
+        self.limit = None if lockstep else StampLimit()
+        self.refusals = Refusals(self)
         self._reply: Reply = ()
-        for message_type, topic in inputs:
-            self.create_subscription(message_type, topic, self._callback(topic), LOOP_QOS)
+        for message_type, topic, read in inputs:
+            receive = self._receiver(topic, read)
+            self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
+        if not lockstep and not {topic for _, topic, _ in inputs} & set(PLANT_TOPICS):
+            self.create_subscription(Clock, '/clock', self.guarded(self._on_clock), LOOP_QOS)
 
     @abstractmethod
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Compute the reply to the inputs of one stamp; called once per stamp, in order."""
+        """Compute the reply to the values of one stamp; called once per stamp, in order."""
 
-    def _callback(self, topic: str) -> Any:
+    def on_tick(self, step: int, stamp: int) -> None:
+        """Take a tick in real time, after whatever else it stands for; may come again."""
+
+    def admits(self, topic: str, stamp: int) -> bool:
+        """Say whether a stamp may be true; count and tell where it may not."""
+        reason = self.limit.why_refused(topic, stamp) if self.limit else ''
+        if reason:
+            self.refusals.add(reason)
+        return not reason
+
+    def _receiver(self, topic: str, read: Read) -> Callable[[Any], None]:
         offer, complete, repeat = self.join.offer, Verdict.COMPLETE, Verdict.REPEAT
 
         def receive(message: Any) -> None:
             stamp = stamp_ns(message)
-            verdict = offer(topic, stamp, message)
+            if self.limit is not None and not self.admits(topic, stamp):
+                return
+            try:
+                values = read(topic, message)
+            except DdctError as error:
+                self._on_bad_values(stamp, error)
+                return
+            verdict = offer(topic, stamp, values)
             if verdict is complete:
                 self._answer(stamp)
                 self.publish_reply()
             elif verdict is repeat:
                 self.publish_reply()
 
-        return self.guarded(receive)
+        return receive
+
+    def _on_bad_values(self, stamp: int, error: DdctError) -> None:
+        reason = f'at stamp {stamp} ns: {error}'
+        if self.settings.lockstep:
+            raise DdctError(reason) from error
+        self.refusals.add(reason)
+
+    def _on_clock(self, message: Clock) -> None:
+        stamp = stamp_ns(message)
+        if self.admits('/clock', stamp):
+            self.on_tick(step_of_stamp(stamp), stamp)
 
     def _answer(self, stamp: int) -> None:
         step, inputs = self.join.take()

@@ -8,6 +8,9 @@ from typing import Any
 from ddct_plant.errors import DdctError
 from ddct_plant.timebase import step_of_stamp
 
+MOST_WAITING = 10
+"""Stamps that may wait for inputs at a time, as many messages as a topic's queue holds."""
+
 
 class Verdict(Enum):
     """What the arrival of one input means."""
@@ -30,7 +33,8 @@ class StampJoin:
     The first topic of `topics` is the trigger: only its repetition asks for the last reply, so one
     re-sent tick makes one repeated reply, however many inputs a node has. A gap between the last
     stamp and a complete one is an error in lock-step; with `allow_gaps` (real time) it is counted
-    in `skipped`.
+    in `skipped`. So it is with more than `MOST_WAITING` stamps that wait: with `allow_gaps` the
+    oldest is given up.
     """
 
     topics: Sequence[str]
@@ -56,6 +60,7 @@ class StampJoin:
             return Verdict.IGNORE
         inputs = self._waiting.get(step)
         if inputs is None:
+            self._make_room(topic, step)
             inputs = self._waiting[step] = {}
         inputs[topic] = message
         if len(inputs) < len(self.topics):
@@ -67,6 +72,18 @@ class StampJoin:
         """Return the step of the last complete join and its messages by topic, once."""
         assert self.last_step is not None
         return self.last_step, self._waiting.pop(self.last_step)
+
+    def _make_room(self, topic: str, step: int) -> None:
+        if len(self._waiting) < MOST_WAITING:
+            return
+        if not self.allow_gaps:
+            due = 0 if self.last_step is None else self.last_step + 1
+            raise DdctError(
+                f'{topic}: step {step} came while {len(self._waiting)} others wait for the rest '
+                f'of their inputs and step {due} is due: check what publishes '
+                f'{" and ".join(self.topics)}'
+            )
+        self.ignored += len(self._waiting.pop(min(self._waiting)))
 
     def _accept(self, step: int) -> None:
         expected = 0 if self.last_step is None else self.last_step + 1

@@ -13,6 +13,11 @@ SLIP_JOINT = 'clutch_slip'
 
 NS_PER_S = 1_000_000_000
 
+SAFE_STATE = ': safe state'
+"""Ends the name of the status by which a node says that it is in its safe state."""
+SINCE = 'since_ns'
+"""Key of the stamp since when."""
+
 
 def stamp_ns(message: Any) -> int:
     """Return the stamp in ns of a message with a header, of a Header, of a Clock or of a Time."""

@@ -12,6 +12,7 @@ from ddct_plant.fail_safe import (
     LEAST_REQUEST_TIMEOUT_S,
     MOST_REQUEST_TIMEOUT_S,
     REQUEST_TIMEOUT_S,
+    FailSafeSettings,
 )
 from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
 from ddct_plant.scenario_file import load_scenario
@@ -36,13 +37,24 @@ def declare_settings(node: Node) -> RunSettings:
 
 def declare_request_timeout(node: Node, afterwards: str) -> float:
     """Declare how long requests may stop in real time, and what happens `afterwards`; in s."""
+    description = f'Real time: when requests stop for longer [s], {afterwards}'
+    return declare_timeout(node, 'request_timeout_s', REQUEST_TIMEOUT_S, description)
+
+
+def declare_timeout(node: Node, name: str, default: float, description: str) -> float:
+    """Declare how long something may stay away in real time, in s."""
+    return declare(
+        node, name, default, description, LEAST_REQUEST_TIMEOUT_S, MOST_REQUEST_TIMEOUT_S
+    )
+
+
+def declare_fail_safe_ramp(node: Node) -> float:
+    """Declare how fast the clutch then opens, in N m/s."""
     return declare(
         node,
-        'request_timeout_s',
-        REQUEST_TIMEOUT_S,
-        f'Real time: when requests stop for longer [s], {afterwards}',
-        LEAST_REQUEST_TIMEOUT_S,
-        MOST_REQUEST_TIMEOUT_S,
+        'fail_safe_ramp_n_m_s',
+        FailSafeSettings.fail_safe_ramp_n_m_s,
+        'Real time: rate at which the clutch opens in the safe state [N m/s]',
     )
 
 

@@ -3,13 +3,14 @@
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ddct_plant.driveline import Driveline
 from ddct_plant.errors import DdctError
+from ddct_plant.fail_safe import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.barrier import TickBarrier
-from ddct_plant.timebase import PERIOD_S, SUBSTEPS, stamp_of_step
+from ddct_plant.timebase import stamp_of_step
 
 ENGINE, LOAD, CLUTCH = 'engine/torque', 'load/torque', 'clutch/torque'
 TORQUE_TOPICS = (ENGINE, LOAD, CLUTCH)
@@ -28,6 +29,8 @@ class TickPlan:
     """Whether `recorder/ack` is part of the barrier."""
     answer_timeout_s: float
     """Wall time after which an unanswered tick ends the run."""
+    clutch: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
+    """Real time: when and how fast a clutch torque that stays away is taken to zero."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -116,74 +119,3 @@ class LockstepOwner(TickOwner):
         else:
             get = self.barrier.get
             self._integrate(get(ENGINE), get(LOAD), get(CLUTCH))
-
-
-class RealtimeOwner(TickOwner):
-    """
-    Step on a steady 10 ms grid with the replies to the tick before, and count the missing ones.
-
-    t_0 is waited for as in lock-step, recorder included: it is the start barrier. t_N waits for
-    the torques, which end the run. In between a missing torque is held at its last value.
-    """
-
-    def __init__(
-        self, *arguments: Any, on_started: Callable[[], None] = lambda: None, **options: Any
-    ) -> None:
-        """Take what `TickOwner` takes; `on_started` is called when the 10 ms grid begins."""
-        super().__init__(*arguments, **options)
-        self._on_started = on_started
-        self.missed_replies = dict.fromkeys(TORQUE_TOPICS, 0)
-        self.worst_lateness_s = 0.0
-        self._held: dict[str, Any] = {}
-        self._silent_since: dict[str, int] = dict.fromkeys(TORQUE_TOPICS, 0)
-        self._started_at: float | None = None
-
-    def tick(self) -> None:
-        """Take every step that is due by the wall clock."""
-        if self._started_at is None:
-            return
-        while self.step < self._plan.steps:
-            due = self._started_at + (self.step + 1) * PERIOD_S
-            now = self._clock()
-            if now < due:
-                return
-            self.worst_lateness_s = max(self.worst_lateness_s, now - due)
-            self._take_step()
-
-    def watch(self) -> None:
-        """Guard the first and the last tick; the ones between never wait."""
-        if self._started_at is None or self.step == self._plan.steps:
-            super().watch()
-
-    def _awaited(self, step: int) -> tuple[str, ...]:
-        return self._plan.topics if step == 0 else TORQUE_TOPICS
-
-    def _on_complete(self) -> None:
-        if self.step == self._plan.steps:
-            self._finish(None)
-        elif self._started_at is None:
-            self._started_at = self._clock()
-            self._on_started()
-
-    def _take_step(self) -> None:
-        replies = {topic: self.barrier.get(topic) for topic in TORQUE_TOPICS}
-        self.missed_steps += any(reply is None for reply in replies.values())
-        for topic, reply in replies.items():
-            if reply is None:
-                self._miss(topic)
-            else:
-                self._held[topic] = reply[-1] if topic == CLUTCH else reply
-                self._silent_since[topic] = self.step
-        clutch = replies[CLUTCH] or [self._held[CLUTCH]] * (SUBSTEPS + 1)
-        self._integrate(self._held[ENGINE], self._held[LOAD], clutch)
-
-    def _miss(self, topic: str) -> None:
-        self.missed_replies[topic] += 1
-        silent_s = (self.step - self._silent_since[topic]) * PERIOD_S
-        if silent_s > self._plan.answer_timeout_s:
-            self._finish(
-                DdctError(
-                    f'no {topic} since stamp {stamp_of_step(self._silent_since[topic])} ns, '
-                    f'{silent_s:.2f} s ago: check that the node which publishes it is running'
-                )
-            )

@@ -1,0 +1,143 @@
+"""Which runs count, and what a real-time run says of itself."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.headless import run_headless
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.scores.realtime_run import realtime_summary
+from ddct_bringup.scores.scoring import score_recording, why_invalid
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.timebase import stamp_of_step
+
+STEPS = 300
+TOLERATED = 3
+SETTINGS = RunSettings(load_scenario('thesis'))
+TRAJECTORY = run_headless(SETTINGS, 'ls8')
+FACTS = RunFacts(
+    controller='ls8',
+    architecture='detailed',
+    scenario='thesis',
+    clutch='linear',
+    wear_gain=1.0,
+    mode='realtime',
+    seed=0,
+    control_start_s=0.6,
+    score_window_s=(0.6, 3.0),
+    duration_s=3.0,
+)
+
+
+def facts(**values):
+    given = RealtimeFacts(steps=STEPS, worst_lateness_us=412.0)
+    return replace(given, **values)
+
+
+def recording(
+    realtime=None, *, missed=None, mode='realtime', duration_s=3.0, path=Path('bag.mcap')
+):
+    return Recording(
+        path=path,
+        trajectory=TRAJECTORY,
+        facts=replace(FACTS, mode=mode, duration_s=duration_s),
+        custom_data={},
+        run_info={},
+        counts={},
+        missed=missed or {},
+        realtime=realtime or facts(),
+    )
+
+
+@pytest.mark.parametrize('mode', ['lockstep', 'realtime'])
+def test_a_whole_run_counts(mode):
+    assert TRAJECTORY.steps == STEPS
+    assert why_invalid(recording(mode=mode)) == ''
+
+
+@pytest.mark.parametrize('mode', ['lockstep', 'realtime'])
+def test_a_run_one_step_short_does_not_count(mode):
+    reason = why_invalid(recording(facts(steps=200), mode=mode, duration_s=3.01))
+    assert reason == (
+        'ended early: 300 of 301 steps: the run stopped, or was stopped, before its end'
+    )
+
+
+def test_a_run_whose_last_tick_the_recorder_missed_says_so():
+    reason = why_invalid(recording(facts(steps=301), duration_s=3.01))
+    assert reason == (
+        'ended early: 300 of 301 steps: the driveline took them all, but the recorder did not '
+        'hear the last'
+    )
+
+
+def test_misses_count_up_to_the_stated_tolerance():
+    assert why_invalid(recording(facts(missed_steps=TOLERATED))) == ''
+    reason = why_invalid(recording(facts(missed_steps=TOLERATED + 1)))
+    assert reason == '4 of 300 steps held a torque for want of a reply, more than 3 (1 %)'
+
+
+@pytest.mark.parametrize('topic', ['engine/torque', 'load/torque', 'clutch/torque'])
+def test_torques_that_the_bag_lacks_count_as_misses(topic):
+    assert why_invalid(recording(missed={topic: TOLERATED})) == ''
+    assert why_invalid(recording(missed={topic: TOLERATED + 1})).startswith('4 of 300 steps held')
+
+
+@pytest.mark.parametrize('node', ['actuator', 'engine', 'driveline'])
+def test_a_safe_state_makes_a_run_invalid_and_is_named(node):
+    since = {node: stamp_of_step(87)}
+    entry = score_recording(recording(facts(safe_states=since)), 'bag')
+    assert (entry['valid'], entry['safe_state']) == (False, f'{node} at 0.87 s')
+    assert entry['reason'] == f'safe state entered by {node} at 0.87 s'
+
+
+def test_scores_say_whether_there_was_a_safe_state_in_real_time_only():
+    assert score_recording(recording(), 'bag')['safe_state'] == ''
+    assert score_recording(recording(mode='lockstep'), 'bag')['safe_state'] is None
+
+
+def test_scores_hold_the_worst_lateness_of_the_timing_file(tmp_path):
+    RunTiming(missed_steps=2, worst_lateness_us=1500.0).write(tmp_path)
+    metrics = score_recording(recording(path=tmp_path / 'x.mcap'), 'bag')['metrics']
+    assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (2, 1500.0)
+
+
+def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
+    states = {'driveline': stamp_of_step(95), 'actuator': stamp_of_step(90)}
+    given = facts(missed_steps=2, safe_states=states)
+    assert realtime_summary(recording(given)) == (
+        '2 of 300 steps missed, worst lateness 0.41 ms, '
+        'safe state: actuator at 0.9 s, driveline at 0.95 s'
+    )
+    assert realtime_summary(recording(facts(worst_lateness_us=None))) == (
+        '0 of 300 steps missed, worst lateness unknown, safe state: none'
+    )
+
+
+def test_what_nodes_say_on_diagnostics_is_understood():
+    heard = RealtimeFacts()
+    counts = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
+    assert heard.hear('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
+    assert heard.hear('actuator: safe state', {'since_ns': '1870000000'})
+    assert heard == RealtimeFacts(300, 4, 5, 6, 700.0, {'actuator': 1870000000})
+
+
+@pytest.mark.parametrize(
+    ('name', 'pairs'),
+    [
+        ('motor: temperature', {'steps': '1'}),
+        ('driveline: ticks', {}),
+        ('driveline: ticks', {'steps': 'many'}),
+        ('actuator: safe state', {}),
+        ('actuator: safe state', {'since_ns': 'now'}),
+    ],
+)
+def test_what_others_say_on_diagnostics_is_not_ours(name, pairs):
+    heard = RealtimeFacts()
+    assert not heard.hear(name, pairs)
+    assert heard == RealtimeFacts()

@@ -1,0 +1,126 @@
+"""Ticks come out of the buffer whole and in order; in real time with holes, but not too soon."""
+
+import pytest
+
+from ddct_bringup.bag.tick_buffer import GIVE_UP_AFTER_STEPS, LAG_LIMIT_STEPS, TickBuffer
+from ddct_plant.errors import DdctError
+from ddct_plant.timebase import stamp_of_step
+
+
+class Buffer:
+    """A buffer of the topics a and b; what comes out of it, as {step: topics}."""
+
+    def __init__(self, *, lockstep):
+        self.buffer = TickBuffer(
+            ['a', 'b'],
+            lambda topic, first, second: first.lower() == second.lower(),
+            wait_for_all=lockstep,
+        )
+
+    def offer(self, topic, step, cdr=b'x'):
+        ready = self.buffer.offer(topic, stamp_of_step(step), cdr)
+        return [(each, ''.join(sorted(tick))) for each, tick in ready]
+
+    def whole(self, step):
+        return self.offer('a', step) + self.offer('b', step)
+
+    def drain(self):
+        return [(step, ''.join(sorted(tick))) for step, tick in self.buffer.drain()]
+
+
+@pytest.fixture
+def lockstep():
+    return Buffer(lockstep=True)
+
+
+@pytest.fixture
+def realtime():
+    return Buffer(lockstep=False)
+
+
+@pytest.mark.parametrize('lock', [True, False])
+def test_a_tick_comes_out_once_when_its_last_message_is_here(lock):
+    buffer = Buffer(lockstep=lock)
+    assert buffer.offer('b', 0) == []
+    assert buffer.offer('a', 0) == [(0, 'ab')]
+    assert buffer.drain() == []
+
+
+@pytest.mark.parametrize('lock', [True, False])
+def test_ticks_come_out_in_order(lock):
+    buffer = Buffer(lockstep=lock)
+    assert buffer.offer('a', 0) == []
+    assert buffer.whole(1) == []
+    assert buffer.whole(2) == []
+    assert buffer.offer('b', 0) == [(0, 'ab'), (1, 'ab'), (2, 'ab')]
+
+
+def test_lock_step_never_gives_an_incomplete_tick_back(lockstep):
+    for step in range(LAG_LIMIT_STEPS + 1):
+        assert lockstep.offer('a', step) == []
+    assert lockstep.drain() == []
+
+
+def test_lock_step_says_that_it_missed_the_start(lockstep):
+    with pytest.raises(
+        DdctError, match=f'a: step {LAG_LIMIT_STEPS + 1} came where step 0 was due'
+    ):
+        lockstep.offer('a', LAG_LIMIT_STEPS + 1)
+
+
+def test_real_time_waits_for_a_late_message_before_it_gives_its_tick_up(realtime):
+    assert realtime.offer('a', 0) == []
+    for step in range(1, GIVE_UP_AFTER_STEPS):
+        assert realtime.whole(step) == []
+    whole = [(step, 'ab') for step in range(1, GIVE_UP_AFTER_STEPS)]
+    assert realtime.offer('b', 0) == [(0, 'ab'), *whole]
+    assert realtime.buffer.dropped == 0
+
+
+def test_real_time_gives_a_tick_up_when_one_so_much_later_begins(realtime):
+    realtime.offer('a', 0)
+    for step in range(1, GIVE_UP_AFTER_STEPS):
+        realtime.whole(step)
+    whole = [(step, 'ab') for step in range(1, GIVE_UP_AFTER_STEPS)]
+    assert realtime.offer('a', GIVE_UP_AFTER_STEPS) == [(0, 'a'), *whole]
+    assert realtime.offer('b', 0) == []
+    assert realtime.buffer.dropped == 1
+
+
+def test_a_step_of_which_nothing_came_is_passed_over(realtime):
+    realtime.whole(0)
+    for step in range(2, 1 + GIVE_UP_AFTER_STEPS):
+        assert realtime.whole(step) == []
+    ready = realtime.offer('a', 1 + GIVE_UP_AFTER_STEPS)
+    assert ready == [(step, 'ab') for step in range(2, 1 + GIVE_UP_AFTER_STEPS)]
+
+
+def test_how_far_a_stamp_lies_ahead_costs_no_time(realtime):
+    realtime.whole(0)
+    realtime.offer('a', 1)
+    assert realtime.offer('a', 10**14) == [(1, 'a')]
+    assert realtime.drain() == [(10**14, 'a')]
+
+
+def test_what_is_left_comes_out_at_the_end_in_real_time_only(realtime, lockstep):
+    for buffer in (realtime, lockstep):
+        buffer.offer('a', 0)
+        buffer.offer('b', 3)
+    assert realtime.drain() == [(0, 'a'), (3, 'b')]
+    assert lockstep.drain() == []
+
+
+@pytest.mark.parametrize('complete', [False, True])
+def test_a_repeated_message_is_dropped_and_a_different_one_is_an_error(realtime, complete):
+    realtime.offer('a', 0, b'one')
+    if complete:
+        realtime.offer('b', 0)
+    assert realtime.offer('a', 0, b'one') == []
+    assert realtime.offer('a', 0, b'ONE') == [], 'the same but for padding'
+    with pytest.raises(DdctError, match='a carries two different messages for stamp 1000000000'):
+        realtime.offer('a', 0, b'two')
+
+
+def test_a_stamp_off_the_grid_is_an_error_with_its_topic(lockstep):
+    with pytest.raises(DdctError, match='a: stamp 1000000001 ns is not on the grid'):
+        lockstep.buffer.offer('a', 1_000_000_001, b'')

@@ -1,0 +1,169 @@
+"""In real time bad messages count as missing ones, and what stays away ends in a safe state."""
+
+import math
+import signal
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import WrenchStamped
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.patient_clock import PatientClock, realtime_owner
+from support.processes import START_S, Programs
+from support.runs import expected, plan
+from support.tampering import Tamperer, tampered_remap
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.scores.scoring import score_recording
+from ddct_plant.fail_safe import CLUTCH_TIMEOUT_S, FailSafeSettings
+from ddct_plant.graph.messages import (
+    clock_message,
+    joint_states_message,
+    torque_message,
+    torque_points_message,
+    twist_message,
+)
+from ddct_plant.graph.tick_owner import CLUTCH, LOAD
+from ddct_plant.timebase import PERIOD_S, stamp_of_step
+
+FROM_STEP = 20
+FAIL_SAFE = FailSafeSettings()
+LATEST_STEP = (2_147_483_640 - 1) * 100
+"""Of the last full stamp that a message can hold, less some seconds."""
+
+
+def _nan(message: WrenchStamped) -> None:
+    message.wrench.torque.x = math.nan
+
+
+def _infinite(message: WrenchStamped) -> None:
+    message.wrench.torque.x = math.inf
+
+
+def _off_grid(message: WrenchStamped) -> None:
+    message.header.stamp.nanosec += 1
+
+
+def _time_zero(message: WrenchStamped) -> None:
+    message.header.stamp.sec = message.header.stamp.nanosec = 0
+
+
+def _future(message: WrenchStamped) -> None:
+    message.header.stamp.sec += 600
+
+
+def _latest(message: WrenchStamped) -> None:
+    message.header.stamp.sec = 2_147_483_640
+
+
+@pytest.mark.parametrize('spoil', [_nan, _infinite, _off_grid, _time_zero, _future, _latest])
+def test_bad_requests_count_as_missing_and_open_the_clutch(
+    graph_of: GraphOf, spoil: Callable[[Any], None]
+) -> None:
+    graph = graph_of(plan(mode='realtime', duration_s=0.9))
+    topic = 'clutch/torque_request'
+    graph.add('actuator', cli_args=tampered_remap(topic))
+    graph.add_other(Tamperer(WrenchStamped, topic, spoil, FROM_STEP, context=graph.context))
+    graph.add_all()
+    graph.run()
+    actuator: Any = graph.nodes['actuator']
+    assert actuator.refusals.count >= 50
+    recording = read_bag(graph.folder)
+    torque = recording.trajectory.clutch_torque[:, 0]
+    assert torque[0] > 100.0
+    assert torque[-1] < 1.0
+    entry = score_recording(recording, 'bag')
+    assert not entry['valid']
+    assert entry['safe_state'].startswith('actuator at 0.')
+    assert 'safe state entered by actuator at 0.' in entry['reason']
+
+
+FALSE_MESSAGES: dict[str, Callable[[int], Any]] = {
+    '/clock': clock_message,
+    '/driveline/joint_states': lambda stamp: joint_states_message(stamp, *[[0.0] * 4] * 3),
+    '/vehicle/twist': lambda stamp: twist_message(stamp, 0.0),
+    '/engine/torque': lambda stamp: torque_message(stamp, 0.0),
+    '/clutch/torque_request': lambda stamp: torque_message(stamp, 1e4),
+    '/actuator/torque': lambda stamp: torque_points_message(stamp, [1e4] * 11),
+    '/clutch/torque': lambda stamp: torque_points_message(stamp, [1e4] * 11),
+}
+
+
+@pytest.mark.parametrize('step', [FROM_STEP + 60_000, LATEST_STEP])
+def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: int) -> None:
+    run = plan(mode='realtime', duration_s=0.6)
+    graph = graph_of(run)
+    graph.add_all()
+    owner = realtime_owner(graph)
+    PatientClock(owner)
+    publishers = {
+        publisher.topic_name: publisher
+        for node in graph.nodes.values()
+        for publisher in node.publishers
+    }
+    graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
+    for topic, message in FALSE_MESSAGES.items():
+        publishers[topic].publish(message(stamp_of_step(step)))
+    graph.run()
+    recording = read_bag(graph.folder)
+    assert recording.missed == {}
+    assert recording.realtime.safe_states == {}
+    assert recording.trajectory.sha256() == expected(run).sha256()
+    timing = read_timing(graph.folder)
+    assert timing is not None
+    assert timing.refused_messages == len(FALSE_MESSAGES)
+
+
+def _stop_when_answered(graph: InProcessGraph, clock: PatientClock, node: str) -> int:
+    """Take a node away right after the clutch has answered a step, and return that step."""
+    owner = realtime_owner(graph)
+    graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
+    while CLUTCH in owner.barrier.missing():
+        graph.spin_until(lambda: CLUTCH not in owner.barrier.missing(), 'a clutch torque')
+    last = owner.step
+    graph.remove(node)
+    clock.release()
+    return last
+
+
+def test_the_driveline_opens_the_clutch_itself_when_the_actuator_is_gone(
+    graph_of: GraphOf, capfd: pytest.CaptureFixture[str]
+) -> None:
+    graph = graph_of(plan(mode='realtime', duration_s=0.9))
+    graph.add_all()
+    last = _stop_when_answered(graph, PatientClock(realtime_owner(graph)), 'actuator')
+    graph.run()
+    recording = read_bag(graph.folder)
+    opened = last + round(CLUTCH_TIMEOUT_S / PERIOD_S) + 1
+    assert recording.realtime.safe_states == {'driveline': stamp_of_step(opened + 1)}
+    torque = recording.trajectory.joint_effort[:, 1]
+    held = torque[last + 1]
+    assert held > 100.0
+    assert np.all(torque[last + 1 : opened + 1] == held)
+    ramp = held - FAIL_SAFE.fail_safe_ramp_n_m_s * PERIOD_S * np.arange(len(torque) - opened)
+    assert torque[opened:] == pytest.approx(np.maximum(ramp, 0.0))
+    assert torque[-1] == 0.0
+    assert 'no clutch/torque for longer than clutch_timeout_s' in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(('name', 'topic'), [('load', LOAD), ('clutch', CLUTCH)])
+def test_a_node_that_was_stopped_answers_again_when_it_goes_on(
+    graph_of: GraphOf, programs: Programs, name: str, topic: str
+) -> None:
+    graph = graph_of(plan(mode='realtime', duration_s=600.0))
+    node = programs.start_node(f'ddct_plant.{name}_node', graph.parameters['*'])
+    graph.wait_for_publisher(topic, START_S)
+    graph.add_all(without=[name])
+    owner = realtime_owner(graph)
+    for _ in range(2):
+        start = owner.step
+        graph.spin_until(lambda start=start: owner.step >= start + 50, 'half a second', START_S)
+        node.send(signal.SIGSTOP)
+        graph.spin_until(lambda start=start: owner.step >= start + 100, 'half a second more')
+        node.send(signal.SIGCONT)
+        graph.spin_until(
+            lambda start=start: owner._silent_since[topic] >= start + 150,
+            f'{topic} in time once more',
+        )

@@ -1,0 +1,43 @@
+"""A clock for the driveline in real time that a busy machine cannot make miss a step."""
+
+import time
+
+from ddct_plant.driveline_node import DrivelineNode
+from ddct_plant.graph.realtime_owner import RealtimeOwner
+from ddct_plant.timebase import PERIOD_S
+from support.in_process_graph import InProcessGraph
+
+
+class PatientClock:
+    """
+    Let the next step be due only once every reply to the last tick is in.
+
+    So a run misses nothing, however slow the machine is. From `release` on time passes as ever.
+    """
+
+    def __init__(self, owner: RealtimeOwner) -> None:
+        """Become the clock of `owner`, before its run begins."""
+        self._owner = owner
+        self._offset: float | None = None
+        owner._clock = self
+
+    def __call__(self) -> float:
+        """Return the time in s."""
+        started, owner = self._owner._started_at, self._owner
+        if self._offset is not None:
+            return time.monotonic() + self._offset
+        if started is None or owner.step == owner._plan.steps:
+            return time.monotonic()
+        return started + (owner.step + (0.5 if owner.barrier.missing() else 1.5)) * PERIOD_S
+
+    def release(self) -> None:
+        """Let time pass from now on."""
+        self._offset = self() - time.monotonic()
+
+
+def realtime_owner(graph: InProcessGraph) -> RealtimeOwner:
+    """Return the owner of time of a graph in real time."""
+    driveline = graph.nodes['driveline']
+    assert isinstance(driveline, DrivelineNode)
+    assert isinstance(driveline.owner, RealtimeOwner)
+    return driveline.owner
