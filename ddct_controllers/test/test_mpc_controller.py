@@ -19,7 +19,7 @@ from ddct_plant.units import rad_s_from_rpm
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)
-MPC3 = thesis_settings(TABLE_4_1['mpc3'])
+MPC3 = thesis_settings(TABLE_4_1['mpc3'], preview=True)
 
 
 def controller(settings=MPC3):
@@ -233,7 +233,21 @@ def test_a_reset_controller_is_a_new_one(backend):
         ({'iteration_limit': 1e300}, 'iteration_limit .* must be at most 1e'),
         ({'iteration_limit': 2**40}, 'iteration_limit .* must be at most 1e'),
         ({'prediction_steps': 1e6}, 'prediction_steps is .* must be at most 1000'),
-        ({'prediction_steps': 1, 'control_steps': 1}, 'feels a move of the clutch torque request'),
+        (
+            {'prediction_steps': 1, 'control_steps': 1, 'delay_in_model': True},
+            'feels a move of the clutch torque request',
+        ),
+        ({'measured': 'speed'}, r'unknown controllers\.mpc3\.measured'),
+        ({'load_known': 'no'}, r'controllers\.mpc3\.load_known is .* give true or false'),
+        ({'delay_in_model': 0}, r'controllers\.mpc3\.delay_in_model is 0: give true or false'),
+        ({'output_weight': -0.1}, r'controllers\.mpc3\.output_weight is -0\.1'),
+        ({'final_weight': math.inf}, r'controllers\.mpc3\.final_weight'),
+        ({'move_weight': 'R'}, r'controllers\.mpc3\.move_weight'),
+        (
+            {'torque_weight': 1e7},
+            r'controllers\.mpc3\.torque_weight is 1e\+07: it must be at most',
+        ),
+        ({'output_weight': 0.0, 'move_weight': 0.0}, 'costs nothing'),
         ({'lowest_slip_rpm': 'none'}, r'controllers\.mpc3\.lowest_slip_rpm'),
         ({'lowest_slip_rpm': 1e7}, r'lowest_slip_rpm is 1e\+07: it must be at most'),
         ({5: 7, 'horizon': 3}, r'controllers\.mpc3\.5 is not a key'),
@@ -245,7 +259,12 @@ def test_bad_options_are_named(options, complaint):
 
 
 def test_options_reach_the_program():
-    options = {'prediction_steps': 9, 'control_steps': 2, 'torque_rate_n_m_s': 100.0}
+    options = {
+        'prediction_steps': 9,
+        'control_steps': 2,
+        'torque_rate_n_m_s': 100.0,
+        'preview': True,
+    }
     mpc = make_thesis_mpc('mpc1', ControllerContext(RUN, options))
     assert mpc.preview_steps == 9
     requests = [250.0] + [250.0 + a.clutch_torque for a in answers(mpc, reference=[0.0] * 10)]

@@ -11,7 +11,7 @@ from ddct_controllers.mpc.disturbances import (
     offset_free_noise,
     require_detectable,
 )
-from ddct_controllers.mpc.observer import NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.offset_free_mpc import make_offset_free_mpc, make_torsion_mpc
 from ddct_controllers.mpc.transmission_model import (
     ENGINE_TORQUE,
@@ -63,7 +63,8 @@ def test_its_disturbances_are_torques_at_the_clutch_and_at_the_wheel():
 def estimate(errors_n_m, drift=(), model=PLANT, periods=400, driveline=DRIVELINE):
     """Run the plant with constant torque errors; return the last innovation and estimate."""
     noise = NoiseLevels(drift=drift)
-    observer = Observer(model, noise, driveline.halfshaft_stiffness, initial_request=0.0)
+    start = AtRest(driveline.halfshaft_stiffness, initial_request=0.0)
+    observer = Observer(model, kalman_gain(model, noise), start)
     plant = transmission_model(driveline)
     columns = {'engine': plant.b[:, ENGINE_TORQUE], 'clutch': plant.clutch}
     columns['load'] = plant.b[:, LOAD_TORQUE]

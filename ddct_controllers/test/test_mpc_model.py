@@ -4,7 +4,7 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.observer import NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -144,7 +144,9 @@ def test_gain_is_the_stationary_kalman_filter():
 def test_observer_finds_the_twist_that_is_not_measured():
     rows = inputs(200)
     states = model_run(MODEL, rows)
-    observer = Observer(MODEL, NoiseLevels(), DRIVELINE.halfshaft_stiffness, 35.0)
+    observer = Observer(
+        MODEL, kalman_gain(MODEL, NoiseLevels()), AtRest(DRIVELINE.halfshaft_stiffness, 35.0)
+    )
     for row, state in zip(rows, states, strict=True):
         estimate = observer.correct(tuple(state[:3]), load_torque=500.0)
         observer.predict(tuple(row))
@@ -154,7 +156,10 @@ def test_observer_finds_the_twist_that_is_not_measured():
 
 def test_a_reset_observer_is_a_new_one():
     observers = [
-        Observer(MODEL, NoiseLevels(), DRIVELINE.halfshaft_stiffness, 35.0) for _ in range(2)
+        Observer(
+            MODEL, kalman_gain(MODEL, NoiseLevels()), AtRest(DRIVELINE.halfshaft_stiffness, 35.0)
+        )
+        for _ in range(2)
     ]
     observers[0].correct((200.0, 100.0, 10.0), 50.0)
     observers[0].predict((10.0, 20.0, 30.0))

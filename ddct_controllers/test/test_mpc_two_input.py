@@ -9,7 +9,7 @@ import pytest
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
 from ddct_controllers.mpc.engine_model import with_engine
-from ddct_controllers.mpc.observer import NoiseLevels, Observer
+from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.settings import InputTerms, OutputTerms
 from ddct_controllers.mpc.thesis_mpc4 import make_mpc4, mpc4_settings
 from ddct_controllers.mpc.transmission_model import (
@@ -212,7 +212,8 @@ def test_the_filter_is_told_what_the_engine_delivers():
             heard.append(inputs[ENGINE_TORQUE])
             super().predict(inputs)
 
-    observer = Listening(MODEL, NoiseLevels(), STIFFNESS, initial_request=0.0)
+    gain = kalman_gain(MODEL, NoiseLevels())
+    observer = Listening(MODEL, gain, AtRest(STIFFNESS, initial_request=0.0))
     authority = EngineAuthority(lag_s=0.05, slew_n_m_s=400.0)
     mpc = TwoInputController(MODEL, observer, MPC4, authority)
     commands, engine = answers(mpc, authority), EngineResponse(authority)

@@ -8,13 +8,14 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.headless import run_headless, run_loop
 from ddct_bringup.scores.thesis_table import thesis_row
 from ddct_bringup.studies.actuator_left_out import LoopWithoutActuator, model_without_actuator
+from ddct_bringup.studies.measured_state import LoopWithMeasuredState, MeasuredState
 from ddct_bringup.studies.static_controller import StaticControllerAlone
 from ddct_bringup.studies.torque_level import growth
 from ddct_bringup.studies.two_input_figures import HEADERS, cells
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
 from ddct_controllers.design.study import Study
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.observer import Observer
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
 from ddct_controllers.mpc.transmission_model import TransmissionModel, transmission_model
@@ -24,19 +25,13 @@ from ddct_plant.run_settings import RunSettings
 from ddct_plant.units import rad_s_from_rpm
 
 SETTINGS = RunSettings(THESIS_SCENARIO)
-WEAR_GAINS = (0.7, 1.3)
-"""At which growth is shown, the ends of the thesis's Table 5.2."""
+WEAR_GAINS = (0.7, 1.0, 1.3)
+"""At which growth is shown: the ends of the thesis's Table 5.2, and a new clutch."""
 GROWTH_HEADERS = tuple(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS)
 STIFFER_PULL = 0.05
 """Of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
 Model = Callable[[DrivelineParameters, float], TransmissionModel]
 """From the driveline and the wear gain."""
-
-
-class _HeldReference(TwoInputController):
-    """Holds both references over the horizon, although the one is the other's derivative."""
-
-    _references = PredictiveController._references
 
 
 @dataclass(frozen=True)
@@ -47,16 +42,19 @@ class Reading:
     model: Model = transmission_model
     """In the controller."""
     plant: Model = transmission_model
-    kind: type[TwoInputController] = TwoInputController
+    observer: Callable[[RunSettings, TransmissionModel], Observer] = make_observer
 
     def controller(self, run: RunSettings) -> TwoInputController:
         """Return the controller of a run."""
         model = self.model(run.scenario.driveline, 1.0)
-        observer = make_observer(run, model)
-        return self.kind(model, observer, self.settings, run.scenario.engine_authority)
+        observer = self.observer(run, model)
+        return TwoInputController(model, observer, self.settings, run.scenario.engine_authority)
 
     def run(self) -> Trajectory:
         """Return its run in the thesis scenario."""
+        if self.observer is MeasuredState:
+            loop = LoopWithMeasuredState(SETTINGS, self.controller(SETTINGS))
+            return run_loop(loop, SETTINGS.scenario.steps)
         if self.plant is transmission_model:
             return run_headless(SETTINGS, self.controller(SETTINGS))
         # From the same slip, which without an actuator does not come about by itself.
@@ -69,13 +67,29 @@ class Reading:
     def growth(self, wear_gain: float) -> float:
         """Return the growth per period of its loop with a worn clutch, see `torque_level`."""
         mpc4 = self.controller(SETTINGS)
-        observer = make_observer(SETTINGS, self.model(THESIS_SCENARIO.driveline, 1.0))
-        return growth(mpc4.program, observer, self.plant(THESIS_SCENARIO.driveline, wear_gain))
+        return growth(
+            mpc4.program, mpc4.observer, self.plant(THESIS_SCENARIO.driveline, wear_gain)
+        )
 
 
 _DEFAULT = Reading(mpc4_settings())
 _SQUARED = Reading(mpc4_settings(0.05, STIFFER_PULL))
 _MIXED = Reading(mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL))
+
+
+_NO_ACTUATOR = replace(_DEFAULT, model=model_without_actuator)
+
+
+def _no_delay(driveline: DrivelineParameters, wear_gain: float) -> TransmissionModel:
+    return transmission_model(driveline, wear_gain, delay=False)
+
+
+def _held(reading: Reading) -> Reading:
+    return replace(reading, settings=replace(reading.settings, along_tangent=False))
+
+
+def _measured(reading: Reading) -> Reading:
+    return replace(reading, observer=MeasuredState)
 
 
 def _previewed(reading: Reading) -> Reading:
@@ -89,12 +103,15 @@ def _without_actuator(reading: Reading) -> Reading:
 READINGS: Mapping[str, Reading] = {
     "x'Qx, reference along its tangent": _DEFAULT,
     "x'Qx, coming reference": _previewed(_DEFAULT),
-    "x'Qx, reference held": replace(_DEFAULT, kind=_HeldReference),
+    "x'Qx, reference held": _held(_DEFAULT),
+    'state measured': _measured(_DEFAULT),
     'weights squared': _SQUARED,
     'weights squared, coming reference': _previewed(_SQUARED),
-    'weights squared, reference held': replace(_SQUARED, kind=_HeldReference),
+    'weights squared, reference held': _held(_SQUARED),
     'w_d in rpm, dw_d/dt in rad/s^2': _MIXED,
-    'no actuator in its model': replace(_DEFAULT, model=model_without_actuator),
+    'no delay in its model': replace(_DEFAULT, model=_no_delay),
+    'no actuator in its model': _NO_ACTUATOR,
+    'no actuator in its model, state measured': _measured(_NO_ACTUATOR),
     'no actuator at all': _without_actuator(_DEFAULT),
     'no actuator at all, coming reference': _previewed(_without_actuator(_DEFAULT)),
     'no actuator at all, weights squared': _without_actuator(_SQUARED),

@@ -14,7 +14,6 @@ from ddct_controllers.mpc.observer import Observer
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
 from ddct_controllers.mpc.transmission_model import (
     ENGINE_TORQUE,
-    MEASURED,
     REQUEST,
     STATES,
     TransmissionModel,
@@ -77,7 +76,7 @@ def closed_loop(
     Without weights on the moves the inputs follow from the estimate alone.
     """
     feedback = -np.linalg.solve(program.structure.hessian, program.gradient[:, :STATES])
-    inputs, measured = [REQUEST, ENGINE_TORQUE], np.eye(MEASURED, STATES)
+    inputs, measured = [REQUEST, ENGINE_TORQUE], np.eye(observer.gain.shape[1], STATES)
     correction = observer.gain @ measured
     estimate = np.hstack([correction, np.eye(STATES) - correction])
     moves, model = feedback @ estimate, observer.model

@@ -5,7 +5,8 @@ from dataclasses import replace
 from ddct_bringup.studies.scored_run import FIGURE_HEADERS, figures, scored_run
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
 from ddct_controllers.design.study import Study
-from ddct_controllers.mpc.offset_free_mpc import BASIS, default_torsion_weight
+from ddct_controllers.mpc.offset_free_mpc import default_torsion_weight
+from ddct_controllers.mpc.thesis_mpc import BASIS
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.table import text_or_dash
 

@@ -1,6 +1,9 @@
 """Parts of predictive controllers that depend on the run."""
 
-from ddct_controllers.mpc.observer import NoiseLevels, Observer
+import math
+from dataclasses import replace
+
+from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_controllers.mpc.wear_noise import WearNoise
 from ddct_controllers.mpc.wear_observer import WearObserver
@@ -9,14 +12,28 @@ from ddct_plant.run_settings import RunSettings
 
 
 def make_observer(
-    settings: RunSettings, model: TransmissionModel, noise: NoiseLevels | None = None
+    settings: RunSettings,
+    model: TransmissionModel,
+    noise: NoiseLevels | None = None,
+    *,
+    load_known: bool = True,
 ) -> Observer:
-    """Return an observer that starts as the run does: actuator at rest, load balanced."""
-    return Observer(
-        model,
-        noise or NoiseLevels(),
-        settings.scenario.driveline.halfshaft_stiffness,
-        initial_state(settings).torque_request,
+    """
+    Return the Kalman filter of the measured w_m, w_p and w_r that starts as the run does.
+
+    The actuator is at rest and the load, if it is known, balanced.
+    """
+    gain = kalman_gain(model, noise or NoiseLevels())
+    start = run_start(settings)
+    if load_known:
+        return Observer(model, gain, start)
+    return Observer(model.without_load(), gain, replace(start, halfshaft_stiffness=math.inf))
+
+
+def run_start(settings: RunSettings) -> AtRest:
+    """Return how a run starts: actuator at rest, load balanced."""
+    return AtRest(
+        settings.scenario.driveline.halfshaft_stiffness, initial_state(settings).torque_request
     )
 
 

@@ -57,6 +57,7 @@ def _require_felt(settings: MpcSettings, prediction: Prediction) -> None:
     """Raise ParameterError when outputs are weighted, but no move can change one of them."""
     inputs, horizon = len(settings.inputs), settings.prediction_steps
     weighted = np.tile([terms.weight > 0.0 for terms in settings.outputs], horizon)
+    weighted[-len(settings.outputs) :] |= [terms.final_weight > 0.0 for terms in settings.outputs]
     felt = prediction.from_moves[weighted, :inputs].any(axis=0)
     if weighted.any() and not felt.all():
         name = INPUT_NAMES[int(np.argmin(felt))]
@@ -83,6 +84,7 @@ def _cost(
     """Return H and the gradient matrix; levels = levels before + cumulated moves."""
     moves, inputs = settings.control_steps, len(settings.inputs)
     weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
+    weights[-len(settings.outputs) :] += [terms.final_weight**2 for terms in settings.outputs]
     penalty = np.tile([terms.move_weight**2 for terms in settings.inputs], moves)
     pull = np.tile([terms.target_weight**2 for terms in settings.inputs], moves)
     levels, repeated = _levels(moves, inputs), np.tile(np.eye(inputs), (moves, 1))

@@ -1,4 +1,4 @@
-"""Kalman filter for the states that are not measured."""
+"""Observer of the states that are not measured, and the Kalman gain for three speeds."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -44,33 +44,30 @@ class StateEstimator(Protocol):
         """Advance by one period with the saturated request, C_m and C_load in N m."""
 
 
+@dataclass(frozen=True)
+class AtRest:
+    """Start of an estimate: speeds as measured, half-shaft and actuator at rest."""
+
+    halfshaft_stiffness: float
+    """In N m/rad; the half-shaft balances the load, inf for one that is not known."""
+    initial_request: float
+    """In N m, on which the actuator rests."""
+
+
 class Observer:
     """
-    x_(k|k) = x_(k|k-1) + l (y_k - x_(k|k-1)[:3]), x_(k+1|k) = a x_(k|k) + b u_k.
+    x_(k|k) = x_(k|k-1) + l ((w_m, w_p, w_r)_k - x_(k|k-1)[:3]), x_(k+1|k) = a x_(k|k) + b u_k.
 
-    The stationary Kalman gain l is that of the noise levels. Measured are w_m, w_p, w_r, and C_m
-    and C_load are known; theta_sr, the actuator's states and the disturbances are estimated.
+    What is measured, and how far it is trusted, is all in the constant gain l.
     """
 
-    def __init__(
-        self,
-        model: TransmissionModel,
-        noise: NoiseLevels,
-        halfshaft_stiffness: float,
-        initial_request: float,
-    ) -> None:
-        """
-        Compute the gain; raise ParameterError when the noise levels leave none.
-
-        Before the first measurement the half-shaft of `halfshaft_stiffness` in N m/rad balances
-        the load and the actuator is at rest on `initial_request` in N m.
-        """
+    def __init__(self, model: TransmissionModel, gain: np.ndarray, start: AtRest | None) -> None:
+        """Take the gain (n, 3), and how the estimate starts; None starts it at zero."""
         self._model = model
         self._a, self._b = model.a, model.b
-        self._gain = kalman_gain(model, noise)
-        self._halfshaft_stiffness = halfshaft_stiffness
-        self._initial_request = initial_request
-        self._state: np.ndarray | None = None
+        self._gain = gain
+        self._start = start
+        self.reset()
 
     @property
     def model(self) -> TransmissionModel:
@@ -82,19 +79,28 @@ class Observer:
         """l, (n, 3)."""
         return self._gain
 
-    def first_estimate(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
+    @property
+    def start(self) -> AtRest | None:
+        """How the estimate starts."""
+        return self._start
+
+    def at_rest(
+        self, start: AtRest, speeds: tuple[float, float, float], load_torque: float
+    ) -> np.ndarray:
         """Return x_(k|k), (n,), at the first measurement; speeds in rad/s, C_load in N m."""
-        twist = load_torque / self._halfshaft_stiffness
-        return self._model.at_rest(speeds, twist, self._initial_request)
+        twist = load_torque / start.halfshaft_stiffness
+        return self._model.at_rest(speeds, twist, start.initial_request)
 
     def reset(self) -> None:
         """Forget the estimate; the next measurement starts another one."""
-        self._state = None
+        self._started = self._start is None
+        self._state = np.zeros(len(self._a))
 
     def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """Return x_(k|k), (n,), for w_m, w_p, w_r in rad/s and C_load in N m."""
-        if self._state is None:
-            self._state = self.first_estimate(speeds, load_torque)
+        if not self._started and self._start is not None:
+            self._state = self.at_rest(self._start, speeds, load_torque)
+            self._started = True
         else:
             self._state = self._state + self._gain @ (speeds - self._state[:MEASURED])
         return self._state

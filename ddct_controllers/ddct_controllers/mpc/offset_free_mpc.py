@@ -1,4 +1,4 @@
-"""MPC3 with a disturbance observer, and the same with w_sr as a second controlled output."""
+"""`mpc_preview` with a disturbance observer, and the same with w_sr as a second output."""
 
 import dataclasses
 
@@ -13,19 +13,17 @@ from ddct_controllers.mpc.disturbances import (
 from ddct_controllers.mpc.options import number_option, with_options
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import MpcSettings, OutputTerms
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, thesis_settings
+from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
 from ddct_controllers.mpc.transmission_model import TORSION_SPEED
 from ddct_plant.units import rpm_from_rad_s
 
-BASIS = TABLE_4_1['mpc3']
-"""Whose horizon and weights are taken over."""
 _DRIFTS = {'clutch_drift_n_m': CLUTCH_DRIFT_N_M, 'load_drift_n_m': LOAD_DRIFT_N_M}
 _TORSION_WEIGHT = 'torsion_weight'
 
 
 def make_offset_free_mpc(context: ControllerContext) -> PredictiveController:
     """Build `mpc_offset_free`; raise ParameterError for an option that it does not take."""
-    return _build('mpc_offset_free', context, thesis_settings(BASIS))
+    return _build('mpc_offset_free', context, thesis_settings(BASIS, preview=True))
 
 
 def make_torsion_mpc(context: ControllerContext) -> PredictiveController:
@@ -33,7 +31,7 @@ def make_torsion_mpc(context: ControllerContext) -> PredictiveController:
     name = 'mpc_torsion'
     default = default_torsion_weight(context.settings.scenario.driveline.total_ratio)
     weight = number_option(name, context.gains, _TORSION_WEIGHT, default, at_least=0.0)
-    settings = thesis_settings(BASIS)
+    settings = thesis_settings(BASIS, preview=True)
     torsion = OutputTerms(TORSION_SPEED, rpm_from_rad_s(weight))
     settings = dataclasses.replace(settings, outputs=(*settings.outputs, torsion))
     return _build(name, context, settings, own=(_TORSION_WEIGHT,))

@@ -41,8 +41,7 @@ def with_options(
     for key, most in MOST_STEPS.items():
         if key in options:
             changes[key] = _whole_number(f'controllers.{name}.{key}', options[key], most)
-    if 'preview' in options:
-        changes['preview'] = _switch(f'controllers.{name}.preview', options['preview'])
+    changes['preview'] = switch_option(name, options, 'preview', settings.preview)
     if 'backend' in options:
         require_choice(f'controllers.{name}.backend', str(options['backend']), BACKENDS)
         changes['backend'] = options['backend']
@@ -68,6 +67,14 @@ def number_option(
     return require_number(
         f'controllers.{name}.{key}', value, above=above, at_least=at_least, at_most=at_most
     )
+
+
+def switch_option(name: str, options: Mapping[str, Any], key: str, default: bool) -> bool:
+    """Return a key of `controllers.<name>`, true or false, or its default."""
+    value = options.get(key, default)
+    if not isinstance(value, bool):
+        raise ParameterError(f'controllers.{name}.{key} is {value!r}: give true or false')
+    return value
 
 
 def _clutch_limits(name: str, clutch: InputTerms, options: Mapping[str, Any]) -> InputTerms:
@@ -98,9 +105,3 @@ def _whole_number(name: str, value: Any, most: int) -> int:
     if require_number(name, value, at_least=1, at_most=most) % 1:
         raise ParameterError(f'{name} is {value!r}: give a whole number')
     return int(value)
-
-
-def _switch(name: str, value: object) -> bool:
-    if not isinstance(value, bool):
-        raise ParameterError(f'{name} is {value!r}: give true or false')
-    return value

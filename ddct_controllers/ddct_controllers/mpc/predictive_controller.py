@@ -114,9 +114,11 @@ class PredictiveController(Controller, Generic[Estimator]):
         """Return the first move (inputs,) and what to say of the solver."""
         program = self.program
         v = np.concatenate((state, before, self._known(measurement)))
-        # The inputs' targets are zero.
+        # Without a move of its own the controller leaves C_fOL, and the engine on the demand.
         targets = np.zeros(len(before))
-        f = program.gradient @ np.concatenate((v, targets, self._references(measurement).ravel()))
+        targets[CLUTCH] = measurement.open_loop_torque
+        wanted = references(self.settings, measurement).ravel()
+        f = program.gradient @ np.concatenate((v, targets, wanted))
         shift = program.shift @ np.concatenate((v, jump))
         lower, upper = self._bounds(before, jump)
         solution = self._solver.solve(f, lower - shift, upper - shift)
@@ -139,10 +141,6 @@ class PredictiveController(Controller, Generic[Estimator]):
     def _output_divisor(self) -> float:
         """Return what the state and the references are divided by, and so the outputs."""
         return 1.0
-
-    def _references(self, measurement: Measurement) -> np.ndarray:
-        """Return the outputs' references at the periods 1..p, (p, outputs)."""
-        return references(self.settings, measurement)
 
     def _next_planned(self, before: np.ndarray, jump: np.ndarray) -> np.ndarray:
         """Return the next move of the last plan, cut off at the input limits."""

@@ -15,7 +15,7 @@ class InputTerms:
     move_weight: float = 0.0
     """Of each change from one period to the next, per N m."""
     target_weight: float = 0.0
-    """Of the deviation from the input's target, per N m."""
+    """Of the deviation from the input's target, per N m: C_fOL of the clutch, 0 of the engine."""
     lowest: float = 0.0
     """Limit in N m; -inf for none."""
     highest: float = math.inf
@@ -44,6 +44,8 @@ class OutputTerms:
     """Row of the model's outputs, such as SLIP_SPEED."""
     weight: float
     """Of the deviation from the reference, per unit; 0 leaves the output free."""
+    final_weight: float = 0.0
+    """Of the deviation at the end of the horizon, beside `weight`."""
     lowest: float = -math.inf
     """Soft limit; -inf for none."""
     highest: float = math.inf
@@ -52,6 +54,7 @@ class OutputTerms:
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
         require_number('MPC: output weight', self.weight, at_least=0.0)
+        require_number('MPC: final weight', self.final_weight, at_least=0.0)
         if not self.lowest < self.highest:
             raise ParameterError(
                 f'MPC: the lowest output, {self.lowest:g}, must be below the highest, '
@@ -65,7 +68,8 @@ class MpcSettings:
     Cost, horizon, limits and solver of a predictive controller.
 
     J = sum over i = 1..p of the outputs' squared weighted deviations from their references, plus
-    sum over i = 0..m-1 of the inputs' squared weighted moves and deviations from their targets.
+    sum over i = 0..m-1 of the inputs' squared weighted moves and deviations from their targets,
+    plus at i = p the outputs' deviations once more with their final weights.
     Weights are squared with what they weigh, as in MATLAB's mpcDesigner.
     """
 
@@ -78,6 +82,8 @@ class MpcSettings:
     """The clutch torque request, then C_m if it is commanded."""
     preview: bool = True
     """Whether the coming reference is used; otherwise its present value is held."""
+    along_tangent: bool = False
+    """Whether without preview the slip reference goes on along its tangent instead."""
     soft_limit_weight: float = 1e4
     """Of the squared violation of an output's limit, in its unit, at each period ahead."""
     backend: str = DEFAULT_BACKEND

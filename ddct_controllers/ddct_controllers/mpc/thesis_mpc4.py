@@ -39,6 +39,7 @@ def mpc4_settings(
         ),
         inputs=(InputTerms(), InputTerms(target_weight=demand_weight)),
         preview=False,
+        along_tangent=True,
     )
 
 

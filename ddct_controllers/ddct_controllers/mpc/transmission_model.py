@@ -1,6 +1,6 @@
 """The sampled model that the predictive controllers and their observers share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,15 +56,22 @@ class TransmissionModel:
         state[DELAYED_REQUEST] = request
         return state
 
+    def without_load(self) -> 'TransmissionModel':
+        """Return the same with C_load, which then is not known, driving nothing."""
+        b, d = self.b.copy(), self.d.copy()
+        b[:, LOAD_TORQUE], d[:, LOAD_TORQUE] = 0.0, 0.0
+        return replace(self, b=b, d=d)
+
 
 def transmission_model(
-    driveline: DrivelineParameters, wear_gain: float = 1.0
+    driveline: DrivelineParameters, wear_gain: float = 1.0, *, delay: bool = True
 ) -> TransmissionModel:
     """
     Return the exact sampled model of driveline (Section 1.5), G_a(s) and delay (Section 1.4.2).
 
     Four driveline states, four of G_a and one for the delay, which is one period. The clutch
-    transmits `wear_gain` times the actuator's torque.
+    transmits `wear_gain` times the actuator's torque. Without `delay` it is the plant of Section
+    3.2.1.3, P_2 G_a: the request acts at once, and the last state drives nothing.
     """
     plant, actuator = driveline_matrices(driveline), ACTUATOR.to_state_space()
     clutch = wear_gain * plant.b[:, 1:2]
@@ -77,18 +84,21 @@ def transmission_model(
     outputs = np.vstack([slip, slip @ a, torsion])
     feedthrough = np.vstack([np.zeros((1, 3)), slip @ b, np.zeros((1, 3))])
     sampled = discretise_zoh(StateSpace(a, b, outputs, feedthrough), PERIOD_S)
-    return _delay_request(sampled, discretise_zoh(plant, PERIOD_S).b[:, 1])
+    held_clutch = discretise_zoh(plant, PERIOD_S).b[:, 1]
+    return _with_last_request(sampled, held_clutch, delay=delay)
 
 
-def _delay_request(sampled: StateSpace, clutch: np.ndarray) -> TransmissionModel:
-    """Turn the input REQUEST into a state that takes the request of the period before."""
-    a, b = np.zeros((STATES, STATES)), sampled.b.copy()
-    a[:8, :8], a[:8, DELAYED_REQUEST] = sampled.a, sampled.b[:, REQUEST]
-    b[:, REQUEST] = 0.0
+def _with_last_request(
+    sampled: StateSpace, clutch: np.ndarray, *, delay: bool
+) -> TransmissionModel:
+    """Append the request of the period before as a state, which acts in place of REQUEST."""
+    a, b, d = np.zeros((STATES, STATES)), sampled.b.copy(), sampled.d.copy()
+    a[:8, :8], through = sampled.a, np.zeros((len(sampled.c), 1))
+    if delay:
+        a[:8, DELAYED_REQUEST], through[:, 0] = b[:, REQUEST], d[:, REQUEST]
+        b[:, REQUEST], d[:, REQUEST] = 0.0, 0.0
     b = np.vstack([b, [1.0, 0.0, 0.0]])
-    c = np.hstack([sampled.c, sampled.d[:, REQUEST : REQUEST + 1]])
-    d = sampled.d.copy()
-    d[:, REQUEST] = 0.0
+    c = np.hstack([sampled.c, through])
     return TransmissionModel(a, b, c, d, np.concatenate([clutch, np.zeros(STATES - 4)]))
 
 

@@ -9,7 +9,6 @@ from ddct_controllers.interface import Command, Measurement, Status
 from ddct_controllers.mpc.engine_model import with_engine
 from ddct_controllers.mpc.limits import CLUTCH
 from ddct_controllers.mpc.predictive_controller import Estimator, PredictiveController
-from ddct_controllers.mpc.references import references_along_tangent
 from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.transmission_model import TransmissionModel
 from ddct_plant.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
@@ -24,7 +23,7 @@ class TwoInputController(PredictiveController[Estimator]):
 
     The deviation's target is zero, its limits and its rate are the engine's, and the engine's lag
     is part of the prediction; the observer is told what the engine delivers. The demand is taken
-    as constant over the horizon. Without preview the slip reference goes on along its tangent.
+    as constant over the horizon.
     """
 
     commands_engine = True
@@ -97,9 +96,6 @@ class TwoInputController(PredictiveController[Estimator]):
         lower, upper = (bound.copy() for bound in super()._bounds(before, jump))
         lower[self._engine_rows], upper[self._engine_rows] = self._reachable
         return lower, upper
-
-    def _references(self, measurement: Measurement) -> np.ndarray:
-        return references_along_tangent(self.settings, measurement)
 
     def _next_planned(self, before: np.ndarray, jump: np.ndarray) -> np.ndarray:
         moves = super()._next_planned(before, jump)

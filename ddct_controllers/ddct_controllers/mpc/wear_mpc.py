@@ -1,14 +1,13 @@
-"""MPC3 that estimates the wear of the clutch on line and predicts with it."""
+"""`mpc_preview` that estimates the wear of the clutch on line and predicts with it."""
 
 import numpy as np
 
 from ddct_controllers.interface import ControllerContext, Measurement, Status
 from ddct_controllers.mpc.build import make_wear_observer
 from ddct_controllers.mpc.disturbances import offset_free_model
-from ddct_controllers.mpc.offset_free_mpc import BASIS
 from ddct_controllers.mpc.options import with_options
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.thesis_mpc import thesis_settings
+from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
 from ddct_controllers.mpc.wear_noise import WearNoise
 from ddct_controllers.mpc.wear_observer import WearObserver
 from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
@@ -40,7 +39,8 @@ class WearMpc(PredictiveController[WearObserver]):
 
 def make_wear_mpc(context: ControllerContext) -> WearMpc:
     """Build `mpc_wear`; raise ParameterError for an option that it does not take."""
-    settings = with_options(_NAME, thesis_settings(BASIS), context.gains, WEAR_OPTIONS)
+    settings = thesis_settings(BASIS, preview=True)
+    settings = with_options(_NAME, settings, context.gains, WEAR_OPTIONS)
     wear = wear_noise(_NAME, context.gains, WearNoise())
     model = offset_free_model(context.settings.scenario.driveline)
     return WearMpc(model, make_wear_observer(context.settings, model, wear), settings)

@@ -55,7 +55,6 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
     settings, program, model = controller.settings, controller.program, observer.model
     form = dual_form(program.structure)
     columns = known_columns(program, len(model.a), settings)
-    at_rest = observer.first_estimate((0.0, 0.0, 0.0), 0.0)
     clutch = settings.inputs[CLUTCH]
     limits_rate = math.isfinite(clutch.rate_n_m_s)
     engine = _engine_macros(controller) if isinstance(controller, TwoInputController) else {}
@@ -72,6 +71,7 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
         private={
             'INPUTS': len(settings.inputs),
             'MEASURED': MEASURED,
+            'STARTS_AT_REST': int(observer.start is not None),
             'FIRST_REFERENCE': int(settings.preview),
             'SLIP_REFERENCES': columns.slip_references,
             'RATE_REFERENCES': columns.rate_references,
@@ -88,13 +88,22 @@ def controller_tables(controller: PredictiveController, observer: Observer) -> C
             'A': model.a,
             'B': model.b,
             'GAIN': observer.gain,
-            'AT_REST': at_rest,
-            'AT_REST_PER_LOAD': observer.first_estimate((0.0, 0.0, 0.0), 1.0) - at_rest,
+            **_start(observer),
             'GRADIENT': form.to_dual @ columns.gradient,
             'MOVES': form.moves,
             **_rows(controller, form, columns.shift, limits_rate=limits_rate),
         },
     )
+
+
+def _start(observer: Observer) -> dict[str, np.ndarray]:
+    """Return the first estimate but for the speeds, and what C_load adds to it; {} for zero."""
+    if observer.start is None:
+        return {}
+    unloaded, loaded = (
+        observer.at_rest(observer.start, (0.0, 0.0, 0.0), load) for load in (0.0, 1.0)
+    )
+    return {'AT_REST': unloaded, 'AT_REST_PER_LOAD': loaded - unloaded}
 
 
 def _rows(

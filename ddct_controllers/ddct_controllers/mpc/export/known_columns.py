@@ -15,8 +15,8 @@ class KnownColumns:
     """
     f = gradient @ known, and bounds less shift @ the first of known.
 
-    known holds the observer's state, the inputs before the first move, C_m as measured, C_load and
-    the jump of the open loop, then the engine's deviation if C_m is commanded, and the references
+    known holds the observer's state, the inputs before the first move, C_m as measured, C_load,
+    the open loop and its jump, then the engine's deviation if C_m is commanded, and the references
     of w_d and of dw_d/dt.
     """
 
@@ -44,8 +44,8 @@ def _known(matrix: np.ndarray, states: int, inputs: int, *, jump: bool = False) 
     Return the columns without references of `matrix`, which has them as `CondensedProgram` does.
 
     With C_m commanded the program's last two states are the demand and the deviation, and C_m is
-    not among the known inputs. The inputs' targets are zero. Only the clutch torque has a jump,
-    and only the bounds depend on it.
+    not among the known inputs. The open loop is the clutch's target, which only the cost knows;
+    the engine's is zero. Only the clutch torque has a jump, and only the bounds depend on it.
     """
     own, rest = np.split(matrix, [states], axis=1)
     deviation = np.zeros((len(matrix), 0))
@@ -55,16 +55,18 @@ def _known(matrix: np.ndarray, states: int, inputs: int, *, jump: bool = False) 
     else:
         engine, deviation, before, load = np.split(rest[:, :5], [1, 2, 4], axis=1)
         after = rest[:, 5:]
-    changes = after[:, :1] if jump else np.zeros((len(matrix), 1))
-    return np.hstack([own, before, engine, load, changes, deviation])
+    target, change = after[:, :1], np.zeros((len(matrix), 1))
+    if jump:
+        target, change = change, target
+    return np.hstack([own, before, engine, load, target, change, deviation])
 
 
 def _references(gradient: np.ndarray, settings: MpcSettings) -> tuple[np.ndarray, np.ndarray]:
     """
     Return the columns for the references of w_d and of dw_d/dt; none for one without effect.
 
-    With preview a column is a period's. Otherwise the present values are held, or with C_m
-    commanded that of w_d is continued along its tangent.
+    With preview a column is a period's. Otherwise the present values are held, or that of w_d is
+    continued along its tangent.
     """
     periods, outputs = settings.prediction_steps, [terms.output for terms in settings.outputs]
     columns = gradient[:, -periods * len(outputs) :].reshape(-1, periods, len(outputs))
@@ -72,7 +74,7 @@ def _references(gradient: np.ndarray, settings: MpcSettings) -> tuple[np.ndarray
     rate = columns[:, :, np.equal(outputs, SLIP_ACCELERATION)].sum(axis=2)
     if not settings.preview:
         ahead = PERIOD_S * np.arange(1, periods + 1)
-        along = slip @ ahead if len(settings.inputs) == 2 else 0.0
+        along = slip @ ahead if settings.along_tangent else 0.0
         slip, rate = slip.sum(1, keepdims=True), (rate.sum(1) + along)[:, None]
     return _if_any(slip), _if_any(rate)
 

@@ -4,6 +4,7 @@ enum {
     BEFORE = STATE + DDCT_MPC_STATES,
     ENGINE = BEFORE + INPUTS,
     LOAD,
+    OPEN_LOOP,
     JUMP,
     DEVIATION,
     SLIP = DEVIATION + DDCT_MPC_COMMANDS_ENGINE,
@@ -29,21 +30,24 @@ static int all_usable(const ddct_mpc_measurement *m)
     return good;
 }
 
-/* x_(k|k) = x_(k|k-1) + GAIN (y_k - x_(k|k-1)[:3]); the first measurement starts the estimate. */
+/* x_(k|k) = x_(k|k-1) + GAIN (speeds - x_(k|k-1)[:3]). The estimate starts at zero, or the first
+ * measurement starts it. */
 static void correct(ddct_mpc *s, const ddct_mpc_measurement *m)
 {
     const double speeds[MEASURED] = {m->engine_speed, m->shaft_speed, m->wheel_speed};
     double error[MEASURED];
     if (!s->started) {
+        s->open_loop_torque = larger(m->open_loop_torque, 0.0);
+        s->started = 1;
+#if STARTS_AT_REST
         for (int i = 0; i < DDCT_MPC_STATES; ++i) {
             s->state[i] = AT_REST[i] + AT_REST_PER_LOAD[i] * m->load_torque;
         }
         for (int i = 0; i < MEASURED; ++i) {
             s->state[i] = speeds[i];
         }
-        s->open_loop_torque = larger(m->open_loop_torque, 0.0);
-        s->started = 1;
         return;
+#endif
     }
     for (int i = 0; i < MEASURED; ++i) {
         error[i] = speeds[i] - s->state[i];
@@ -74,6 +78,7 @@ static void gather(const ddct_mpc *s, const ddct_mpc_measurement *m, double *kno
     known[BEFORE] = m->open_loop_torque + s->own_torque;
     known[ENGINE] = m->engine_torque;
     known[LOAD] = m->load_torque;
+    known[OPEN_LOOP] = m->open_loop_torque;
     known[JUMP] = m->open_loop_torque - s->open_loop_torque;
 #if DDCT_MPC_COMMANDS_ENGINE
     known[BEFORE + 1] = s->engine_asked;
