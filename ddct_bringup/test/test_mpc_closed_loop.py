@@ -2,14 +2,17 @@
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.studies.clutch_torque_limit import clutch_torque_limit, limit_at
 from ddct_bringup.studies.readings import readings
-from ddct_bringup.studies.scored_run import figures, scored_run
+from ddct_bringup.studies.scored_run import figures, metrics_of, scored_run
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
-from ddct_controllers.interface import ControllerContext
+from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc
+from ddct_plant.driveline_model import driveline_matrices
+from ddct_plant.printed import ACTUATOR
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings
 from ddct_plant.units import rpm_from_rad_s
 
@@ -21,14 +24,122 @@ def readings_table():
     return readings()
 
 
+class AsDrawn(Controller):
+    """MPC1-3 of Figure 4.2, in rpm, straight from the transfer functions' states."""
+
+    def __init__(self, prediction_steps, control_steps):
+        plant, actuator = driveline_matrices(THESIS_SCENARIO.driveline), ACTUATOR.to_state_space()
+        a, b = np.zeros((10, 10)), [4, 8, 9]
+        a[:4, :4], a[:4, 4:8], a[4:8, 4:8] = plant.a, plant.b[:, 1:2] @ actuator.c, actuator.a
+        a[4:8, 8], a[:4, 9] = actuator.b[:, 0], plant.b[:, 0]
+        sampled = scipy.linalg.expm(0.01 * a)
+        self.a, self.b = sampled[:8, :8], sampled[:8, 8:]
+        self.c = rpm_from_rad_s(1.0) * np.array([1.0, -1.0, 0, 0, 0, 0, 0, 0])
+        p = np.eye(8)
+        for _ in range(20000):
+            l_gain = p @ self.c / (self.c @ p @ self.c + 1.0)
+            p = self.a @ (p - np.outer(l_gain, self.c @ p)) @ self.a.T + self.b @ self.b.T
+        self.l_gain, self.steps = l_gain, prediction_steps
+        steps = np.cumsum([self.c @ each @ self.b[:, 0] for each in self._powers()])
+        moves = np.zeros((prediction_steps, control_steps))
+        for j in range(control_steps):
+            moves[j:, j] = steps[: prediction_steps - j]
+        weighed = np.vstack([0.26 * moves, 0.39 * np.eye(control_steps)])
+        self.first_move = 0.26 * np.linalg.pinv(weighed)[0, :prediction_steps]
+        self.reset()
+
+    def _powers(self):
+        power = np.eye(8)
+        for _ in range(self.steps):
+            yield power
+            power = self.a @ power
+
+    def reset(self):
+        self.x, self.own = np.zeros(8), 0.0
+
+    def _advance(self, request, measurement):
+        self.own = request - measurement.open_loop_torque
+        self.x = self.a @ self.x + self.b @ [max(request, 0.0), measurement.engine_torque]
+
+    def _correct(self, measurement):
+        slip = rpm_from_rad_s(measurement.engine_speed - measurement.shaft_speed)
+        self.x = self.x + self.l_gain * (slip - self.c @ self.x)
+
+    def hold(self, measurement):
+        self._correct(measurement)
+        self._advance(measurement.open_loop_torque, measurement)
+
+    def update(self, measurement):
+        self._correct(measurement)
+        before = measurement.open_loop_torque + self.own
+        x, errors = self.x, []
+        for _ in range(self.steps):
+            x = self.a @ x + self.b @ [before, measurement.engine_torque]
+            errors.append(rpm_from_rad_s(measurement.slip_reference[0]) - self.c @ x)
+        self._advance(before + self.first_move @ errors, measurement)
+        return Command(self.own)
+
+
+def told_all(name):
+    """Return a controller of Table 4.1 that is told what `mpc_preview` is."""
+    options = {'measured': 'speeds', 'load_known': True, 'delay_in_model': True, 'preview': True}
+    return make_thesis_mpc(name, ControllerContext(SETTINGS, options))
+
+
 @pytest.mark.parametrize('name', TABLE_4_1)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
-def test_slip_ends_at_zero_without_a_fallback(name, architecture):
-    run = thesis_run(name, architecture, 1.0)
+def test_told_all_slip_ends_at_zero_without_a_fallback(name, architecture):
+    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), told_all(name))
     assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 1.0
+    assert {dict(status).get('fallbacks', '0') for status in run.status} == {'0'}
+
+
+@pytest.mark.parametrize('name', TABLE_4_1)
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+def test_as_drawn_an_error_stays_which_section_6_1_wants_an_integrator_for(name, architecture):
+    run = thesis_run(name, architecture, 1.0)
+    assert 4.5 < rpm_from_rad_s(run.slip_speed[-1]) < 6.0
     statuses = [dict(status) for status in run.status]
     assert {status.get('fallbacks', '0') for status in statuses} == {'0'}
     assert statuses[-1]['qp_status'] == 'solved'
+
+
+def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
+    """No code of the product but plant and start: toolbox filter and normal equations here."""
+    peer = run_headless(SETTINGS, AsDrawn(prediction_steps=22, control_steps=4))
+    ours = thesis_run('mpc3', 'detailed', 1.0)
+    np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
+    figures_of_peer = metrics_of(SETTINGS, peer)
+    assert figures_of_peer.engagement_time_s == pytest.approx(0.580, abs=5e-4)
+    assert figures_of_peer.torsion_speed_std_rpm == pytest.approx(1.788, abs=5e-4)
+    assert figures_of_peer.acceleration_std_m_s2 == pytest.approx(0.2885, abs=5e-5)
+    assert figures_of_peer.slip_final_rpm == pytest.approx(5.70, abs=5e-3)
+
+
+def test_mpc_preview_is_mpc3_that_is_told_all():
+    runs = [run_headless(SETTINGS, each) for each in (told_all('mpc3'), 'mpc_preview')]
+    assert runs[0].sha256() == runs[1].sha256()
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'measured': 'speeds'},
+        {'load_known': True},
+        {'delay_in_model': True},
+        {'preview': True},
+        {'output_weight': 0.5},
+        {'final_weight': 1.0},
+        {'move_weight': 0.1},
+        {'move_weight': 0.0, 'torque_weight': 0.39},
+    ],
+)
+def test_every_option_changes_the_run_and_none_breaks_it(changes):
+    run = run_headless(SETTINGS, make_thesis_mpc('mpc3', ControllerContext(SETTINGS, changes)))
+    difference = run.torque_request - thesis_run('mpc3', 'detailed', 1.0).torque_request
+    assert np.abs(difference).max() > 0.05
+    assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 30.0
+    assert dict(run.status[-1])['fallbacks'] == '0'
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
@@ -61,7 +172,7 @@ def test_limits_of_the_request_hold_in_the_loop():
 def test_the_first_reading_is_what_the_registry_has(readings_table):
     for name in TABLE_4_1:
         row = next(row for row in readings_table.rows if row[0] == name)
-        assert row[2:] == figures(scored_run(SETTINGS, name))
+        assert row[2:5] == figures(scored_run(SETTINGS, name))
 
 
 def test_unit_and_preview_explain_the_distance_to_the_thesis(readings_table):
