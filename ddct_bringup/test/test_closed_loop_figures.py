@@ -141,7 +141,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert min(times) > 0.46
     torsion = rpm_from_rad_s(run.joint_speed[:, 3])
     assert np.abs(torsion[np.isclose(run.time_s, 0.8).argmax() :]).max() < 0.25
-    assert 'MPC4 none (for comparison MPC3 0.56)' in drawing('4.6').remark
+    assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6').remark
 
 
 def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():

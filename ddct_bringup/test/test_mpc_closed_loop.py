@@ -29,7 +29,7 @@ class AsDrawn(Controller):
 
     def __init__(self, prediction_steps, control_steps):
         plant, actuator = driveline_matrices(THESIS_SCENARIO.driveline), ACTUATOR.to_state_space()
-        a, b = np.zeros((10, 10)), [4, 8, 9]
+        a = np.zeros((10, 10))
         a[:4, :4], a[:4, 4:8], a[4:8, 4:8] = plant.a, plant.b[:, 1:2] @ actuator.c, actuator.a
         a[4:8, 8], a[:4, 9] = actuator.b[:, 0], plant.b[:, 0]
         sampled = scipy.linalg.expm(0.01 * a)
@@ -175,16 +175,24 @@ def test_the_first_reading_is_what_the_registry_has(readings_table):
         assert row[2:5] == figures(scored_run(SETTINGS, name))
 
 
-def test_unit_and_preview_explain_the_distance_to_the_thesis(readings_table):
-    """Both are unstated in Table 4.1; without preview and per rad/s all is within 25 %."""
-    rows = {row[:2]: np.array(row[2:], dtype=float) for row in readings_table.rows}
-    printed = rows['MPC3', 'as the thesis prints it']
-    ratio = {reading: row / printed for (name, reading), row in rows.items() if name == 'mpc3'}
-    assert np.abs(ratio['Q per rad/s, reference held'] - 1.0).max() < 0.25
-    assert ratio['Q per rpm, preview'][1] > 2.0
+def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(readings_table):
+    """Sources: our runs; the first row's figures are those of the simulation above."""
+    rows = {
+        row[:2]: np.array(row[2:5], dtype=float) for row in readings_table.rows if '-' not in row
+    }
+    rows['MPC3', 'print'] = np.array(readings_table.rows[-1][2:5], dtype=float)
+    ratio = {
+        label: row / rows['MPC3', 'print'] for (name, label), row in rows.items() if name == 'mpc3'
+    }
+    drawn = ratio['as Figure 4.2 draws it']
+    assert np.abs(ratio['as mpc_preview, Q per rad/s, reference held'] - 1.0).max() < 0.25
+    assert drawn[1] > 1.9
+    assert ratio['as mpc_preview'][1] > 2.0
+    assert ratio['delay in its model'][1] < 0.95 * drawn[1]
+    assert ratio['R on u'][1] < 0.85 * drawn[1]
     taken_over = ratio['C_fOL off from 0.6 s, its torque taken over']
-    assert np.allclose(taken_over, ratio['Q per rpm, preview'], atol=0.01)
-    assert ratio['C_fOL off from 0.6 s, moves from 0'][1] > ratio['Q per rpm, preview'][1]
+    assert np.allclose(taken_over, drawn, atol=0.01)
+    assert ratio['C_fOL off from 0.6 s, moves from 0'][1] > drawn[1]
     assert ratio['C_fOL on, unknown to it'][1] > 10.0
 
 

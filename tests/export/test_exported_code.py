@@ -130,7 +130,7 @@ def test_the_example_names_a_line_that_it_cannot_read(exported_mpc3, line):
     text = csv_lines(exported_mpc3.asked[:2]) + line + '\n'
     done = subprocess.run(['./example'], cwd=folder, input=text, capture_output=True, text=True)
     assert done.returncode == 1
-    assert done.stderr == 'line 3 does not hold 53 numbers with commas between them\n'
+    assert done.stderr == 'line 3 does not hold 9 numbers with commas between them\n'
 
 
 @pytest.mark.parametrize('optimisation', ['-O0', '-O2'])

@@ -61,10 +61,27 @@ def test_it_does_so_in_every_architecture(tmp_path, architecture):
     compare_loops(original, exported(original, 'mpc3', settings, tmp_path / 'c'), settings)
 
 
+@pytest.mark.parametrize(
+    'options',
+    [
+        ('measured=speeds',),
+        ('load_known=true', 'delay_in_model=true'),
+        ('output_weight=0.1', 'final_weight=1', 'move_weight=0.1'),
+        ('torque_weight=0.39', 'move_weight=0'),
+    ],
+)
+def test_what_it_knows_and_weighs_is_exported(tmp_path, options):
+    settings = run_settings(*(f'controllers.mpc3.{option}' for option in options))
+    original = make_controller('mpc3', settings)
+    run = compare_loops(original, exported(original, 'mpc3', settings, tmp_path / 'c'), settings)
+    other = run_headless(run_settings(), 'mpc3')
+    assert np.abs(run.torque_request - other.torque_request).max() > 0.5
+
+
 @pytest.mark.parametrize('name', EXPORTABLE)
 def test_binding_limits_of_torque_and_rate_give_the_same_torques(tmp_path, name):
     free = run_headless(run_settings(), name).torque_request[CONTROL_STARTS:]
-    highest = float(np.quantile(free, 0.9))
+    highest = float(np.quantile(free, 0.8))
     rate = 0.5 * 100.0 * float(np.abs(np.diff(free)).max())
     section = f'controllers.{name}'
     settings = run_settings(
@@ -96,8 +113,8 @@ def test_the_engines_authority_is_exported(tmp_path, changes):
     assert np.abs(run.engine_torque - free.engine_torque).max() > 1.0
 
 
-@pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': False}, {'limits': True}])
-def test_short_plans_no_preview_and_soft_limits_are_exported(tmp_path, changes):
+@pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': True}, {'limits': True}])
+def test_short_plans_preview_and_soft_limits_are_exported(tmp_path, changes):
     settings = run_settings()
     original = make_controller('mpc3', settings)
     chosen = original.settings

@@ -31,7 +31,7 @@ def engine_authority() -> Study:
         for controller in CONTROLLERS
         for case, authority in cases
     ]
-    rows.append(('mpc3', 'none', *_cells('mpc3', EngineAuthority())))
+    rows += [(name, 'none', *_cells(name, EngineAuthority())) for name in ('mpc3', 'mpc_preview')]
     return Study(
         'Two inputs in the thesis scenario, by what the engine may do about the demand',
         ('controller', 'authority', *HEADERS, 'peak jerk m/s^3', 'friction kJ'),

@@ -12,7 +12,15 @@ from ddct_plant.run_settings import RunSettings
 from ddct_plant.timebase import steps_in
 from ddct_plant.units import rpm_from_rad_s
 
-CONTROLLERS = ('mpc3', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear', 'hinf2', 'ls8')
+CONTROLLERS = (
+    'mpc3',
+    'mpc_preview',
+    'mpc_offset_free',
+    'mpc_torsion',
+    'mpc_wear',
+    'hinf2',
+    'ls8',
+)
 WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
 FAR_GAINS = (0.4, 0.7, 1.0, 1.3, 2.5)
 """The outer two are beyond what a clutch is taken to reach."""
