@@ -46,3 +46,16 @@ def test_other_settings_are_refused():
         nodes.hear('load', {'seed': '7'}, b'')
     with pytest.raises(DdctError, match=r'two_input true and .* -p two_input:=true'):
         nodes.hear('engine', {'two_input': 'true'}, b'')
+
+
+def test_a_node_that_says_the_same_again_is_heard_once():
+    nodes = heard(controller={'controller': 'ls8'}, driveline={'steps': '80'})
+    nodes.hear('controller', dict(run_info_pairs(SETTINGS, {'controller': 'ls8'})), b'again')
+    assert nodes.messages() == [b'driveline', b'controller']
+
+
+def test_a_node_name_with_two_different_run_info_is_refused():
+    nodes = heard(controller={'controller': 'ls8'}, driveline={'steps': '80'})
+    with pytest.raises(DdctError, match='node controller came twice, with controller ls8 and pi'):
+        nodes.hear('controller', dict(run_info_pairs(SETTINGS, {'controller': 'pi'})), b'pi')
+    assert nodes.controller == 'ls8'

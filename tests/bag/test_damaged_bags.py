@@ -165,3 +165,28 @@ def test_a_reply_that_never_came_is_an_error_in_real_time_too(bags, trajectory):
     )
     with pytest.raises(DdctError, match='no message on /clutch/torque'):
         read_bag(bag)
+
+
+def _with_second_run_info(old, new):
+    """Return an edit that says what node load says once more, with `old` replaced by `new`."""
+
+    def edit(messages):
+        at = next(i for i, (_, _, data) in enumerate(messages) if b'load' in data)
+        topic, stamp, data = messages[at]
+        again = (topic, stamp, data.replace(old, new))
+        return [*messages[: at + 1], again, *messages[at + 1 :]]
+
+    return edit
+
+
+def test_two_different_run_info_of_one_node_are_refused_by_name(bags, trajectory):
+    bag = bags.rewrite(bags.write(trajectory), 'two', _with_second_run_info(b'1.0', b'2.0'))
+    with pytest.raises(
+        DdctError, match='run_info of node load came twice, with version 1.0 and 2.0'
+    ):
+        read_bag(bag)
+
+
+def test_the_same_run_info_twice_is_no_error(bags, trajectory):
+    bag = bags.rewrite(bags.write(trajectory), 'twice', _with_second_run_info(b'1.0', b'1.0'))
+    assert read_bag(bag).run_info['load'] == {'version': '1.0'}

@@ -1,5 +1,6 @@
 """One run, three layouts: separate processes, a single process and headless leave one bag."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -48,3 +49,10 @@ def test_the_hash_tells_one_last_bit_apart() -> None:
     assert first.sha256() == second.sha256()
     second.clutch_torque[50, 5] *= 1.0 + 2.0**-52
     assert first.sha256() != second.sha256()
+
+
+def test_two_runs_in_one_process_leave_its_garbage_collector_as_it_was(tmp_path: Path) -> None:
+    before = gc.get_threshold(), gc.get_freeze_count()
+    for number in range(2):
+        record(plan(layout='single-process'), tmp_path / str(number))
+        assert (gc.get_threshold(), gc.get_freeze_count()) == before

@@ -12,6 +12,7 @@ from mcap_ros2.decoder import DecoderFactory
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_info_of_nodes import RunInfoOfNodes, note_run_info
 from ddct_bringup.bag.signals import ENGINE_REQUEST, SIGNALS, Signal
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.topics import TOPICS, resolved_name
@@ -30,7 +31,7 @@ class Recording:
     trajectory: Trajectory
     facts: RunFacts
     custom_data: dict[str, str]
-    run_info: dict[str, dict[str, str]]
+    run_info: RunInfoOfNodes
     """Per node name its parameters and version."""
     counts: dict[str, int]
     """Messages per resolved topic name."""
@@ -44,9 +45,9 @@ def read_bag(path: Path) -> Recording:
     """
     Read a bag folder or its .mcap file.
 
-    Raise DdctError for a missing, unfinished, damaged or foreign bag, and for a message that is
-    missing, doubled or cannot be decoded. A run that ended early, or that holds non-finite values,
-    is no error here.
+    Raise DdctError for a missing, unfinished, damaged or foreign bag, for a message that is
+    missing, doubled or cannot be decoded, and for a node that says two things on `run_info`. A run
+    that ended early, or that holds non-finite values, is no error here.
     """
     records = read_records(mcap_of(path))
     try:
@@ -71,13 +72,12 @@ def recording_of(records: BagRecords) -> Recording:
             missed[signal.topic] = held
     status = columns.pop('status')
     arrays = {name: _array(name, column) for name, column in columns.items()}
-    info = messages.get(resolved_name('run_info'), [])
     return Recording(
         path=records.path,
         trajectory=Trajectory(status=tuple(status), **arrays),
         facts=facts,
         custom_data=records.custom_data,
-        run_info={status_name_of(each): dict(status_pairs_of(each)) for _, each in info},
+        run_info=_run_info(messages.get(resolved_name('run_info'), [])),
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
         realtime=_realtime(messages.get('/diagnostics', [])),
@@ -161,6 +161,13 @@ def _rows(
         row = row if found is None else found
         rows.append(row)
     return rows, held
+
+
+def _run_info(messages: list[tuple[int, Any]]) -> RunInfoOfNodes:
+    said: RunInfoOfNodes = {}
+    for _, message in messages:
+        note_run_info(said, status_name_of(message), dict(status_pairs_of(message)))
+    return said
 
 
 def _array(name: str, column: Any) -> np.ndarray:

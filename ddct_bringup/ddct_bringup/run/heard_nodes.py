@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 
+from ddct_bringup.bag.run_info_of_nodes import RunInfoOfNodes, note_run_info
 from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_plant.errors import DdctError
 from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
@@ -16,10 +17,15 @@ class HeardNodes:
         self._settings = settings
         self._two_input = str(two_input).lower()
         self._expected = set(expected)
-        self._heard: dict[str, tuple[bytes, Mapping[str, str]]] = {}
+        self._said_by: RunInfoOfNodes = {}
+        self._messages: dict[str, bytes] = {}
 
     def hear(self, node: str, pairs: Mapping[str, str], cdr: bytes) -> None:
-        """Keep what a node says of itself; raise DdctError when it runs with other settings."""
+        """
+        Keep what a node says of itself.
+
+        Raise DdctError when it runs with other settings, or has said something else before.
+        """
         for key, ours in run_info_pairs(self._settings):
             if pairs.get(key, ours) != ours:
                 raise DdctError(
@@ -32,15 +38,16 @@ class HeardNodes:
                 f'{self._two_input}: start engine and recorder with the two_input of the '
                 'controller, as --ros-args -p two_input:=true when it commands the engine'
             )
-        self._heard[node] = (cdr, pairs)
+        note_run_info(self._said_by, node, pairs)
+        self._messages.setdefault(node, cdr)
 
     def silent(self) -> list[str]:
         """Return the names of the nodes that have not been heard yet."""
-        return sorted(self._expected - set(self._heard))
+        return sorted(self._expected - set(self._said_by))
 
     def messages(self) -> list[bytes]:
         """Return what was heard in the order in which it is recorded."""
-        return [self._heard[node][0] for node in run_info_order(self._heard)]
+        return [self._messages[node] for node in run_info_order(self._messages)]
 
     @property
     def controller(self) -> str:
@@ -58,7 +65,7 @@ class HeardNodes:
         return int(steps)
 
     def _said(self, node: str, key: str) -> str:
-        _, pairs = self._heard.get(node, (b'', {}))
+        pairs = self._said_by.get(node, {})
         if key not in pairs:
             raise DdctError(
                 f'{RUN_INFO_TOPIC} of node {node} has no {key}, which the bag needs: whoever '

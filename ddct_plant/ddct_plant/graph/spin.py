@@ -2,7 +2,8 @@
 
 import gc
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import rclpy
@@ -68,13 +69,27 @@ def spin_until(executor: Executor, over: Future) -> None:
 
     Jazzy's EventsExecutor spins without end at full load when it is called without a timeout.
     """
-    # What start-up made stays, and messages hold no cycles: looking for garbage less often
-    # interrupts the loop less often.
+    with _rare_garbage_collection():
+        while not over.done():
+            executor.spin_until_future_complete(over, SLICE_S)
+
+
+@contextmanager
+def _rare_garbage_collection() -> Iterator[None]:
+    """
+    Look for garbage less often, which interrupts the loop less often, and undo that at the end.
+
+    What start-up made stays for the whole run, and messages hold no cycles.
+    """
+    before = gc.get_threshold()
     gc.collect()
     gc.freeze()
     gc.set_threshold(_GARBAGE_THRESHOLD)
-    while not over.done():
-        executor.spin_until_future_complete(over, SLICE_S)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+        gc.unfreeze()
 
 
 def finish_node(executor: Executor, node: GraphNode) -> None:
