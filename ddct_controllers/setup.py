@@ -10,7 +10,9 @@ setup(
     name=PACKAGE,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['design/thesis/*.yaml', 'mpc/export/c/*.c', 'mpc/export/c/*.h']},
+    package_data={
+        PACKAGE: ['design/thesis/numbers/*.yaml', 'mpc/export/c/*.c', 'mpc/export/c/*.h']
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

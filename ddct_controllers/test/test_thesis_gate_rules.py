@@ -8,7 +8,7 @@ from ddct_controllers.design.thesis.gate import judge
 from ddct_controllers.design.thesis.gate_tables import computed_text, page_tables
 from ddct_controllers.design.thesis.number_file import parse_numbers
 from ddct_controllers.design.thesis.sources import compute
-from ddct_controllers.design.thesis.thesis_number import ThesisNumber, Tolerance
+from ddct_controllers.design.thesis.thesis_number import Finding, ThesisNumber, Tolerance
 from ddct_plant.errors import ParameterError
 
 REPRODUCED = ThesisNumber(
@@ -21,7 +21,9 @@ REPRODUCED = ThesisNumber(
     tolerance=Tolerance(half_units=1.0),
 )
 ERRATUM = dataclasses.replace(REPRODUCED, verdict='erratum', ours='0.61')
-GIVEN = dataclasses.replace(REPRODUCED, verdict='not_reproducible', id=None, tolerance=None)
+GIVEN = dataclasses.replace(REPRODUCED, verdict='given', id=None, tolerance=None)
+PREDICTED = dataclasses.replace(REPRODUCED, verdict='predicted')
+CALIBRATED = dataclasses.replace(REPRODUCED, verdict='calibrated')
 WORD = dataclasses.replace(REPRODUCED, printed='negative', tolerance=None)
 
 
@@ -56,15 +58,44 @@ def test_words_must_be_equal():
     assert complaint(WORD, 'positive')
 
 
-def test_prediction_is_held_to_our_value_and_not_to_the_print():
-    prediction = dataclasses.replace(ERRATUM, verdict='predicted')
-    assert complaint(prediction, 0.612) is None
-    assert complaint(prediction, 0.53)
+@pytest.mark.parametrize(('value', 'hit'), [(0.532, True), (0.54, False)])
+def test_prediction_is_a_hit_or_a_miss_and_both_hold(value, hit):
+    (row,) = judge([PREDICTED], {'zeta': value})
+    assert row.complaint is None and row.hit is hit
+    assert row.outcome == ('predicted hit' if hit else 'predicted miss')
+
+
+def test_prediction_without_a_value_does_not_hold():
+    assert complaint(PREDICTED, None)
+
+
+def test_miss_of_a_fit_holds_only_where_the_list_says_so():
+    missed = dataclasses.replace(CALIBRATED, hit='no')
+    assert 'not within' in complaint(CALIBRATED, 0.54)
+    assert complaint(missed, 0.54) is None
+    assert '0.53 is within the tolerance' in complaint(missed, 0.53)
+
+
+@pytest.mark.parametrize('holds', [True, False])
+def test_claim_in_words_holds_by_its_finding_and_shows_its_figures(holds):
+    (row,) = judge(
+        [dataclasses.replace(PREDICTED, printed='larger', tolerance=None)],
+        {'zeta': Finding(holds, '1.2 rpm')},
+    )
+    assert row.hit is holds and row.complaint is None
+    assert row.as_dict()['computed'] == computed_text(row) == '1.2 rpm'
+
+
+def test_number_without_a_tolerance_is_refused_unless_it_is_found_to_hold():
+    number = dataclasses.replace(REPRODUCED, tolerance=None)
+    assert complaint(number, 0.53) == 'a computed number needs a tolerance'
+    assert complaint(number, Finding(True, 'at least 0.5')) is None
 
 
 def test_given_number_has_no_computed_value_and_always_holds():
     (row,) = judge([GIVEN], {})
-    assert row.computed is None and row.complaint is None and row.as_dict()['tolerance'] is None
+    assert row.computed is None and row.complaint is None and row.hit is None
+    assert row.as_dict()['tolerance'] is None and row.as_dict()['group'] == '2.2, zeta'
 
 
 def test_computed_value_that_the_list_does_not_ask_for_is_refused():
@@ -77,11 +108,12 @@ def test_computed_value_that_the_list_does_not_ask_for_is_refused():
     [
         ({'verdict': 'likely'}, "unknown verdict 'likely'"),
         ({'id': None}, 'verdict reproduced needs id'),
-        ({'tolerance': None}, 'a computed number needs a tolerance'),
-        ({'printed': 'negative'}, 'a word has none'),
+        ({'printed': 'negative'}, 'a word, and what nothing computes, has no tolerance'),
+        ({'verdict': 'given', 'id': None}, 'a word, and what nothing computes, has no tolerance'),
         ({'verdict': 'not_reproducible'}, 'verdict not_reproducible has no id'),
         ({'verdict': 'erratum'}, 'give `ours` with an erratum'),
         ({'ours': '0.6'}, 'not otherwise'),
+        ({'hit': 'no'}, "`hit: 'no'` is for a calibrated number"),
         ({'reason': ' '}, 'give a reason'),
     ],
 )
@@ -97,6 +129,13 @@ def test_tolerance_is_the_widest_part():
     assert Tolerance(half_units=2.0).around('3.134e04') == pytest.approx(10.0)
 
 
+@pytest.mark.parametrize(
+    ('printed', 'half'), [('-1', 5e-4), ('0.948', 5e-5), ('-1.208', 5e-4), ('0.02714', 5e-6)]
+)
+def test_rounding_to_a_significant_digit_counts_zeros_that_the_print_drops(printed, half):
+    assert Tolerance(significant=4).around(printed) == pytest.approx(half)
+
+
 @pytest.mark.parametrize('parts', [{}, {'absolute': -1.0}])
 def test_tolerance_without_a_positive_part_is_refused(parts):
     with pytest.raises(ParameterError, match='tolerance'):
@@ -105,7 +144,7 @@ def test_tolerance_without_a_positive_part_is_refused(parts):
 
 LIST = """
 - section: '3.2'
-  verdict: 'not_reproducible'
+  verdict: 'given'
   reason: 'given'
   numbers:
   - {item: 'b', printed: '2'}
@@ -154,4 +193,5 @@ def test_page_has_every_number_in_the_table_of_its_chapter_and_errata_twice():
     tables = page_tables(rows)
     assert [cells[1] for cells in tables['chapter_2'].rows] == ['zeta', 'other']
     assert [cells[1] for cells in tables['errata'].rows] == ['other']
-    assert tables['summary'].rows[-1] == ('all', '1', '0', '0', '1', '0')
+    summary = dict(zip(tables['summary'].headers, tables['summary'].rows[-1], strict=True))
+    assert (summary['reproduced'], summary['erratum'], summary['given']) == ('1', '1', '0')

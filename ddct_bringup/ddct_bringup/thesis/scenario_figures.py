@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -18,7 +19,12 @@ from ddct_plant.elementary import ElementaryBlockPlant
 from ddct_plant.engine import Engine
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario import Scenario
-from ddct_plant.simplified import StateSpacePlant, lti_plant, printed_lti_plant
+from ddct_plant.simplified import (
+    SimplifiedPlant,
+    StateSpacePlant,
+    lti_plant,
+    printed_lti_plant,
+)
 from ddct_plant.timebase import PERIOD_S
 from ddct_plant.units import rpm_from_rad_s
 from ddct_reference.factory import make_reference
@@ -76,29 +82,49 @@ def _draw_plants(heading: str) -> Drawing:
     run = thesis_run('pi', 'detailed', 1.0)
     detailed = rpm_from_rad_s(run.slip_speed)
     axes.plot(run.time_s, detailed, color='#c4c4c4', linewidth=6, label='detailed model')
-    parameters = THESIS_SCENARIO.driveline
-    plants = {
-        'elementary blocks': ElementaryBlockPlant(parameters),
-        'state space': StateSpacePlant(parameters),
-        'LTI': lti_plant(parameters),
-        _PRINTED_PLANT: printed_lti_plant(parameters),
-    }
-    start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
-    torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
-    deviations = {}
-    for (name, plant), style in zip(plants.items(), line_styles(), strict=False):
-        slip = rpm_from_rad_s(plant.simulate(*torques, start))
-        axes.plot(run.time_s, slip, label=name, **style)
-        deviations[name] = 100.0 * np.abs(slip - detailed).max() / np.abs(detailed).max()
+    printed = {_PRINTED_PLANT: printed_lti_plant(THESIS_SCENARIO.driveline)}
+    for (name, slip), style in zip(
+        _plant_slips({**_simplified_plants(), **printed}).items(), line_styles(), strict=False
+    ):
+        axes.plot(run.time_s, rpm_from_rad_s(slip), label=name, **style)
     label_time_axis(axes, 'w_d, rpm', (0.0, run.time_s[-1]))
-    printed = deviations.pop(_PRINTED_PLANT)
-    bound = 10.0 ** math.ceil(math.log10(max(deviations.values())))
+    rounding = 100.0 * _deviations(printed)[_PRINTED_PLANT]
     return Drawing(
         figure,
         'The thesis finds all models equal. Here the three simplified ones are within '
-        f'{bound:g} % of the peak; the rounding of the printed coefficients makes '
-        f'{printed:.1f} %. The run is that of the PI.',
+        f'{deviation_bound_percent():g} % of the peak; the rounding of the printed coefficients makes '
+        f'{rounding:.1f} %. The run is that of the PI.',
     )
+
+
+def deviation_bound_percent() -> float:
+    """Return the power of ten within which w_d of the simplified models is, of its peak."""
+    return 10.0 ** math.ceil(math.log10(100.0 * max(_deviations(_simplified_plants()).values())))
+
+
+def _simplified_plants() -> dict[str, SimplifiedPlant]:
+    parameters = THESIS_SCENARIO.driveline
+    return {
+        'elementary blocks': ElementaryBlockPlant(parameters),
+        'state space': StateSpacePlant(parameters),
+        'LTI': lti_plant(parameters),
+    }
+
+
+def _plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
+    """Return w_d in rad/s of each model under the torques of the PI's run, (N+1,)."""
+    run = thesis_run('pi', 'detailed', 1.0)
+    start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
+    torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
+    return {name: plant.simulate(*torques, start) for name, plant in plants.items()}
+
+
+def _deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
+    detailed = thesis_run('pi', 'detailed', 1.0).slip_speed
+    return {
+        name: float(np.abs(slip - detailed).max() / np.abs(detailed).max())
+        for name, slip in _plant_slips(plants).items()
+    }
 
 
 def _draw_tanh(heading: str) -> Drawing:

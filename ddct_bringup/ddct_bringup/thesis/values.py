@@ -1,71 +1,88 @@
 """
-What we compute for the numbers of Chapter 5: Tables 5.1 and 5.2, and what they decide.
+What we compute for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims of runs.
 
 The program `design thesis` finds it through the entry-point group `ddct.thesis_numbers`, because
 the closed loop is no part of ddct_controllers.
 """
 
-import math
-
-from ddct_bringup.scores.thesis_table import THESIS_TABLE, ThesisRow, thesis_row
+from ddct_bringup.scores.thesis_table import THESIS_TABLE
+from ddct_bringup.thesis.claims import claim_values
+from ddct_bringup.thesis.orders import CLEARLY, is_extreme, text
 from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
-from ddct_bringup.thesis.words import oscillation_word, slip_word
+from ddct_bringup.thesis.scenario_figures import deviation_bound_percent
+from ddct_bringup.thesis.table_claims import table_claim_values
+from ddct_bringup.thesis.words import judge_words
+from ddct_controllers.design.thesis.thesis_number import Finding, Value
 from ddct_plant.timebase import steps_in
 
 WORN = (0.7, 1.3)
 """The two critical values of K_usura, inequality (3.2)."""
 WORN_ARCHITECTURE = 'feedforward'
 """That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
-COMPARED = ('ls8', 'hinf2', 'mpc3', 'mpc4')
-"""The controllers of Table 5.2."""
+SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+"""Table 5.2: w_d, at both values of K_usura."""
+OSCILLATION_WORDS = {
+    0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
+    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
+}
+"""Table 5.2: w_sr and A_x by K_usura."""
 NOT_REACHED = 'not reached'
 """In the place of t_a when w_d does not become 0."""
+_EQUAL_MODELS_PERCENT = 1.0
+"""Of the peak of w_d: models that are nearer are equal."""
 
 
-def closed_loop_values() -> dict[str, float | str | None]:
-    """Return the values by the ids that the thesis gate's file gives them."""
-    return {'4.2 oscillations': _oscillations(), **_table_5_1(), **_table_5_2()}
+def closed_loop_values() -> dict[str, Value | None]:
+    """Return the values by the ids that the thesis gate's files give them."""
+    bound = deviation_bound_percent()
+    models = Finding(bound <= _EQUAL_MODELS_PERCENT, f'within {bound:g} % of the peak')
+    return {
+        '1.5.1 models': models,
+        **claim_values(),
+        **_table_5_1(),
+        **table_claim_values(),
+        **_table_5_2(),
+    }
 
 
-def _oscillations() -> str:
-    """Return how MPC3's printed sigmas are beside those of the previous chapters."""
-    mpc, *previous = (_printed(name) for name in ('mpc3', 'ls8', 'hinf1'))
-    better = all(
-        mpc.torsion_speed_std_rpm < row.torsion_speed_std_rpm
-        and mpc.acceleration_std_m_s2 < row.acceleration_std_m_s2
-        for row in previous
-    )
-    return 'better' if better else 'not better'
-
-
-def _printed(controller: str) -> ThesisRow:
-    row = thesis_row(controller)
-    assert row is not None
-    return row
-
-
-def _table_5_1() -> dict[str, float | str | None]:
-    found: dict[str, float | str | None] = {}
-    times: dict[str, float] = {}
+def _table_5_1() -> dict[str, Value | None]:
+    found: dict[str, Value | None] = {}
     for row in THESIS_TABLE:
         metrics = thesis_metrics(thesis_run(row.controller, 'detailed', 1.0))
         time = metrics.engagement_time_s
         found |= {f'5.1 {row.controller} {name}': getattr(metrics, name) for name in row.figures()}
         found[f'5.1 {row.controller} engagement_time_s'] = NOT_REACHED if time is None else time
-        times[row.label] = math.inf if time is None else time
-    return found | {'5.1 slowest': max(times, key=lambda label: times[label])}
+    return found
 
 
-def _table_5_2() -> dict[str, float | str | None]:
-    found: dict[str, float | str | None] = {}
+def _table_5_2() -> dict[str, Value | None]:
+    found: dict[str, Value | None] = {}
+    ends = {}
     for wear in WORN:
-        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in COMPARED}
+        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
         slips = {name: abs(float(run.slip_speed[_end_step()])) for name, run in runs.items()}
-        found |= {f'5.2 {name} w_d {wear:g}': slip_word(name, slips) for name in runs}
-    # Where K_usura is 1.3 all words are `average`: there is nothing to compare them with.
-    wear = WORN[0]
-    worn = {name: thesis_metrics(thesis_run(name, WORN_ARCHITECTURE, wear)) for name in COMPARED}
-    return found | {f'5.2 {name} w_sr {wear:g}': oscillation_word(name, worn) for name in worn}
+        metrics = {name: thesis_metrics(run) for name, run in runs.items()}
+        twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
+        acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
+        words = {
+            'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
+            'w_sr': judge_words(
+                OSCILLATION_WORDS[wear], [('rpm', twist), ('m/s^2', acceleration)]
+            ),
+        }
+        found |= {
+            f'5.2 {name} {what} {wear:g}': finding
+            for what, findings in words.items()
+            for name, finding in findings.items()
+        }
+        ends[wear] = slips
+    return found | {'5.1 robust': _only_robust('hinf2', ends)}
+
+
+def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:
+    """Return whether one controller ends clearly nearer to zero at both values of K_usura."""
+    figures = '; '.join(f'K_usura {wear:g}: {text("rad/s", row)}' for wear, row in ends.items())
+    return Finding(is_extreme(name, min, ends.values(), CLEARLY), figures)
 
 
 def _end_step() -> int:

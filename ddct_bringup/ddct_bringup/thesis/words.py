@@ -1,47 +1,59 @@
 """
-The words of Table 5.2, as far as they can be judged.
+The words of Table 5.2, judged by one rule that was set after looking at the figures.
 
-The thesis names no limits. What is fixed here is the order that the words imply, and one limit
-for `good`.
+The thesis names no limits; what a word says is an order. A row of words holds where every figure
+grows with the word, and within one word the largest is at most twice the smallest.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from ddct_bringup.scores.metrics import Metrics
+from ddct_controllers.design.thesis.thesis_number import Finding
 
-GOOD_SLIP_RAD_S = 3.0
-"""
-Below this slip speed at the end of the score window w_d is `good`.
-
-Hinf2 ends at 0.6 rad/s at most, LS8 at 23 rad/s at least.
-"""
-BAD_SLIP = ('ls8', 'mpc3')
-"""Controllers whose w_d the thesis calls `bad`: `average` is better than both and not good."""
-LOW_AND_HIGH = ('hinf2', 'ls8')
-"""Controllers whose w_sr and A_x it calls `low` and `high`: `average` is between the two."""
+WORDS = (('good', 'low'), ('average',), ('bad', 'high'))
+"""From the best to the worst."""
+_ALIKE = 2.0
+"""Largest ratio of two figures that have the same word."""
+_NONE = math.inf
+"""For a figure that does not exist, as of a run that grows beyond all numbers."""
 
 
-def slip_word(name: str, slips: Mapping[str, float]) -> str:
-    """Return good, average or bad for `name`; `slips` are |w_d| in rad/s at the end, by name."""
-    if slips[name] < GOOD_SLIP_RAD_S:
-        return 'good'
-    return 'bad' if slips[name] >= min(slips[bad] for bad in BAD_SLIP) else 'average'
+def judge_words(
+    words: Mapping[str, str], figures: Sequence[tuple[str, Mapping[str, float | None]]]
+) -> dict[str, Finding]:
+    """
+    Return what each controller's word comes to, by its name.
+
+    `words` has the printed word by controller; `figures` a unit and the figures by controller, for
+    each quantity that the words are about. A word holds when it is right beside all the others.
+    """
+    return {
+        name: Finding(
+            all(_stands(name, other, words, row) for _, row in figures for other in words),
+            ', '.join(_text(row[name], unit) for unit, row in figures),
+        )
+        for name in words
+    }
 
 
-def oscillation_word(name: str, metrics: Mapping[str, Metrics]) -> str:
-    """Return low, average or high; where w_sr and A_x differ, both words."""
-    torsion = {other: found.torsion_speed_std_rpm for other, found in metrics.items()}
-    acceleration = {other: found.acceleration_std_m_s2 for other, found in metrics.items()}
-    words = [_level(name, torsion), _level(name, acceleration)]
-    return words[0] if words[0] == words[1] else ', '.join(words)
+def _stands(
+    name: str, other: str, words: Mapping[str, str], row: Mapping[str, float | None]
+) -> bool:
+    """Return whether the figures of two controllers are as their words say."""
+    mine, theirs = _known(row[name]), _known(row[other])
+    order = _rank(words[name]) - _rank(words[other])
+    if order == 0:
+        return max(mine, theirs) <= _ALIKE * min(mine, theirs)
+    return mine > theirs if order > 0 else mine < theirs
 
 
-def _level(name: str, sigmas: Mapping[str, float | None]) -> str:
-    """Return where a sigma is beside those of Hinf2 and LS8, of which it may be one."""
-    # One that does not exist, as of a run that grows beyond all numbers, is the highest.
-    known = {other: math.inf if sigma is None else sigma for other, sigma in sigmas.items()}
-    least, most = sorted(known[other] for other in LOW_AND_HIGH)
-    if known[name] <= least:
-        return 'low'
-    return 'high' if known[name] >= most else 'average'
+def _rank(word: str) -> int:
+    return next(rank for rank, same in enumerate(WORDS) if word in same)
+
+
+def _known(figure: float | None) -> float:
+    return _NONE if figure is None else figure
+
+
+def _text(figure: float | None, unit: str) -> str:
+    return 'no figure' if figure is None else f'{figure:.3g} {unit}'

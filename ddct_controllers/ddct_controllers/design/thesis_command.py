@@ -9,6 +9,7 @@ from ddct_controllers.design.thesis.gate import GateRow, judge
 from ddct_controllers.design.thesis.gate_tables import (
     chapter_tables,
     errata_table,
+    facts_table,
     page_tables,
     summary_table,
 )
@@ -21,8 +22,9 @@ from ddct_plant.table import print_table
 
 _DESCRIPTION = """\
 Compute every number that the thesis prints and hold it against the print:
-reproduced, calibrated (fitted to), predicted, erratum (with our value)
-or not_reproducible (with the reason)."""
+reproduced, erratum (the thesis's own numbers lead to another value), calibrated
+(fitted to), predicted (hit or miss), given (an input) or not_reproducible (a result
+whose inputs are not printed)."""
 _EPILOG = """\
 examples:
   design thesis
@@ -30,9 +32,10 @@ examples:
   design thesis --json -                  as JSON on standard output, alone
   design thesis --write-doc docs/thesis_gate.md
 
-The exit code is 0 when every claim holds: what is called reproduced or calibrated is
-within its tolerance, and every erratum differs from the print and is the value given
-as ours. Chapters 4 and 5 need the closed loop of ddct_bringup."""
+The exit code is 0 when every claim holds: what is called reproduced is within its
+tolerance, what is called calibrated is too or is listed as a miss, and every erratum
+differs from the print and is the value given as ours. A prediction may miss, but not
+be without a value. Claims about runs need the closed loop of ddct_bringup."""
 _SHOWN_COMPLAINTS = 3
 
 
@@ -69,7 +72,7 @@ def _progress(name: str) -> None:
 
 def _print(rows: Sequence[GateRow]) -> None:
     tables = chapter_tables(rows, reasons=False).values()
-    for table in (*tables, errata_table(rows), summary_table(rows)):
+    for table in (*tables, errata_table(rows), summary_table(rows), facts_table(rows)):
         print_table(table.title, table.headers, table.rows)
 
 

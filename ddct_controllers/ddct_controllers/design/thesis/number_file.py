@@ -1,4 +1,4 @@
-"""Read the gate's file, `numbers.yaml`: groups of numbers that share a section or a reason."""
+"""Read the gate's files, `numbers/`: blocks of numbers that share a section or a reason."""
 
 import importlib.resources
 from collections import Counter
@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
+from ddct_controllers.design.thesis.groups import require_one_rule
 from ddct_controllers.design.thesis.thesis_number import ThesisNumber, Tolerance
 from ddct_plant.errors import ParameterError
 from ddct_plant.yaml_text import parse_yaml
@@ -15,23 +16,26 @@ _NUMBERS = 'numbers'
 
 
 def thesis_numbers() -> tuple[ThesisNumber, ...]:
-    """Return every number of the file in the order of the sections."""
-    file = importlib.resources.files('ddct_controllers.design.thesis') / 'numbers.yaml'
-    return parse_numbers(file.read_text(encoding='utf-8'))
+    """Return every number of the files in the order of the sections."""
+    folder = importlib.resources.files('ddct_controllers.design.thesis') / 'numbers'
+    chapters = sorted(file.name for file in folder.iterdir())
+    return parse_numbers('\n'.join((folder / name).read_text('utf-8') for name in chapters))
 
 
 def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
     """
     Return the numbers that the YAML text lists, in the order of the sections.
 
-    It is a list of groups; each has a list `numbers` of entries, and any other key as default of
-    all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one.
+    It is a list of blocks; each has a list `numbers` of entries, and any other key as default of
+    all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one,
+    and for a group that does not treat its numbers alike.
     """
     numbers = tuple(_entries(parse_yaml(text)))
     names = Counter(f'{number.section}, {number.item}' for number in numbers)
     repeated = [name for name, count in names.items() if count > 1]
     if repeated:
         raise ParameterError(f'given twice: {"; ".join(repeated)}')
+    require_one_rule(numbers)
     return tuple(sorted(numbers, key=_place))
 
 
@@ -44,10 +48,10 @@ def _place(number: ThesisNumber) -> tuple[int, ...]:
         raise ParameterError(f'section {number.section!r}: begin with numbers, 3.2') from None
 
 
-def _entries(groups: list[Mapping[str, Any]]) -> Iterator[ThesisNumber]:
-    for group in groups:
-        defaults = {key: value for key, value in group.items() if key != _NUMBERS}
-        for entry in group[_NUMBERS]:
+def _entries(blocks: list[Mapping[str, Any]]) -> Iterator[ThesisNumber]:
+    for block in blocks:
+        defaults = {key: value for key, value in block.items() if key != _NUMBERS}
+        for entry in block[_NUMBERS]:
             yield _number({**defaults, **entry})
 
 

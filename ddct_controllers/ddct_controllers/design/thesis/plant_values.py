@@ -25,7 +25,7 @@ from ddct_plant.printed import (
 from ddct_plant.scenario_file import load_scenario
 
 
-def plant_values() -> dict[str, Value]:
+def plant_values() -> dict[str, Value | None]:
     """Return the values by the ids of the gate's file."""
     identification = identify_driveline()
     driveline = identification.parameters
@@ -82,7 +82,6 @@ def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> dict[str, 
     symbols = {'shaft_inertia': 'J_p', 'vehicle_inertia': 'J_v'}
     return {
         'w_r equation': f'c_sa/({symbols[min(growth, key=lambda name: growth[name])]} tau)',
-        'w_r equation growth': growth['shaft_inertia'],
     }
 
 

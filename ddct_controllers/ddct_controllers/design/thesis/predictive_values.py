@@ -8,8 +8,8 @@ _OUTPUT_WEIGHT, _RATE_WEIGHT = 1.0, 0.1
 
 
 def predictive_values() -> dict[str, Value | None]:
-    """Return the values by the ids of the gate's file: Q for one position of the slider."""
+    """Return the values by the ids of the gate's file: R for one position of the slider."""
     return {
-        f'4.1 {name} Q': _OUTPUT_WEIGHT * _RATE_WEIGHT / row.move_weight
+        f'4.1 {name} R': _OUTPUT_WEIGHT * _RATE_WEIGHT / row.output_weight
         for name, row in TABLE_4_1.items()
     }

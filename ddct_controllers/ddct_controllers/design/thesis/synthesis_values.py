@@ -2,70 +2,52 @@
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.design.h_infinity.controllers import synthesised_design
+from ddct_controllers.design.h_infinity.design import design_h_infinity
+from ddct_controllers.design.thesis.coefficients import coefficients, in_the_form_of
 from ddct_controllers.design.thesis.factors import pair, real
-from ddct_controllers.design.thesis.thesis_number import Value
+from ddct_controllers.design.thesis.printed_weights import PRINTED_WEIGHTS
+from ddct_controllers.design.thesis.raw_controller import RAW_CONTROLLER
+from ddct_controllers.design.thesis.thesis_number import Finding, Value
+from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.cascade import Factor
 from ddct_plant.lti import FactoredTransferFunction
 
-_SLOW_RAD_S, _FAST_RAD_S = 0.1, 10.0
-"""Only one real zero of Hinf1 is between: the others cancel slow poles."""
+_SAME = 0.1
+"""Relative distance within which a printed factor can be meant to cancel one of the plant."""
 
 
-def synthesis_values() -> dict[str, Value]:
-    """Return the values by the ids of the gate's file."""
-    printed, fitted = synthesised_design('hinf_thesis'), synthesised_design('hinf_fitted')
-    controller = fitted.raw
-    b, c = pair(controller.denominator[-1])
+def synthesis_values() -> dict[str, Value | None]:
+    """Return the values by the ids of the gate's file: whole controllers, no part of one."""
+    by_printed, by_fitted = design_h_infinity(PRINTED_WEIGHTS), synthesised_design('hinf_fitted')
+    hinf1 = H_INFINITY_CONTROLLERS['hinf1']
+    cleaned = coefficients('hinf1 by fitted weights', in_the_form_of(hinf1, by_fitted.cleaned))
+    del cleaned['hinf1 by fitted weights.pole 1']  # The pole at 0, which the cleaning puts there.
     return {
-        'least norm': printed.synthesis.optimum,
-        'zero with printed weights': _middle_zero(printed.raw),
-        'zero with fitted weights': _middle_zero(controller),
-        'fast pair b with fitted weights': b,
-        'fast pair c with fitted weights': c,
-        **_cancelling_factors(controller),
+        **coefficients('raw by printed weights', in_the_form_of(RAW_CONTROLLER, by_printed.raw)),
+        **coefficients('raw by fitted weights', in_the_form_of(RAW_CONTROLLER, by_fitted.raw)),
+        **cleaned,
+        **_cancelled(),
     }
 
 
-def _cancelling_factors(controller: FactoredTransferFunction) -> dict[str, Value]:
+def _cancelled() -> dict[str, Value | None]:
     """
-    Return the controller's factors that cancel what is stable in G_a P_2.
+    Return what an H-infinity controller cancels: all that is stable in G_a P_2.
 
-    Its slow pole is that of the plant's zero, and taken from there: next to the shifted pole at 0
-    a synthesis gives it with three digits only.
+    Its zeros are the plant's poles without the one at 0, its poles the plant's zeros in the left
+    half-plane.
     """
     plant = plant_in_rpm()
-    zero, _, slow_zero, locked = plant.numerator
-    actuator_slow, actuator_fast, _, _, free = plant.denominator
-    found: dict[str, Value] = {
-        'actuator zero': _nearest_real(controller.denominator, real(zero)),
-        'slow zero': real(slow_zero),
-    }
-    for name, factors, cancelled in (
-        ('actuator slow pole', controller.numerator, actuator_slow),
-        ('actuator fast pole', controller.numerator, actuator_fast),
-        ('free driveline pole', controller.numerator, free),
-        ('locked driveline zero', controller.denominator, locked),
-    ):
-        b, c = _nearest_pair(factors, pair(cancelled))
-        found |= {f'{name} b': b, f'{name} c': c}
-    return found
+    zeros = [factor for factor in plant.numerator if not _grows(factor)]
+    poles = [factor for factor in plant.denominator if factor != 0.0]
+    whole = FactoredTransferFunction(1.0, tuple(poles), tuple(zeros))
+    found: dict[str, Value | None] = dict(coefficients('cancelled', whole))
+    del found['cancelled.gain']
+    fast = pair(max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1]))
+    numerator = H_INFINITY_CONTROLLERS['hinf2'].numerator
+    has = any(isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _SAME for f in numerator)
+    return found | {'hinf2 fast pair': Finding(has, f's^2 + {fast[0]:g} s + {fast[1]:g}')}
 
 
-def _nearest_real(factors: tuple[Factor, ...], wanted: float) -> float:
-    reals = [factor for factor in factors if isinstance(factor, float)]
-    return min(reals, key=lambda a: abs(a - wanted))
-
-
-def _nearest_pair(factors: tuple[Factor, ...], wanted: tuple[float, float]) -> tuple[float, float]:
-    pairs = [factor for factor in factors if isinstance(factor, tuple)]
-    return min(pairs, key=lambda one: abs(one[1] - wanted[1]))
-
-
-def _middle_zero(controller: FactoredTransferFunction) -> float:
-    """Return a of the zero (s + a) that shapes the loop below the crossover."""
-    (found,) = (
-        factor
-        for factor in controller.numerator
-        if isinstance(factor, float) and _SLOW_RAD_S < factor < _FAST_RAD_S
-    )
-    return found
+def _grows(factor: Factor) -> bool:
+    return (factor[0] if isinstance(factor, tuple) else real(factor)) < 0.0

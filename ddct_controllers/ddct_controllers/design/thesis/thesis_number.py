@@ -1,29 +1,40 @@
 """One number or word that the thesis prints, and what is claimed about it."""
 
+import math
 from dataclasses import dataclass
 
 from ddct_plant.checks import require_choice, require_number
 from ddct_plant.errors import ParameterError
 from ddct_plant.printed import PrintedNumber
 
-Value = float | str
-"""What is computed for a printed number, or the word for a printed word."""
+
+@dataclass(frozen=True)
+class Finding:
+    """Whether a claim in words holds, and the figures that show it."""
+
+    holds: bool
+    figures: str
+
+
+Value = float | str | Finding
+"""What is computed for a printed number, or the word or finding for a printed word."""
 
 REPRODUCED = 'reproduced'
 CALIBRATED = 'calibrated'
 PREDICTED = 'predicted'
 ERRATUM = 'erratum'
+GIVEN = 'given'
 NOT_REPRODUCIBLE = 'not_reproducible'
-VERDICTS = (REPRODUCED, CALIBRATED, PREDICTED, ERRATUM, NOT_REPRODUCIBLE)
+VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED, GIVEN, NOT_REPRODUCIBLE)
 """
 What can be said of a printed number.
 
-`reproduced`: computed here from other numbers. `calibrated`: parameters were fitted to it.
-`predicted`: it comes from what was fitted to other numbers. `erratum`: the computation confirms
-another value. `not_reproducible`: nothing computes it, it is an input of the thesis or has no
-defined scale.
+`reproduced`: the thesis's other numbers lead to it. `erratum`: they lead to another value.
+`calibrated`: parameters of ours were fitted to its group. `predicted`: a model that was fitted to
+other numbers, or a rule of ours, leads to it or misses it. `given`: an input of the thesis.
+`not_reproducible`: a result of the thesis whose inputs it does not print.
 """
-COMPUTED_VERDICTS = (REPRODUCED, CALIBRATED, PREDICTED, ERRATUM)
+COMPUTED_VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED)
 
 
 @dataclass(frozen=True)
@@ -32,6 +43,8 @@ class Tolerance:
 
     half_units: float = 0.0
     """In halves of a unit of the last printed digit; 1 is the rounding of the print."""
+    significant: float = 0.0
+    """Half a unit of this significant digit: rounding where the print drops trailing zeros."""
     relative: float = 0.0
     """As a fraction of the printed number."""
     absolute: float = 0.0
@@ -39,17 +52,22 @@ class Tolerance:
 
     def __post_init__(self) -> None:
         """Check the parts; raise ParameterError when none is given or one is negative."""
-        for name in ('half_units', 'relative', 'absolute'):
-            require_number(f'tolerance: {name}', getattr(self, name), at_least=0.0)
-        if self.half_units == self.relative == self.absolute == 0.0:
-            raise ParameterError('tolerance: give half_units, relative or absolute, above 0')
+        parts = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        for name, part in parts.items():
+            require_number(f'tolerance: {name}', part, at_least=0.0)
+        if not any(parts.values()):
+            raise ParameterError(f'tolerance: give {", ".join(parts)}, above 0')
 
     def around(self, printed: str) -> float:
         """Return the tolerance of a printed number in its own unit."""
         number = PrintedNumber('', printed)
-        return max(
+        widest = max(
             self.half_units * number.half_unit, self.relative * abs(number.value), self.absolute
         )
+        if not self.significant or not number.value:
+            return widest
+        exponent = math.floor(math.log10(abs(number.value))) + 1 - self.significant
+        return max(widest, 0.5 * 10.0**exponent)
 
 
 @dataclass(frozen=True)
@@ -68,9 +86,13 @@ class ThesisNumber:
     id: str | None = None
     """Name under which a source computes it; None when nothing does."""
     tolerance: Tolerance | None = None
-    """None for words, which must be equal."""
+    """None for words, which must be equal, and for what is computed as a Finding."""
+    group: str | None = None
+    """What one computation, input or cause leads to together; counted as one fact."""
     ours: str | None = None
-    """Our value of an erratum or a prediction, to the digits that must come out; or a word."""
+    """Our value of an erratum, to the digits that must come out; or a word."""
+    hit: str | None = None
+    """'no' of a calibrated number that the fit misses."""
 
     def __post_init__(self) -> None:
         """Check that the claim is complete; raise ParameterError that names what is not."""
@@ -90,6 +112,11 @@ class ThesisNumber:
         """The tolerance in the number's unit, None without one."""
         return self.tolerance.around(self.printed) if self.tolerance else None
 
+    @property
+    def fact(self) -> str:
+        """The group, or the number itself where it has none: what is counted once."""
+        return self.group or f'{self.section}, {self.item}'
+
     def _require_complete(self) -> None:
         if not self.reason.strip():
             raise ParameterError('give a reason')
@@ -97,10 +124,12 @@ class ThesisNumber:
         if computed != (self.id is not None):
             need = 'needs' if computed else 'has no'
             raise ParameterError(f'verdict {self.verdict} {need} id')
-        if computed and self.is_number != (self.tolerance is not None):
-            raise ParameterError('a computed number needs a tolerance, a word has none')
-        if (self.verdict in (ERRATUM, PREDICTED)) != (self.ours is not None):
-            raise ParameterError('give `ours` with an erratum or a prediction, not otherwise')
+        if self.tolerance is not None and not (computed and self.is_number):
+            raise ParameterError('a word, and what nothing computes, has no tolerance')
+        if (self.verdict == ERRATUM) != (self.ours is not None):
+            raise ParameterError('give `ours` with an erratum, not otherwise')
+        if self.hit is not None and (self.hit, self.verdict) != ('no', CALIBRATED):
+            raise ParameterError("`hit: 'no'` is for a calibrated number that the fit misses")
 
 
 def is_number(text: str) -> bool:
