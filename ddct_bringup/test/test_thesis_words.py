@@ -1,46 +1,90 @@
-"""The words of Table 5.2, by the order that they imply."""
+"""The words of Table 5.2 and the orders behind claims in words."""
 
-from types import SimpleNamespace
+import math
 
 import pytest
 
-from ddct_bringup.thesis.words import oscillation_word, slip_word
+from ddct_bringup.thesis.orders import below, each_lower, is_extreme, sigma_text, text
+from ddct_bringup.thesis.words import judge_words
+
+WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+SLIPS = {'ls8': 30.0, 'hinf2': 1.0, 'mpc3': 20.0, 'mpc4': 10.0}
+
+
+def judged(**changed: float | None) -> dict[str, bool]:
+    findings = judge_words(WORDS, [('rad/s', {**SLIPS, **changed})])
+    return {name: finding.holds for name, finding in findings.items()}
+
+
+def test_words_hold_where_the_figures_grow_with_them():
+    assert all(judged().values())
+
+
+def test_word_that_stands_on_the_wrong_side_of_another_misses_and_so_does_the_other():
+    assert judged(mpc4=25.0) == {'ls8': True, 'hinf2': True, 'mpc3': False, 'mpc4': False}
+
+
+@pytest.mark.parametrize(('slip', 'holds'), [(40.0, True), (40.1, False)])
+def test_figures_of_one_word_are_at_most_twice_one_another(slip, holds):
+    assert judged(ls8=slip)['mpc3'] is holds
+
+
+def test_one_word_for_four_spreads_that_differ_more_is_a_miss():
+    spreads = {'ls8': 1.0, 'hinf2': 4.6, 'mpc3': 1.2, 'mpc4': 1.5}
+    findings = judge_words(dict.fromkeys(spreads, 'average'), [('rpm', spreads)])
+    assert not any(finding.holds for finding in findings.values())
+
+
+def test_word_about_two_quantities_must_be_right_in_both_and_shows_both():
+    rows = [('rpm', SLIPS), ('m/s^2', {**SLIPS, 'mpc4': 50.0})]
+    finding = judge_words(WORDS, rows)['mpc4']
+    assert not finding.holds and finding.figures == '10 rpm, 50 m/s^2'
+
+
+def test_figure_that_does_not_exist_is_the_worst():
+    assert not judged(mpc4=None)['mpc4']
+    figures = judge_words(WORDS, [('rad/s', {**SLIPS, 'mpc4': None})])['mpc4'].figures
+    assert figures == 'no figure'
+
+
+ROW = {'pi': 4.0, 'ls8': 2.0, 'mpc4': 0.9}
 
 
 @pytest.mark.parametrize(
-    ('name', 'word'),
-    [('hinf2', 'good'), ('ls8', 'bad'), ('mpc3', 'bad'), ('mpc4', 'average')],
-)
-def test_average_slip_is_between_good_and_the_better_of_the_bad(name, word):
-    slips = {'hinf2': 2.9, 'ls8': 30.0, 'mpc3': 20.0, 'mpc4': 19.9}
-    assert slip_word(name, slips) == word
-
-
-@pytest.mark.parametrize(('slip', 'word'), [(3.0, 'average'), (20.0, 'bad'), (2.99, 'good')])
-def test_slip_on_a_limit_belongs_to_the_worse_word(slip, word):
-    assert slip_word('mpc4', {'ls8': 30.0, 'mpc3': 20.0, 'mpc4': slip}) == word
-
-
-def oscillation(torsion, acceleration):
-    sigmas = {'ls8': (1.0, 0.4), 'hinf2': (5.0, 0.2), 'mpc3': (torsion, acceleration)}
-    metrics = {
-        name: SimpleNamespace(torsion_speed_std_rpm=first, acceleration_std_m_s2=second)
-        for name, (first, second) in sigmas.items()
-    }
-    return oscillation_word('mpc3', metrics)
-
-
-@pytest.mark.parametrize(
-    ('torsion', 'acceleration', 'word'),
+    ('name', 'extreme', 'factor', 'holds'),
     [
-        (2.0, 0.3, 'average'),
-        (0.9, 0.1, 'low'),
-        (5.1, 0.5, 'high'),
-        (2.0, 0.1, 'average, low'),
-        (None, 0.3, 'high, average'),
+        ('mpc4', min, 1.0, True),
+        ('mpc4', min, 2.0, True),
+        ('mpc4', min, 2.3, False),
+        ('ls8', min, 1.0, False),
+        ('pi', max, 1.9, True),
+        ('pi', max, 2.0, False),
+        ('ls8', max, 1.0, False),
     ],
 )
-def test_average_oscillation_is_between_ls8_and_hinf2_whichever_is_larger(
-    torsion, acceleration, word
-):
-    assert oscillation(torsion, acceleration) == word
+def test_extreme_is_beyond_the_next_by_the_factor(name, extreme, factor, holds):
+    assert is_extreme(name, extreme, [ROW], factor) is holds
+
+
+def test_extreme_must_be_one_in_every_row_and_alone():
+    assert not is_extreme('mpc4', min, [ROW, {**ROW, 'mpc4': 3.0}])
+    assert not is_extreme('pi', max, [{**ROW, 'ls8': 4.0}])
+
+
+def test_controller_without_a_figure_is_not_lower():
+    row = {**ROW, 'mpc4': math.inf}
+    assert below('ls8', 'mpc4', [row]) and not below('mpc4', 'ls8', [row])
+    assert text('s', row) == 'pi 4, ls8 2, mpc4 - s'
+
+
+def test_each_lower_counts_those_that_are_lower_in_every_row():
+    lower = {'pi': 3.0, 'ls8': 1.0, 'mpc4': 0.5}
+    assert each_lower([lower], [ROW]).holds
+    mixed = each_lower([lower, ROW], [ROW, ROW])
+    assert not mixed.holds and mixed.figures == '0 of 3 lower in both'
+    assert each_lower([lower, ROW], [ROW, ROW], wanted=False).holds
+    assert not each_lower([lower], [ROW], wanted=False).holds
+
+
+def test_standard_deviations_are_shown_with_their_units():
+    assert sigma_text((ROW, ROW), ('pi',)) == 'w_sr pi 4 rpm; A_x pi 4 m/s^2'

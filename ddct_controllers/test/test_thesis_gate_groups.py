@@ -108,9 +108,7 @@ def values() -> dict[str, object]:
 )
 def test_design_yields_every_coefficient_of_its_controller(values, name, printed, put_in):
     found = [
-        key
-        for key in values
-        if key.startswith((f'{name}.gain', f'{name}.zero ', f'{name}.pole '))
+        key for key in values if key.startswith((f'{name}.gain', f'{name}.zero ', f'{name}.pole '))
     ]
     assert len(found) == orders(printed) - put_in
 

@@ -92,8 +92,8 @@ def _draw_plants(heading: str) -> Drawing:
     return Drawing(
         figure,
         'The thesis finds all models equal. Here the three simplified ones are within '
-        f'{deviation_bound_percent():g} % of the peak; the rounding of the printed coefficients makes '
-        f'{rounding:.1f} %. The run is that of the PI.',
+        f'{deviation_bound_percent():g} % of the peak; the rounding of the printed coefficients '
+        f'makes {rounding:.1f} %. The run is that of the PI.',
     )
 
 
