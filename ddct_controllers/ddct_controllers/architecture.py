@@ -1,8 +1,8 @@
 """Control architectures of the thesis: how open loop and feedback make one torque request."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
-from typing import Protocol
 
 import numpy as np
 
@@ -11,9 +11,8 @@ from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.checks import require_finite
 from ddct_plant.errors import DdctError
 from ddct_plant.load import RoadLoad
-from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.run_settings import RunSettings
-from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.static_torque import StaticTorque
 
 _FEEDBACK_OFF = Command(0.0)
 
@@ -30,38 +29,15 @@ class TorqueRequest:
     """C_m asked of the engine in N m; None when the controller does not command it."""
 
 
-class OpenLoop(Protocol):
-    """The part of the request that does not depend on the slip."""
-
-    def update(self, engine_torque: float, load_torque: float) -> float:
-        """Return the torque in N m for C_m and C_load in N m of the coming period."""
-
-
-class NoOpenLoop:
-    """The base architecture has feedback alone (Section 1.6.1)."""
-
-    def update(self, engine_torque: float, load_torque: float) -> float:
-        """Return 0."""
-        return 0.0
-
-
-class StaticController:
-    """C_fOL, always on in the detailed architecture (Section 1.4.5.1)."""
-
-    def __init__(self, driveline: DrivelineParameters) -> None:
-        """Take the driveline whose slip it keeps constant."""
-        self._driveline = driveline
-
-    def update(self, engine_torque: float, load_torque: float) -> float:
-        """Return the torque that keeps the slip constant."""
-        return constant_slip_torque(self._driveline, engine_torque, load_torque)
+OpenLoop = Callable[[Measurement, float], float]
+"""Returns the torque in N m that does not depend on the slip, for C_load in N m."""
 
 
 class Architecture:
     """
     C_f = open loop + feedback; feedback is held off until its first step.
 
-    The open loop takes C_m, and C_load computed from V_x and the slope.
+    The open loop takes the measurement, and C_load computed from V_x and the slope.
     """
 
     def __init__(
@@ -81,7 +57,7 @@ class Architecture:
     def update(self, measurement: Measurement) -> TorqueRequest:
         """Return the request for the period that starts at the measurement's step."""
         load_torque = self._load.torque(measurement.vehicle_speed)
-        open_loop = self._open_loop.update(measurement.engine_torque, load_torque)
+        open_loop = self._open_loop(measurement, load_torque)
         measurement = measurement.within(load_torque, open_loop)
         try:
             if measurement.step >= self._start_step:
@@ -174,7 +150,12 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
 
 
 def _make_open_loop(settings: RunSettings) -> OpenLoop:
-    driveline = settings.scenario.driveline
+    """Return C_fOL (Section 1.4.5.1), the feedforward (1.6.2), or nothing (1.6.1)."""
+    scenario = settings.scenario
     if settings.detailed:
-        return StaticController(driveline)
-    return NoOpenLoop() if settings.architecture == 'base' else Feedforward(driveline)
+        static = StaticTorque(scenario.driveline, scenario.equilibrium)
+        return lambda m, load: static.torque(m.engine_torque, load, m.engine_speed, m.shaft_speed)
+    if settings.architecture == 'base':
+        return lambda m, load: 0.0
+    feedforward = Feedforward(scenario.driveline)
+    return lambda m, load: feedforward.update(m.engine_torque, load)

@@ -6,7 +6,7 @@ from ddct_plant.clutch import LinearClutch
 from ddct_plant.engine import Engine
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import RunSettings
-from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.static_torque import StaticTorque
 
 
 @dataclass(frozen=True)
@@ -14,8 +14,9 @@ class InitialState:
     """
     Speeds, driveshaft twist and the torques that hold before t_0.
 
-    The wheel turns with the primary shaft (w_sr = 0) and theta_sr balances the load. The actuator
-    is at rest on `torque_request`, which the clutch transmits times the wear gain.
+    The wheel turns with the primary shaft (w_sr = 0); theta_sr balances the load, and with the
+    equilibrium `full` what accelerates the vehicle too. The actuator is at rest on
+    `torque_request`, which the clutch transmits times the wear gain.
     """
 
     engine_speed: float
@@ -45,15 +46,20 @@ def initial_state(settings: RunSettings) -> InitialState:
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
     engine_torque = Engine(scenario.engine).torque(0)
-    static_torque = constant_slip_torque(driveline, engine_torque, load_torque)
+    static = StaticTorque(driveline, scenario.equilibrium)
+    shaft_speed = scenario.initial.shaft_speed_rad_s
+    static_torque = static.torque(
+        engine_torque, load_torque, scenario.initial.engine_speed_rad_s, shaft_speed
+    )
     torque_request = max(static_torque, 0.0) if settings.detailed else 0.0
+    clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     return InitialState(
         engine_speed=scenario.initial.engine_speed_rad_s,
-        shaft_speed=scenario.initial.shaft_speed_rad_s,
+        shaft_speed=shaft_speed,
         wheel_speed=wheel_speed,
-        twist=load_torque / driveline.halfshaft_stiffness,
+        twist=static.twist(clutch_torque, load_torque, shaft_speed),
         engine_torque=engine_torque,
         load_torque=load_torque,
         torque_request=torque_request,
-        clutch_torque=LinearClutch(settings.wear_gain).transmit([torque_request])[0],
+        clutch_torque=clutch_torque,
     )

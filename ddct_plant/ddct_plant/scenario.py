@@ -11,6 +11,7 @@ from ddct_plant.errors import ParameterError
 from ddct_plant.load import LoadParameters
 from ddct_plant.names import require_name
 from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.static_torque import EQUILIBRIA
 from ddct_plant.timebase import steps_in
 from ddct_plant.vehicle import VehicleParameters
 
@@ -72,6 +73,8 @@ class Scenario:
     engine_speed_reference: EngineSpeedReference = EngineSpeedReference()
     pedal_position: float = 0.5
     """x_p, the accelerator pedal from 0 to 1 (Section 1.3); only `pedal_mpc` reads it."""
+    equilibrium: str = 'thesis'
+    """One of EQUILIBRIA: whether C_fOL and the start count damping and acceleration too."""
     initial: InitialSpeeds = InitialSpeeds()
     reference: ReferenceParameters = ReferenceParameters()
     load: LoadParameters = LoadParameters()
@@ -81,8 +84,9 @@ class Scenario:
     """Gains and options by controller name, checked by the controller that takes them."""
 
     def __post_init__(self) -> None:
-        """Check name, times and pedal; raise ParameterError that names a bad one."""
+        """Check name, equilibrium, times and pedal; raise ParameterError that names a bad one."""
         require_name('name', self.name)
+        require_choice('equilibrium', self.equilibrium, EQUILIBRIA)
         require_number('duration_s', self.duration_s, above=0.0, at_most=3600.0)
         require_number('control_start_s', self.control_start_s, at_least=0.0, at_most=3600.0)
         require_number('pedal_position', self.pedal_position, at_least=0.0, at_most=1.0)

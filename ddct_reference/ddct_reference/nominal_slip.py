@@ -8,7 +8,7 @@ from ddct_plant.initial import initial_state
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario import Scenario
-from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.static_torque import StaticTorque
 
 
 def nominal_slip(scenario: Scenario) -> list[float]:
@@ -21,12 +21,14 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     initial = initial_state(RunSettings(scenario, architecture='detailed'))
     driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
     engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
     actuator, clutch = Actuator(initial.torque_request), LinearClutch()
     now = driveline.outputs()
     slips = [now.slip_speed]
     for step in range(scenario.control_start_step):
         engine_torque, load_torque = engine.torque(step), load.torque(now.vehicle_speed)
-        request = constant_slip_torque(scenario.driveline, engine_torque, load_torque)
+        engine_speed, shaft_speed = now.speeds[:2]
+        request = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
         transmitted = clutch.transmit(actuator.update(request))
         driveline.step(engine_torque, load_torque, transmitted)
         now = driveline.outputs()

@@ -1,0 +1,23 @@
+"""The slip under C_fOL alone: constant for constant torques with the full equilibrium."""
+
+import pytest
+
+from ddct_plant.scenario_file import load_scenario
+from ddct_reference.nominal_slip import nominal_slip
+
+CONSTANT = (
+    *('engine.time_s=[0.0]', 'engine.torque_n_m=[150.0]', 'control_start_s=1.0'),
+    'initial.engine_speed_rad_s=200.0',
+)
+
+
+def largest_change(*overrides: str) -> float:
+    slips = nominal_slip(load_scenario('thesis', [*CONSTANT, *overrides]))
+    return max(abs(slip - slips[0]) for slip in slips)
+
+
+@pytest.mark.parametrize('engine_damping', [0.0, 0.05])
+def test_full_equilibrium_holds_the_slip_of_40_rad_s_for_a_second(engine_damping):
+    damping = f'driveline.engine_damping={engine_damping}'
+    assert largest_change(damping, 'equilibrium=full') < 0.6
+    assert largest_change(damping) > 40.0
