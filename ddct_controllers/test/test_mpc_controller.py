@@ -8,6 +8,7 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.observer import NoiseLevels, Observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import InputTerms
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc, thesis_settings
@@ -187,6 +188,14 @@ def test_a_plan_that_is_followed_keeps_the_rate_before_the_level():
     assert requests == pytest.approx(expected)
 
 
+def test_a_reset_controller_has_no_plan_to_follow():
+    mpc = controller()
+    answers(mpc)
+    mpc.reset()
+    mpc._solver = _Silent()
+    assert mpc.update(measurement(60)).clutch_torque == 0.0
+
+
 class _Silent:
     """A solver that never gets there."""
 
@@ -197,6 +206,85 @@ class _Silent:
 
     def reset(self):
         pass
+
+
+def test_plan_is_followed_move_by_move_and_then_held():
+    free = replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),))
+    mpc = controller(free)
+    before = answers(mpc, steps=2)[-1].clutch_torque
+    planned = mpc._plan.copy()
+    assert np.abs(np.diff(planned)).min() > 0.1, 'no two moves are the same'
+    mpc._solver = _Silent()
+    given = [mpc.update(measurement(62 + i, slip=58.0)).clutch_torque for i in range(6)]
+    moves = [*planned[1:], 0.0, 0.0, 0.0]
+    assert np.diff([before, *given]) == pytest.approx(moves, abs=1e-9)
+
+
+class _Listening(Observer):
+    """Keeps what it is told of the inputs."""
+
+    def __init__(self):
+        stiffness = RUN.scenario.driveline.halfshaft_stiffness
+        super().__init__(MODEL, NoiseLevels(), stiffness, initial_request=0.0)
+        self.heard = []
+
+    def predict(self, inputs):
+        self.heard.append(inputs)
+        super().predict(inputs)
+
+
+@pytest.mark.parametrize('held', [True, False])
+def test_the_observer_is_told_the_request_as_the_actuator_cuts_it_off(held):
+    """Below 0 the actuator gives nothing, whether feedback is on or held off."""
+    free = replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),))
+    observer = _Listening()
+    mpc = PredictiveController(MODEL, observer, free)
+    now = measurement(60, open_loop=-80.0, reference=[400.0] * 23)
+    if held:
+        mpc.hold(now)
+    else:
+        assert now.open_loop_torque + mpc.update(now).clutch_torque < -1.0
+    assert observer.heard == [(0.0, 300.0, 60.0)]
+    mpc.hold(measurement(61, open_loop=20.0))
+    assert observer.heard[-1] == (20.0, 300.0, 60.0)
+
+
+def test_a_level_that_gives_way_leaves_room_for_rounding():
+    """More than the rounding of a torque, less than anybody could measure."""
+    limits = InputTerms(0.39, lowest=100.0, highest=230.0, rate_n_m_s=300.0)
+    mpc = controller(replace(MPC3, inputs=(limits,)))
+    reach = 3.0 * np.arange(1, 5)
+    for last in np.random.default_rng(4).uniform(234.0, 1e4, 50):
+        room = mpc._limits.bounds(last)[1][:4] - np.maximum(last - reach, 230.0)
+        given_way = last - reach > 230.0
+        assert np.all(room[given_way] > 100.0 * np.spacing(last))
+        assert np.all(room < 1e-5 * (last / 1e4 + 0.01))
+    for last in np.random.default_rng(5).uniform(-1e4, 96.0, 50):
+        room = np.minimum(last + reach, 100.0) - mpc._limits.bounds(last)[0][:4]
+        given_way = last + reach < 100.0
+        assert np.all(room[given_way] > 100.0 * np.spacing(abs(last)))
+
+
+def test_soft_limits_are_divided_as_the_outputs_are():
+    """By K_usura; the hard ones are those of the request, which is not divided."""
+    mpc = make_thesis_mpc('mpc3', ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
+    lower, upper = mpc._limits.bounds(250.0, divisor=0.8)
+    soft = mpc.program.structure.soft_rows
+    assert lower[soft] == pytest.approx([rad_s_from_rpm(750.0)] * 22)
+    hard = np.setdiff1d(np.arange(len(lower)), soft)
+    assert np.array_equal(lower[hard], mpc.program.lower[hard])
+    assert np.array_equal(upper, mpc.program.upper)
+
+
+def test_every_request_that_the_rate_can_just_bring_within_its_level_is_found():
+    """From one step above the limit on, where rounding decides whether the bounds cross."""
+    limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
+    for last in 233.0 + np.concatenate([[0.0], np.random.default_rng(6).uniform(0.0, 90.0, 60)]):
+        mpc = controller(replace(MPC3, inputs=(limits,)))
+        mpc.hold(measurement(59, open_loop=last))
+        answer = mpc.update(measurement(60, open_loop=last, reference=[0.0] * 23))
+        assert dict(answer.status)['qp_status'] == 'solved', last
+        assert answer.clutch_torque == pytest.approx(-3.0, abs=1e-5)
 
 
 def test_an_iteration_limit_that_is_too_low_falls_back_for_real():

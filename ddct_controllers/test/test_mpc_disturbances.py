@@ -107,6 +107,27 @@ def test_every_disturbance_needs_a_drift():
         kalman_gain(offset_free_model(DRIVELINE), NoiseLevels(drift=(1.0,)))
 
 
+def test_the_gain_is_what_the_covariance_recursion_settles_on():
+    """Joseph's form for 5000 periods, noise by its levels: no Riccati solver."""
+    model, noise = offset_free_model(DRIVELINE), offset_free_noise()
+    columns = [
+        noise.engine_torque_n_m * model.b[:, ENGINE_TORQUE],
+        noise.load_torque_n_m * model.b[:, LOAD_TORQUE],
+        noise.clutch_torque_n_m * model.clutch,
+        13.0 * np.eye(STATES + 2)[STATES],
+        47.0 * np.eye(STATES + 2)[STATES + 1],
+    ]
+    process = sum(np.outer(column, column) for column in columns)
+    measured, error = np.eye(3, STATES + 2), noise.speed_rad_s**2 * np.eye(3)
+    covariance = np.eye(STATES + 2)
+    for _ in range(5000):
+        gain = np.linalg.solve(measured @ covariance @ measured.T + error, measured @ covariance).T
+        kept = np.eye(STATES + 2) - gain @ measured
+        covariance = kept @ covariance @ kept.T + gain @ error @ gain.T
+        covariance = model.a @ covariance @ model.a.T + process
+    assert kalman_gain(model, noise) == pytest.approx(gain, rel=1e-6, abs=1e-9)
+
+
 def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
     slip, torsion = make_torsion_mpc(ControllerContext(SETTINGS, {})).settings.outputs
     assert (slip.output, torsion.output) == (SLIP_SPEED, TORSION_SPEED)

@@ -6,12 +6,14 @@ import pytest
 from ddct_controllers.mpc.disturbances import offset_free_model
 from ddct_controllers.mpc.observer import NoiseLevels
 from ddct_controllers.mpc.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
     MEASURED,
     STATES,
     transmission_model,
 )
-from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN
-from ddct_controllers.mpc.wear_noise import WearNoise
+from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
+from ddct_controllers.mpc.wear_noise import GAIN, SIZE, WearNoise
 from ddct_controllers.mpc.wear_observer import LEAST_TORQUE_N_M, WearObserver
 from ddct_plant.actuator import Actuator
 from ddct_plant.run_settings import RunSettings
@@ -137,6 +139,96 @@ def test_gain_and_error_of_the_clutch_torque_are_told_apart_while_it_changes(end
         seen = transition @ seen
     matrix = np.vstack(rows)
     assert np.linalg.matrix_rank(matrix / np.linalg.norm(matrix, axis=0), tol=1e-6) == rank
+
+
+def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
+    """
+    Return mean (7,) and covariance (7, 7) of the last state given all measured speeds (N, 3).
+
+    No recursion of the filter: the states and the speeds of a run are linear in the start and in
+    the noise of each period, so they are jointly Gaussian, and one conditional expectation is the
+    answer. The equations are those of the driveline, sampled, with C_f = K_usura times the
+    actuator's torque plus its error.
+    """
+    plant = transmission_model(DRIVELINE)
+    twist_per_torque = 1.0 / DRIVELINE.halfshaft_stiffness
+    actuator = plant.at_rest((0.0, 0.0, 0.0), 0.0, 0.0)[4:]
+    start = np.array([*measured[0], loads_n_m[0] * twist_per_torque, 1.0, 0.0, 0.0])
+    # The start: speeds as measured, gain 1 +- 0.2, and a second's drift of an unknown load.
+    drift = 10.0 * wear.load_drift_n_m
+    start_factor = np.zeros((7, 5))
+    start_factor[[0, 1, 2], [0, 1, 2]] = NOISE.speed_rad_s
+    start_factor[4, 3] = wear.initial_gain
+    start_factor[[3, 6], 4] = drift * twist_per_torque, drift
+    mean, factors, seen = start, start_factor, []
+    for k in range(len(requests)):
+        effect = plant.a[:4, 4:] @ actuator
+        step = np.eye(7)
+        step[:4, :4], step[:4, 4] = plant.a[:4, :4], effect
+        step[:4, 5], step[:4, 6] = plant.clutch[:4], plant.b[:4, LOAD_TORQUE]
+        noise = np.zeros((7, 5))
+        noise[:4, 0] = NOISE.engine_torque_n_m * plant.b[:4, ENGINE_TORQUE]
+        noise[:4, 1] = NOISE.load_torque_n_m * plant.b[:4, LOAD_TORQUE]
+        noise[:4, 2] = NOISE.clutch_torque_n_m * plant.clutch[:4]
+        noise[6, 3] = wear.load_drift_n_m
+        flowing = effect[0] / plant.clutch[0] > LEAST_TORQUE_N_M
+        noise[4, 4] = wear.gain_drift if flowing else 0.0
+        known = plant.b[:4, [ENGINE_TORQUE, LOAD_TORQUE]] @ [engine_n_m[k], loads_n_m[k]]
+        mean = step @ mean + np.append(known, np.zeros(3))
+        factors = np.hstack([step @ factors, noise])
+        seen = [(m, np.hstack([f, np.zeros((3, 5))])) for m, f in seen]
+        seen.append((mean[:3], factors[:3]))
+        actuator = plant.a[4:, 4:] @ actuator + plant.b[4:, 0] * requests[k]
+    means, rows = np.concatenate([m for m, _ in seen]), np.vstack([f for _, f in seen])
+    covariance = rows @ rows.T + NOISE.speed_rad_s**2 * np.eye(len(rows))
+    gain = np.linalg.solve(covariance, rows @ factors.T).T
+    return mean + gain @ (measured[1:].ravel() - means), factors @ factors.T - gain @ (
+        rows @ factors.T
+    )
+
+
+@pytest.mark.parametrize('periods', [3, 12, 30])
+def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
+    """And its deviation is that of the same Gaussian, over 30 periods of a rising torque."""
+    rng, observer, wear = np.random.default_rng(8), make_observer(), WearNoise()
+    requests, engine = 4.0 * np.arange(periods), rng.normal(120.0, 5.0, periods)
+    loads = rng.normal(LOAD_N_M, 10.0, periods)
+    plant = transmission_model(DRIVELINE)
+    effect = plant.a[:4, 4:].copy()
+    twist = 1.3 * loads[0] / DRIVELINE.halfshaft_stiffness
+    state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
+    measured = [state[:3]]
+    plant.a[:4, 4:] = 0.8 * effect
+    observer.correct(tuple(measured[0]), loads[0])
+    for k in range(periods):
+        inputs = np.array([requests[k], engine[k], loads[k]])
+        observer.predict(tuple(inputs))
+        state = plant.a @ state + plant.b @ (inputs + [0.0, 0.0, 20.0])
+        measured.append(state[:3] + rng.normal(0.0, NOISE.speed_rad_s, 3))
+        corrected = observer.correct(tuple(measured[-1]), loads[min(k + 1, periods - 1)])
+    mean, covariance = conditioned(requests, engine, loads, np.array(measured), wear)
+    assert LOWEST_GAIN < mean[4] < HIGHEST_GAIN
+    assert observer.wear_gain == pytest.approx(mean[4], rel=1e-7)
+    assert observer.wear_gain_deviation == pytest.approx(np.sqrt(covariance[4, 4]), rel=1e-7)
+    assert corrected[:4] * mean[4] == pytest.approx(mean[:4], rel=1e-7)
+    assert corrected[STATES:] * mean[4] == pytest.approx(mean[5:], rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(('gain', 'bounded'), [(0.4, 0.5), (1.7, 1.5), (0.51, 0.51), (1.49, 1.49)])
+def test_the_bounds_leave_the_likeliest_state_that_keeps_them(gain, bounded):
+    """0.5 and 1.5; the least (x - x_0)' P^-1 (x - x_0) with that gain, by its normal equations."""
+    rng = np.random.default_rng(9)
+    factor, state = rng.normal(size=(SIZE, SIZE)), rng.normal(size=SIZE)
+    state[GAIN] = gain
+    covariance = factor @ factor.T
+    weight = np.linalg.inv(covariance)
+    others = np.arange(SIZE) != GAIN
+    expected = state.copy()
+    expected[GAIN] = bounded
+    pull = weight[np.ix_(others, [GAIN])] @ [bounded - gain]
+    expected[others] -= np.linalg.solve(weight[np.ix_(others, others)], pull)
+    assert within_bounds(state, covariance) == pytest.approx(expected, rel=1e-9)
+    assert within_bounds(state, covariance)[GAIN] == bounded
 
 
 def test_the_gain_does_not_drift_below_the_least_torque_of_the_actuator():
