@@ -33,9 +33,8 @@ def read_file(path: Path, most_bytes: int) -> bytes:
         raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
     with os.fdopen(descriptor, 'rb') as file:
         # Some files of the system say that they are empty and are not.
-        fits = status.st_size <= most_bytes
-        data = file.read(most_bytes + 1) if fits else b''
-    if not fits or len(data) > most_bytes:
+        data = file.read(most_bytes + 1) if status.st_size <= most_bytes else b''
+    if max(len(data), status.st_size) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
     return data
 

@@ -8,7 +8,7 @@ from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install
 
-from ddct_bringup import bringup
+from ddct_bringup import bringup, compare
 from ddct_controllers.registry import make_controller
 from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings
@@ -24,8 +24,8 @@ def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising')
-    names = (*answers, 'no_controller', 'nothing')
+    answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising', 'bad_status')
+    names = (*answers, 'bad_linear_model', 'no_controller', 'nothing')
     targets = {name: f'support.broken_controllers:make_{name}' for name in names}
     targets['absent'] = 'no_such_package.controllers:make'
     install(monkeypatch, tmp_path / 'site', SUPPORT, targets)
@@ -95,6 +95,7 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
         ('infinite', 'torque at step 60 is inf'),
         ('bare_number', 'float'),
         ('text', "'12.5'"),
+        ('bad_status', "status at step 60 is (('iterations', 3),)"),
     ],
 )
 def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
@@ -102,8 +103,31 @@ def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'bringup', 'controller', words)
+    assert_one_line(capfd.readouterr().err, 'bringup', f'controller {name!r}: its', words)
     assert not (out / name).exists()
+
+
+@pytest.mark.usefixtures('broken')
+def test_a_graph_names_the_controller_whose_status_is_no_text(
+    programs: Programs, tmp_path: Path
+) -> None:
+    run = programs.start_module(
+        'ddct_bringup.bringup', *('--controller', 'bad_status', '--out', str(tmp_path / 'runs'))
+    )
+    assert run.wait() == 1
+    words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
+    assert_one_line(run.errors(), 'bringup', 'node controller', words)
+
+
+@pytest.mark.usefixtures('broken')
+def test_compare_names_the_controller_whose_linear_model_is_none(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]
+    assert compare.main(['--controllers', 'bad_linear_model', *options]) == 1
+    *_, last = capfd.readouterr().err.splitlines()
+    assert last.startswith("compare: controller 'bad_linear_model': its linear_model cannot be")
+    assert 'it is of type list' in last
 
 
 @pytest.mark.usefixtures('broken')

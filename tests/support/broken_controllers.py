@@ -43,6 +43,19 @@ def make_text(context: ControllerContext) -> Controller:
     return _Broken(Command(torque))
 
 
+def make_bad_status(context: ControllerContext) -> Controller:
+    """Return a controller whose status is no text."""
+    status: Any = (('iterations', 3),)
+    return _Broken(Command(1.0, status))
+
+
+def make_bad_linear_model(context: ControllerContext) -> Controller:
+    """Return a controller whose linear model is none."""
+    controller = _Broken(Command(1.0))
+    controller.linear_model = lambda: [[1.0]]  # type: ignore[assignment, method-assign, return-value]
+    return controller
+
+
 def make_raising(context: ControllerContext) -> Controller:
     """Return a controller that divides by zero."""
     return _Broken(ZeroDivisionError('float division by zero'))

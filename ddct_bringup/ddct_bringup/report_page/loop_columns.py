@@ -23,8 +23,8 @@ LOOP_COLUMNS = (
 def is_whole(entry: Any, wear_gain: float) -> bool:
     """Say whether an entry that stood in a file holds everything that the page shows of it."""
     try:
-        if entry['linear'] is False:
-            return not entry['wear']
+        if entry['linear'] is not True:
+            return entry['linear'] is False and not entry['wear']
         point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
         interval = entry['stable_wear_gain'] or {}
         for value in (

@@ -1,0 +1,79 @@
+"""What a file beside the bags says is taken only where the page can show all of it."""
+
+import copy
+import dataclasses
+import json
+
+import pytest
+from test_report_escaping import SETTINGS, recording
+
+from ddct_bringup.report_page import evidence
+from ddct_bringup.report_page.evidence import COMPUTED
+from ddct_bringup.report_page.loop_table import loop_rows
+from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_controllers.design.analysis.evidence import frequency_evidence
+
+
+@pytest.fixture(scope='module')
+def run():
+    return recording('x')
+
+
+@pytest.fixture(scope='module')
+def whole():
+    return frequency_evidence(['pi'], SETTINGS)
+
+
+@pytest.fixture
+def remark(tmp_path, monkeypatch, whole, run):
+    """Return a function that tells where the evidence beside a bag was taken from."""
+    monkeypatch.setattr(evidence, 'frequency_evidence', lambda names, settings: whole)
+    found = dataclasses.replace(run, path=tmp_path / 'pi' / 'pi_0.mcap')
+
+    def read(text: str) -> str:
+        (tmp_path / FREQUENCY_FILE).write_text(text, encoding='utf-8')
+        (loop,) = evidence.evidence_of([ReportRun({'controller': 'pi'}, found, None, SETTINGS)])
+        assert len(loop_rows([loop])) == 1
+        return loop.remark
+
+    return read
+
+
+def test_whole_evidence_is_taken(remark, whole):
+    assert remark(json.dumps(whole)) == ''
+
+
+@pytest.mark.parametrize(
+    ('path', 'value'),
+    [
+        (('controllers', 0), 3),
+        (('controllers', 0, 'linear'), 'yes'),
+        (('controllers', 0, 'linear'), False),
+        (('controllers', 0, 'wear'), None),
+        (('controllers', 0, 'wear'), [1, 'x', {}]),
+        (('controllers', 0, 'wear', 1, 'gain_margin_db'), '\x1b[31m'),
+        (('controllers', 0, 'wear', 1, 'stable'), 'yes'),
+        (('controllers', 0, 'wear', 1, 'crossover_rad_s'), [1]),
+        (('controllers', 0, 'stable_wear_gain'), 'all'),
+        (('controllers', 0, 'stable_wear_gain', 'lowest'), 'none'),
+        (('controllers', 0, 'corners'), None),
+        (('controllers', 0, 'corners', 'unstable'), '</script>'),
+        (('controllers',), {}),
+        (('conditions',), []),
+    ],
+)
+def test_evidence_of_another_shape_is_computed_anew(remark, whole, path, value):
+    content = copy.deepcopy(whole)
+    target = content
+    for key in path[:-1]:
+        target = target[key]
+    target[path[-1]] = value
+    assert remark(json.dumps(content)) == COMPUTED
+
+
+@pytest.mark.parametrize(
+    'text', ['', '[1]', '[' * 100_000, '{"controllers": 1, "controllers": 2}']
+)
+def test_a_file_that_is_no_evidence_counts_as_none(remark, text):
+    assert remark(text) == COMPUTED
