@@ -89,20 +89,24 @@ def test_before_any_tick_only_replies_to_the_start_are_taken():
     assert not limit.takes(REPLY, 50)
 
 
-@pytest.mark.parametrize('interleaved', [False, True])
-@pytest.mark.parametrize('replies_first', [False, True])
+QUEUES = {
+    'ticks, then replies': lambda ticks, replies: [*ticks, *replies],
+    'replies, then ticks': lambda ticks, replies: [*replies, *ticks],
+    'in turn': lambda ticks, replies: [
+        each for both in zip(ticks, replies, strict=True) for each in both
+    ],
+    'one tick, then replies': lambda ticks, replies: [ticks[0], *replies, *ticks[1:]],
+}
+
+
+@pytest.mark.parametrize('order', QUEUES.values(), ids=QUEUES)
 @pytest.mark.parametrize('queued', [10, 50])
-def test_a_node_that_was_stopped_takes_all_that_waits_for_it_and_goes_on(
-    limit, interleaved, replies_first, queued
-):
+def test_a_node_that_was_stopped_takes_all_that_waits_for_it_and_goes_on(limit, order, queued):
     limit.now += 50 * PERIOD_NS
-    steps = range(151 - queued, 151)
-    topics = (REPLY, TICK) if replies_first else (TICK, REPLY)
-    if interleaved:
-        queue = [(topic, step) for step in steps for topic in topics]
-    else:
-        queue = [(topic, step) for topic in topics for step in steps]
-    for topic, step in queue:
+    ticks, replies = (
+        [(topic, step) for step in range(151 - queued, 151)] for topic in (TICK, REPLY)
+    )
+    for topic, step in order(ticks, replies):
         limit.now += 1000
         assert limit.takes(topic, step), (topic, step)
     limit.now += PERIOD_NS
