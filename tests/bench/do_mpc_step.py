@@ -1,4 +1,4 @@
-"""MPC3 formulated in do-mpc, as a peer of the step time."""
+"""`mpc_preview` formulated in do-mpc, as a peer of the step time."""
 
 import do_mpc
 import numpy as np

@@ -24,6 +24,7 @@ CASES = {
         ('controllers.mpc3.highest_torque_n_m=200', 'controllers.mpc3.torque_rate_n_m_s=300'),
     ),
     'mpc2': ('mpc2', ()),
+    'mpc_preview': ('mpc_preview', ()),
     'mpc_offset_free': ('mpc_offset_free', ()),
 }
 """

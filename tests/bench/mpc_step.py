@@ -1,4 +1,4 @@
-"""One step of MPC3 as the controller takes it: filter, program and command, against peers."""
+"""One step of `mpc_preview` as the controller takes it: filter, program and command, against peers."""
 
 import warnings
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from ddct_controllers.mpc.build import make_observer
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.qp.solution import QpSolution
 from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, thesis_settings
+from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
 from ddct_controllers.mpc.transmission_model import transmission_model
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
@@ -31,10 +31,10 @@ def measure() -> dict[str, Any]:
     """
     Return per way of taking the step its median and p99 in us, and their ratios to ours.
 
-    All answer the measurements of one closed-loop run of MPC3, in turn. What is not installed is
+    All answer the measurements of one closed-loop run of `mpc_preview`, in turn. What is not installed is
     named in `skipped`.
     """
-    settings = thesis_settings(TABLE_4_1['mpc3'])
+    settings = thesis_settings(BASIS, preview=True)
     heard = measurements_of(RUN, _controller(settings))
     ways: dict[str, tuple[Controller, int]] = {
         'ours, daqp': (_controller(settings), _ROUNDS),
@@ -63,7 +63,7 @@ def print_table(figures: dict[str, Any]) -> None:
     ours = figures['ways']['ours, daqp']
     met = ours['median_us'] <= MEDIAN_GOAL_US and ours['p99_us'] <= P99_GOAL_US
     print(
-        f'MPC3 step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us: '
+        f'mpc_preview step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us: '
         f'{"met" if met else "MISSED"}):'
     )
     for name, row in figures['ways'].items():

@@ -3,7 +3,7 @@
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis,
-the quadratic programs of predictive control, and a whole step of MPC3.
+the quadratic programs of predictive control, and a whole step of `mpc_preview`.
 """
 
 import argparse
