@@ -16,7 +16,7 @@ from ddct_controllers.mpc.transmission_model import transmission_model
 from ddct_plant.errors import ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.units import rad_s_from_rpm, rpm_from_rad_s
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)
@@ -81,6 +81,39 @@ def test_without_active_limits_it_is_the_least_squares_solution():
     wanted = np.concatenate([weight * (first.slip_reference[1:] - free), np.zeros(4)])
     moves = np.linalg.lstsq(stacked, wanted, rcond=None)[0]
     assert mpc.update(first).clutch_torque == pytest.approx(moves[0], rel=1e-6)
+
+
+def test_final_and_torque_weights_are_in_the_least_squares():
+    """P on the error at the end, and R on the controller's own torque, C_fOL less."""
+    row = replace(TABLE_4_1['mpc3'], final_weight=2.0, move_weight=0.1, torque_weight=0.3)
+    settings = thesis_settings(row, preview=True)
+    free = replace(settings.inputs[0], lowest=-math.inf)
+    mpc = controller(replace(settings, inputs=(free,)))
+    own = mpc.update(measurement(60)).clutch_torque
+    # In the second step the controller has a torque of its own.
+    observer = make_observer(RUN, MODEL)
+    observer.correct((210.0, 150.0, 17.0), 60.0)
+    observer.predict((250.0 + own, 300.0, 60.0))
+    state = observer.correct((210.0, 149.0, 17.0), 60.0)
+    second = measurement(61, slip=61.0)
+    responses, held = np.zeros((22, 4)), np.zeros(22)
+    for j in range(4):
+        x = np.zeros(9)
+        for i in range(22):
+            x = MODEL.a @ x + MODEL.b[:, 0] * (i >= j)
+            responses[i, j] = x[0] - x[1]
+    x = state
+    for i in range(22):
+        x = MODEL.a @ x + MODEL.b @ [250.0 + own, 300.0, 60.0]
+        held[i] = x[0] - x[1]
+    errors = rpm_from_rad_s(1.0) * (second.slip_reference[1:] - held)
+    responses = rpm_from_rad_s(1.0) * responses
+    stacked = np.vstack([0.26 * responses, 2.0 * responses[-1:], 0.1 * np.eye(4), 0.3 * np.tri(4)])
+    wanted = np.concatenate(
+        [0.26 * errors, 2.0 * errors[-1:], np.zeros(4), np.full(4, -0.3 * own)]
+    )
+    moves = np.linalg.lstsq(stacked, wanted, rcond=None)[0]
+    assert mpc.update(second).clutch_torque == pytest.approx(own + moves[0], rel=1e-6)
 
 
 def test_held_reference_is_its_present_value():

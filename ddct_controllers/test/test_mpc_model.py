@@ -16,6 +16,7 @@ from ddct_controllers.mpc.transmission_model import (
     transmission_model,
     with_disturbances,
 )
+from ddct_controllers.mpc.unit_noise import unit_noise_gain
 from ddct_plant.actuator import Actuator
 from ddct_plant.clutch import LinearClutch
 from ddct_plant.driveline import Driveline
@@ -24,6 +25,7 @@ from ddct_plant.errors import ParameterError
 from ddct_plant.initial import InitialState
 from ddct_plant.parameters import DrivelineParameters
 from ddct_plant.printed import ACTUATOR
+from ddct_plant.units import rpm_from_rad_s
 from ddct_plant.vehicle import VehicleParameters
 
 DRIVELINE = DrivelineParameters()
@@ -118,6 +120,51 @@ def test_clutch_column_is_a_held_torque_beside_the_actuator():
     still.step(40.0, 60.0, steps.tolist())
     difference = np.subtract(moved.outputs().speeds, still.outputs().speeds)
     assert MODEL.clutch[:3] == pytest.approx(difference[:3], rel=1e-9)
+
+
+def test_the_delay_is_one_period_and_nothing_else():
+    """Without it, the request of a period acts as that of the period before does with it."""
+    rows = inputs(50)
+    earlier = rows.copy()
+    earlier[1:, 0], earlier[0, 0] = rows[:-1, 0], rest(MODEL)[8]
+    at_once = model_run(transmission_model(DRIVELINE, delay=False), earlier)
+    delayed = model_run(MODEL, rows)
+    np.testing.assert_allclose(at_once[:, :8], delayed[:, :8], atol=1e-9)
+
+
+def test_a_load_that_is_not_known_drives_nothing():
+    rows = inputs(50)
+    unloaded = rows * [1.0, 1.0, 0.0]
+    found = model_run(MODEL.without_load(), rows)
+    np.testing.assert_array_equal(found, model_run(MODEL, unloaded))
+
+
+@pytest.mark.parametrize('load_known', [True, False])
+def test_unit_noise_is_of_one_n_m_on_each_known_input_and_of_one_rpm_on_the_slip(load_known):
+    """Against the filter that the doubling algorithm of Riccati's equation gives."""
+    model = transmission_model(DRIVELINE, delay=False)
+    model = model if load_known else model.without_load()
+    output = rpm_from_rad_s(1.0) * np.array([1.0, -1.0, 0, 0, 0, 0, 0, 0, 0])
+    known = model.b[:, : 2 + load_known]
+    a, g, covariance = model.a.T, np.outer(output, output), known @ known.T
+    for _ in range(30):
+        w = np.linalg.inv(np.eye(STATES) + g @ covariance)
+        a, g, covariance = (
+            a @ w @ a,
+            g + a @ w @ g @ a.T,
+            covariance + a.T @ covariance @ w @ a,
+        )
+    gain = covariance @ output / (output @ covariance @ output + 1.0)
+    expected = np.outer(gain, output[:3])
+    np.testing.assert_allclose(unit_noise_gain(model), expected, rtol=1e-6, atol=1e-9)
+
+
+def test_an_estimate_that_starts_at_zero_corrects_with_the_first_measurement():
+    gain = np.outer(np.arange(1.0, 10.0), [1.0, -1.0, 0.0])
+    observer = Observer(MODEL, gain, start=None)
+    for _ in range(2):
+        np.testing.assert_allclose(observer.correct((210.0, 200.0, 20.0), 60.0), 10.0 * gain[:, 0])
+        observer.reset()
 
 
 def test_gain_is_the_stationary_kalman_filter():

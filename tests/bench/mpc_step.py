@@ -1,4 +1,4 @@
-"""One step of `mpc_preview` as the controller takes it: filter, program and command, against peers."""
+"""One step of `mpc_preview`: filter, program and command, against peers."""
 
 import warnings
 from collections.abc import Callable
@@ -31,8 +31,8 @@ def measure() -> dict[str, Any]:
     """
     Return per way of taking the step its median and p99 in us, and their ratios to ours.
 
-    All answer the measurements of one closed-loop run of `mpc_preview`, in turn. What is not installed is
-    named in `skipped`.
+    All answer the measurements of one closed-loop run of `mpc_preview`, in turn. What is not
+    installed is named in `skipped`.
     """
     settings = thesis_settings(BASIS, preview=True)
     heard = measurements_of(RUN, _controller(settings))
