@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -147,19 +148,56 @@ def test_the_same_bag_named_twice_is_one_run(demo: Path, tmp_path: Path) -> None
     assert '1 run' in read(out).text
 
 
-def test_evidence_beside_the_bags_is_taken_only_when_it_is_of_their_scenario(
-    demo: Path, page: Path, tmp_path: Path
-) -> None:
-    assert 'Computed for this page' not in read(page).text
-    shutil.copytree(demo / 'pi', tmp_path / 'pi')
-    evidence = json.loads((demo / FREQUENCY_FILE).read_text(encoding='utf-8'))
+def page_with(evidence: dict, demo: Path, folder: Path) -> str:
+    """Return the text of a page over the run of PI, with this evidence beside its bag."""
+    shutil.copytree(demo / 'pi', folder / 'pi')
+    (folder / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
+    out = folder / 'report.html'
+    assert main([str(folder / 'pi'), '--out', str(out)]) == 0
+    return read(out).text
+
+
+def of_another_scenario(evidence: dict) -> None:
     evidence['conditions']['scenario_digest'] = 'another'
-    evidence['controllers'][0]['wear'] = []
-    (tmp_path / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
-    out = tmp_path / 'report.html'
-    assert main([str(tmp_path / 'pi'), '--out', str(out)]) == 0
-    assert 'Computed for this page' in read(out).text
-    assert re.search(r'pi\s*1\s*yes\s*9\.7\s*75\.6', read(out).text)
+
+
+def at_another_wear_gain(evidence: dict) -> None:
+    for point in evidence['controllers'][0]['wear']:
+        point['wear_gain'] += 0.05
+
+
+def of_another_controller(evidence: dict) -> None:
+    evidence['controllers'][0]['controller'] = 'ls1'
+
+
+@pytest.fixture
+def marked_evidence(demo: Path) -> dict:
+    """Return the evidence of the runs, with a gain margin of PI that is not its own."""
+    evidence = json.loads((demo / FREQUENCY_FILE).read_text(encoding='utf-8'))
+    assert evidence['controllers'][0]['controller'] == 'pi'
+    for point in evidence['controllers'][0]['wear']:
+        point['gain_margin_db'] = 87.6
+    return evidence
+
+
+def test_evidence_beside_the_bags_is_taken(
+    demo: Path, marked_evidence: dict, tmp_path: Path
+) -> None:
+    text = page_with(marked_evidence, demo, tmp_path)
+    assert re.search(r'pi\s*1\s*yes\s*87\.6\s*75\.6', text)
+    assert 'Computed for this page' not in text
+
+
+@pytest.mark.parametrize(
+    'change', [of_another_scenario, at_another_wear_gain, of_another_controller]
+)
+def test_evidence_of_another_loop_is_not_taken(
+    demo: Path, marked_evidence: dict, tmp_path: Path, change: Callable[[dict], None]
+) -> None:
+    change(marked_evidence)
+    text = page_with(marked_evidence, demo, tmp_path)
+    assert re.search(r'pi\s*1\s*yes\s*9\.7\s*75\.6', text)
+    assert 'Computed for this page' in text
 
 
 @pytest.mark.parametrize(

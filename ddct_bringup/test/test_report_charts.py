@@ -1,0 +1,103 @@
+"""Each chart of the report draws the signal that its title names, with its sign and unit."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from bokeh.document import Document
+from bokeh.models import GlyphRenderer
+
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report_page.charts import QUANTITIES, ChartRun, chart_document
+from ddct_bringup.report_page.line_looks import LineLook
+
+STEPS = 20
+RPM = 30.0 / math.pi
+WIDTHS = {
+    'joint_position': (4,),
+    'joint_speed': (4,),
+    'joint_effort': (4,),
+    'slip_reference': (3,),
+    'slip_reference_rate': (3,),
+    'actuator_torque': (11,),
+    'clutch_torque': (11,),
+}
+FACTS = RunFacts(
+    controller='pi',
+    architecture='detailed',
+    scenario='thesis',
+    clutch='linear',
+    wear_gain=1.0,
+    mode='lockstep',
+    seed=0,
+    control_start_s=0.06,
+    score_window_s=(0.06, 0.18),
+    duration_s=0.2,
+)
+
+
+def random_run() -> Trajectory:
+    """Return a run with another number in every place."""
+    random = np.random.default_rng(1)
+    arrays = {
+        field.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(field.name, ())))
+        for field in dataclasses.fields(Trajectory)
+        if field.name not in ('status', 'engine_torque_request')
+    }
+    return Trajectory(status=((),) * (STEPS + 1), **arrays)
+
+
+RUN = random_run()
+SHOWN = {
+    'w_d': (RUN.slip_speed * RPM, 'rpm'),
+    'error': ((RUN.slip_reference[:, 0] - RUN.slip_speed) * RPM, 'rpm'),
+    'w_sr': (RUN.joint_speed[:, 3] * RPM, 'rpm'),
+    'A_x': (RUN.vehicle_accel, 'm/s²'),
+    'C_f_request': (RUN.torque_request, 'N m'),
+    'C_f_actuator': (RUN.actuator_torque[:, 0], 'N m'),
+    'C_f_clutch': (RUN.clutch_torque[:, 0], 'N m'),
+    'C_m': (RUN.engine_torque, 'N m'),
+}
+"""The values by chart, as docs/interfaces.md names the signals."""
+
+
+@pytest.fixture(scope='module')
+def charts():
+    """Return the charts by name, as the page loads them."""
+    run = ChartRun(0, 'pi', LineLook(0, ()), RUN, FACTS, True, thesis_engagement_time_s=0.088)
+    document, _ = chart_document([run])
+    return {chart.name: chart for chart in Document.from_json(document).roots}
+
+
+def drawn(renderer: GlyphRenderer) -> tuple[np.ndarray, np.ndarray]:
+    """Return x and y of a line or mark."""
+    data, glyph = renderer.data_source.data, renderer.glyph
+    return data[glyph.x.field], data[glyph.y.field]
+
+
+def lines(chart) -> list[GlyphRenderer]:
+    return [line for line in chart.renderers if line.glyph.__class__.__name__ == 'Line']
+
+
+def test_every_signal_has_its_chart(charts):
+    assert list(charts) == list(SHOWN) == [quantity.key for quantity in QUANTITIES]
+
+
+@pytest.mark.parametrize('key', SHOWN)
+def test_a_chart_draws_its_signal_over_time(charts, key):
+    values, unit = SHOWN[key]
+    time, shown = drawn(lines(charts[key])[0])
+    np.testing.assert_allclose(time, np.arange(STEPS + 1) / 100.0, rtol=1e-6)
+    np.testing.assert_allclose(shown, values, rtol=1e-6)
+    assert charts[key].yaxis[0].axis_label == unit
+    (quantity,) = [each for each in QUANTITIES if each.key == key]
+    assert (quantity.unit, charts[key].xaxis[0].axis_label) == (unit, 'time, s')
+
+
+def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
+    _, reference = lines(charts['w_d'])
+    np.testing.assert_allclose(drawn(reference)[1], RUN.slip_reference[:, 0] * RPM, rtol=1e-6)
+    (mark,) = [each for each in charts['w_d'].renderers if each not in lines(charts['w_d'])]
+    assert [list(each) for each in drawn(mark)] == [[pytest.approx(0.148)], [0.0]]
