@@ -10,6 +10,7 @@ import textwrap
 
 import pytest
 
+from ddct_bringup.bag import repair
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
 from ddct_plant.errors import DdctError
@@ -153,6 +154,23 @@ def test_whatever_bit_is_flipped_only_true_values_are_rescued(bags, trajectory):
         rescued = read_bag(source).trajectory.joint_speed.tolist()
         assert rescued == expected[: repair.last_step + 1]
         repair.original.unlink()
+
+
+def test_a_rescued_file_that_cannot_be_read_back_replaces_nothing(source, monkeypatch):
+    """As on a disk that says it has written what it has not."""
+
+    def write_badly(path, *rest):
+        write(path, *rest)
+        path.write_bytes(path.read_bytes()[:-100])
+
+    file = mcap_of(source)
+    file.write_bytes(file.read_bytes()[:-3000])
+    before = {each.name: each.read_bytes() for each in source.iterdir()}
+    write = repair._write
+    monkeypatch.setattr(repair, '_write', write_badly)
+    with pytest.raises(DdctError, match=r'pi_0.mcap: cannot be repaired: .*unfinished'):
+        repair_bag(source)
+    assert {each.name: each.read_bytes() for each in source.iterdir()} == before
 
 
 def test_a_second_repair_keeps_the_first_damaged_file(source):

@@ -55,6 +55,7 @@ class StagedFolder:
             except OSError:
                 if replaced.exists():
                     replaced.rename(self.final)
+                aside.rmdir()
                 raise
             shutil.rmtree(aside)
         except OSError as error:
