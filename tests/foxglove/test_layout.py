@@ -1,9 +1,10 @@
 """No panel of the Foxglove layout stays empty, whatever bag of ours it shows."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from layout_checks import (
     NOT_FOR_PANELS,
@@ -13,13 +14,82 @@ from layout_checks import (
     read_messages,
     used_topics,
 )
+from message_path import parse
 from support.runs import expected, plan
 
 from ddct_bringup.bag.topics import TOPICS
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.message_values import status_pairs_of
 
 Record = Callable[[RunPlan], Messages]
+
+
+SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
+    ('Plot!slip', 'slip w_d'): lambda run: run.slip_speed,
+    ('Plot!slip', 'reference'): lambda run: run.slip_reference[:, 0],
+    ('Plot!clutch_torque', 'clutch C_f'): lambda run: run.clutch_torque[:, 0],
+    ('Plot!clutch_torque', 'actuator'): lambda run: run.actuator_torque[:, 0],
+    ('Plot!clutch_torque', 'request'): lambda run: run.torque_request,
+    ('Plot!clutch_torque', 'open-loop part'): lambda run: _told(run, 'open_loop_torque_n_m'),
+    ('Plot!clutch_torque', 'closed-loop part'): lambda run: _told(run, 'closed_loop_torque_n_m'),
+    ('Plot!engine_torque', 'engine C_m'): lambda run: run.engine_torque,
+    ('Plot!engine_torque', 'demand'): lambda run: run.torque_demand,
+    ('Plot!engine_torque', 'request (two-input)'): lambda run: run.engine_torque_request,
+    ('Plot!engine_torque', 'load C_load'): lambda run: run.load_torque,
+    ('Plot!speeds', 'engine w_m'): lambda run: run.joint_speed[:, 0],
+    ('Plot!speeds', 'primary w_p'): lambda run: run.joint_speed[:, 1],
+    ('Plot!speeds', 'wheel w_r'): lambda run: run.joint_speed[:, 2],
+    ('Plot!driveshaft', 'speed w_sr'): lambda run: run.joint_speed[:, 3],
+    ('Plot!driveshaft', 'angle theta_sr'): lambda run: run.joint_position[:, 3],
+    ('Plot!vehicle', 'accel. A_x'): lambda run: run.vehicle_accel,
+    ('Plot!vehicle', 'speed V_x'): lambda run: run.vehicle_speed,
+    ('StateTransitions!controller', 'feedback'): lambda run: _told(run, 'feedback'),
+    ('StateTransitions!controller', 'request saturated'): lambda run: _told(run, 'saturated'),
+}
+"""What each series shows, by the panel and label that its reader sees."""
+
+
+def _told(run: Trajectory, key: str) -> np.ndarray:
+    """Return a value of the controller's status at each step, (N+1,), as text."""
+    return np.array([dict(pairs)[key] for pairs in run.status])
+
+
+def _made_up_run() -> Trajectory:
+    """Return a run with another number in every place, of a controller with two inputs."""
+    run = expected(plan('pi', duration_s=0.7))
+    random = np.random.default_rng(1)
+    arrays = {
+        field.name: random.normal(0.0, 100.0, np.shape(getattr(run, field.name)))
+        for field in fields(run)
+        if field.name not in ('status', 'engine_torque_request')
+    }
+    status = tuple(
+        tuple((key, str(1000.0 * place + step)) for place, (key, _) in enumerate(pairs))
+        for step, pairs in enumerate(run.status)
+    )
+    torques = random.normal(0.0, 100.0, run.steps + 1)
+    return Trajectory(**arrays, status=status, engine_torque_request=torques)
+
+
+def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
+    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
+    from ddct_bringup.bag.trajectory_bag import write_trajectory
+
+    run = _made_up_run()
+    write_trajectory(run, tmp_path, 'made-up', {}, {'controller': [('two_input', 'true')]})
+    bag = read_messages(tmp_path)
+    drawn = {
+        (panel, series['label']): series['value']
+        for panel, config in read_layout()['configById'].items()
+        for series in config.get('paths', [])
+        if parse(series['value']).topic != '/diagnostics'
+    }
+    assert drawn.keys() == SERIES.keys()
+    for place, value in drawn.items():
+        path = parse(value)
+        shown = [path.values(message)[0] for _, message in bag[path.topic]]
+        assert [str(each) for each in shown] == [str(each) for each in SERIES[place](run)], place
 
 
 @pytest.mark.parametrize('controller', ['pi', 'hinf1'])

@@ -1,0 +1,82 @@
+"""A folder where the documented commands find what they read, and runs that they share."""
+
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from support.documented import ROOT, blocks
+
+from ddct_bringup.run import progress
+from ddct_bringup.run.plan import RunPlan
+from ddct_controllers.registry import controller_names
+from ddct_plant.scenario_file import scenario_to_yaml
+
+
+def install_example(site: Path) -> None:
+    """Make the package of docs/writing_a_controller.md out of the code that the page shows."""
+    code = next(
+        block.text
+        for block in blocks()
+        if block.page == 'docs/writing_a_controller.md' and block.language == 'python'
+    )
+    package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
+    for folder in (package, record):
+        folder.mkdir(parents=True)
+    (package / '__init__.py').touch()
+    (package / 'control.py').write_text(code)
+    (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n')
+    (record / 'entry_points.txt').write_text(
+        '[ddct.controllers]\nproportional = my_package.control:make_proportional\n'
+    )
+
+
+@pytest.fixture(scope='session')
+def install() -> Path:
+    """Return the folder that colcon has installed into."""
+    prefixes = [entry for entry in os.environ.get('COLCON_PREFIX_PATH', '').split(':') if entry]
+    folder = Path(prefixes[0]) if prefixes else ROOT / 'install'
+    if not (folder / 'setup.bash').exists():
+        pytest.skip('the workspace is not built: make setup')
+    return folder
+
+
+@pytest.fixture
+def workplace(install: Path, tmp_path: Path) -> Path:
+    """Return a folder with what commands read and write, and the example in `site`."""
+    shutil.copytree(ROOT / 'docs', tmp_path / 'docs')
+    scenarios = Path('ddct_plant') / 'ddct_plant' / 'scenarios'
+    shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
+    (tmp_path / 'install').symlink_to(install)
+    install_example(tmp_path / 'site')
+    return tmp_path
+
+
+@pytest.fixture(scope='session')
+def run_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[RunPlan, Path], None]:
+    """Return an `execute` for headless runs that simulates equal ones of ours once."""
+    own = set(controller_names())
+    folders: dict[tuple[str, ...], Path] = {}
+
+    def execute(plan: RunPlan, folder: Path, *_: object) -> None:
+        settings = plan.settings
+        key = (plan.controller, scenario_to_yaml(settings.scenario), repr(settings))
+        if key not in folders or plan.controller not in own:
+            folders[key] = tmp_path_factory.mktemp('run')
+            original(plan, folders[key])
+        shutil.copytree(folders[key], folder, dirs_exist_ok=True)
+
+    original = progress.execute
+    return execute
+
+
+@pytest.fixture
+def shared_runs(
+    run_once: Callable[[RunPlan, Path], None], workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> Path:
+    """Let the commands of this process run in the workplace, which it returns, and share runs."""
+    monkeypatch.chdir(workplace)
+    monkeypatch.syspath_prepend(workplace / 'site')
+    monkeypatch.setattr(progress, 'execute', run_once)
+    return workplace

@@ -1,0 +1,71 @@
+"""The commands of the documentation, sorted by how a test runs them."""
+
+import shlex
+from importlib.metadata import entry_points
+
+from support.documented import Block, blocks
+
+NOT_RUN_HERE = {
+    'make': 'would run this very test, or take its environment away; .ci/run and users run them',
+    'sudo': "needs Ubuntu with apt's ROS 2",
+    'rosdep': "needs apt's ROS 2",
+    'colcon': 'make setup has run it',
+    '. /opt/ros': "needs apt's ROS 2",
+    'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
+    'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
+    'python -m pip': 'would change the environment of the tests',
+    'ros2 run ddct_bringup bringup --mode realtime --controller ls8 --live': (
+        'waits for a viewer; tests/live gives it one'
+    ),
+    'ros2 run ddct_bringup live': 'serves until Ctrl-C; tests/live stops it',
+    'ros2 run ddct_bringup calibrate': 'takes minutes; ddct_bringup/test runs it with --quick',
+}
+"""First words of commands and why no test runs them."""
+SHELL_BLOCKS = [block for block in blocks() if block.is_shell]
+SOURCE = '. install/setup.bash'
+_DESIGN = 'ros2 run ddct_controllers design'
+_RUNS = ('bringup', 'compare')
+_NOT_HEADLESS = ('--help', '--list', '--headless', '--single-process', 'realtime')
+
+
+def commands_of(block: Block) -> list[str]:
+    """Return the lines of a block that tests run."""
+    return [line for line in block.lines if not any(line.startswith(w) for w in NOT_RUN_HERE)]
+
+
+def label(block: Block) -> str:
+    """Return the name of the test of a block."""
+    return f'{block.page}: {next(iter(commands_of(block)), block.lines[0])[:60]}'
+
+
+def in_this_process(block: Block) -> bool:
+    """Say whether all commands are programs of ours that end by themselves, without a graph."""
+    commands = [line for line in commands_of(block) if line != SOURCE]
+    return bool(commands) and all(
+        line.startswith('ros2 run ddct_') and '&' not in line and 'realtime' not in line
+        for line in commands
+    )
+
+
+def is_design(block: Block) -> bool:
+    """Say whether all that is run here is design."""
+    return all(line.startswith(_DESIGN) for line in commands_of(block))
+
+
+def run_here(line: str) -> int:
+    """
+    Run one `ros2 run PACKAGE PROGRAM ARGUMENTS` in this process and return its exit code.
+
+    A run of the graph takes place without it, which is faster; other tests run the real thing.
+    """
+    if line == SOURCE:
+        return 0
+    package, program, *arguments = shlex.split(line, comments=True)[2:]
+    if program in _RUNS and not any(words in line for words in _NOT_HEADLESS):
+        arguments.append('--headless')
+    (point,) = {
+        point.value: point
+        for point in entry_points(group='console_scripts', name=program)
+        if point.dist is not None and point.dist.name.replace('-', '_') == package
+    }.values()
+    return point.load()(arguments)

@@ -1,0 +1,22 @@
+"""Every documented design works."""
+
+from pathlib import Path
+
+import pytest
+from documented_commands import (
+    SHELL_BLOCKS,
+    commands_of,
+    in_this_process,
+    is_design,
+    label,
+    run_here,
+)
+from support.documented import Block
+
+BLOCKS = [block for block in SHELL_BLOCKS if in_this_process(block) and is_design(block)]
+
+
+@pytest.mark.parametrize('block', BLOCKS, ids=label)
+def test_commands_run(block: Block, shared_runs: Path) -> None:
+    for line in commands_of(block):
+        assert run_here(line) == 0, line

@@ -1,0 +1,57 @@
+"""Documented commands that need a shell: graphs by hand, sourcing, compiling."""
+
+import os
+import shutil
+import stat
+import subprocess
+from pathlib import Path
+
+import pytest
+from documented_commands import NOT_RUN_HERE, SHELL_BLOCKS, commands_of, in_this_process, label
+from support.documented import Block
+
+WITHIN_S = 240.0
+BLOCKS = [block for block in SHELL_BLOCKS if not in_this_process(block)]
+
+ROS2 = """\
+#!{shell}
+# ros2 run PACKAGE PROGRAM ARGUMENTS...
+[ "$1" = run ] || exit 2
+package=$2 program=$3; shift 3
+[ "$package" = my_actuator ] && package=ddct_plant program=actuator
+exec "{install}/$package/lib/$package/$program" "$@"
+"""
+
+
+@pytest.fixture
+def environment(workplace: Path, install: Path) -> dict[str, str]:
+    """Return the environment variables of a shell with a `ros2` that finds our programs."""
+    ros2 = workplace / 'bin' / 'ros2'
+    ros2.parent.mkdir()
+    ros2.write_text(ROS2.format(shell=shutil.which('bash'), install=install))
+    ros2.chmod(ros2.stat().st_mode | stat.S_IXUSR)
+    return {**os.environ, 'PATH': f'{ros2.parent}:{os.environ["PATH"]}'}
+
+
+@pytest.mark.parametrize('block', BLOCKS, ids=label)
+def test_commands_run(block: Block, workplace: Path, environment: dict[str, str]) -> None:
+    commands = commands_of(block)
+    if not commands:
+        pytest.skip(
+            next(why for words, why in NOT_RUN_HERE.items() if block.text.startswith(words))
+        )
+    # Background nodes end with the script.
+    script = '\n'.join(
+        ['set -e', "trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT", *commands]
+    )
+    done = subprocess.run(
+        [shutil.which('bash') or 'bash', '-c', script],
+        cwd=workplace,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=WITHIN_S,
+        check=False,
+    )
+    assert done.returncode == 0, f'{script}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
