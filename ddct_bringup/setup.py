@@ -23,7 +23,10 @@ setup(
     name=PACKAGE,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
-    package_data={f'{PACKAGE}.report_page': ['*.j2', '*.css', '*.js']},
+    package_data={
+        f'{PACKAGE}.report_page': ['*.j2', '*.css', '*.js'],
+        f'{PACKAGE}.calibration': ['admissible_scenarios/*'],
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

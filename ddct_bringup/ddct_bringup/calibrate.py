@@ -5,6 +5,7 @@ import os
 import sys
 from pathlib import Path
 
+from ddct_bringup.calibration.ensemble import find_members, write_members
 from ddct_bringup.calibration.files import fill_page, scenario_text
 from ddct_bringup.calibration.record import (
     RETURN_TOLERANCE,
@@ -32,6 +33,7 @@ examples:
   calibrate --quick                  only check that the frozen scenario is the optimum
   calibrate --json -                 the result as JSON on standard output, alone
   calibrate --write my_thesis.yaml   write the calibrated scenario
+  calibrate --ensemble DIR           search the admissible scenarios again, a minute or two
 
 The exit code is 1 when a residual is outside its tolerance (5 % of t_a, 10 % of a
 sigma), or when --quick finds that the frozen scenario is not the optimum."""
@@ -47,6 +49,11 @@ def _run(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     if options.quick and (options.write or options.write_doc):
         parser.error('--quick finds nothing to write: leave out --write and --write-doc')
+    if options.ensemble is not None:
+        if options.quick or options.json or options.write or options.write_doc:
+            parser.error('--ensemble writes the admissible scenarios: leave out the other options')
+        _make_ensemble(options.ensemble)
+        return 0
     if options.json == options.write == STDOUT:
         parser.error('--json - and --write - both want standard output: give one a file')
     for output in (options.json, options.write, options.write_doc):
@@ -69,6 +76,14 @@ def _run(argv: list[str]) -> int:
     if options.write_doc:
         write_text(options.write_doc, fill_page(page, record))
     return 0
+
+
+def _make_ensemble(folder: Path) -> None:
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise DdctError(f'--ensemble {folder}: is no folder that can be written: make it first')
+    members = find_members(load_scenario('thesis'), _progress)
+    write_members(members, folder)
+    _progress(f'{len(members)} admissible scenarios are in {folder}')
 
 
 def _progress(text: str) -> None:
@@ -115,6 +130,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")
     parser.add_argument('--write', metavar='FILE', help="write the scenario; '-' is stdout")
     parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.add_argument(
+        '--ensemble', metavar='DIR', type=Path, help='write the kept admissible scenarios into DIR'
+    )
     return parser
 
 

@@ -65,6 +65,28 @@ def test_outputs_are_the_kept_files(calibrated, capsys, tmp_path):
     assert 'One row left out' in capsys.readouterr().out
 
 
+def test_ensemble_is_written_with_progress(monkeypatch, capsys, tmp_path):
+    def search(frozen, progress):
+        progress('centre: score window to 1.7 s')
+        return [dataclasses.replace(frozen, name='member', description='Centre of the region')]
+
+    monkeypatch.setattr(calibrate, 'find_members', search)
+    assert calibrate.main(['--ensemble', str(tmp_path)]) == 0
+    assert load_scenario(str(tmp_path / 'member.yaml')).engine == load_scenario('thesis').engine
+    assert capsys.readouterr().err.splitlines() == [
+        'calibrate: centre: score window to 1.7 s',
+        f'calibrate: 1 admissible scenarios are in {tmp_path}',
+    ]
+
+
+def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, capsys):
+    monkeypatch.setattr(calibrate, 'find_members', None)
+    assert calibrate.main(['--ensemble', '/nowhere/folder']) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('calibrate: --ensemble /nowhere/folder: ')
+    assert len(error.splitlines()) == 1
+
+
 def test_no_scenario_is_written_when_a_residual_is_outside_its_tolerance(
     monkeypatch, capsys, tmp_path
 ):
@@ -91,7 +113,12 @@ def test_file_that_cannot_be_written_is_refused_before_the_work(monkeypatch, cap
 
 
 @pytest.mark.parametrize(
-    'arguments', [['--quick', '--write', 'a.yaml'], ['--json', '-', '--write', '-']]
+    'arguments',
+    [
+        ['--quick', '--write', 'a.yaml'],
+        ['--json', '-', '--write', '-'],
+        ['--ensemble', '.', '--json', '-'],
+    ],
 )
 def test_options_that_contradict_each_other_are_refused(capsys, arguments):
     with pytest.raises(SystemExit) as end:

@@ -46,8 +46,11 @@ def install() -> Path:
 def workplace(install: Path, tmp_path: Path) -> Path:
     """Return a folder with what commands read and write, and the example in `site`."""
     shutil.copytree(ROOT / 'docs', tmp_path / 'docs')
-    scenarios = Path('ddct_plant') / 'ddct_plant' / 'scenarios'
-    shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
+    for scenarios in (
+        'ddct_plant/ddct_plant/scenarios',
+        'ddct_bringup/ddct_bringup/calibration/admissible_scenarios',
+    ):
+        shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
     (tmp_path / 'install').symlink_to(install)
     install_example(tmp_path / 'site')
     return tmp_path

@@ -9,6 +9,7 @@ from scipy.stats import t as student_t
 from ddct_bringup.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE, ROWS
 from ddct_bringup.calibration.problem import Fit, Problem, Values, fit, row_figures
 from ddct_bringup.calibration.search import STARTS, Progress
+from ddct_plant.scenario import Scenario
 
 FITTED_NUMBERS = len(PARAMETERS) + 1
 """p: the parameters and the end of the score window."""
@@ -120,10 +121,10 @@ def _best_fit(problem: Problem, values: Values, free: tuple[int, ...]) -> Fit:
     return min((fit(problem, start, free) for start in starts), key=lambda one: one.objective)
 
 
-def vary_assumptions(optimum: Fit, progress: Progress) -> dict[str, Fit]:
-    """Refit with other values of what the calibration assumes; return the fits by their change."""
+def changed_assumptions() -> dict[str, Scenario]:
+    """Return other values of what the calibration assumes, by what is changed."""
     load, initial = BASE.load, BASE.initial
-    changes = {
+    return {
         f'road load times {factor:g}': dataclasses.replace(
             BASE,
             load=dataclasses.replace(
@@ -142,8 +143,12 @@ def vary_assumptions(optimum: Fit, progress: Progress) -> dict[str, Fit]:
         )
         for speed in (120.0, 200.0)
     }
+
+
+def vary_assumptions(optimum: Fit, progress: Progress) -> dict[str, Fit]:
+    """Refit with each of the changed assumptions; return the fits by the change."""
     fits = {}
-    for name, base in changes.items():
+    for name, base in changed_assumptions().items():
         progress(name)
         fits[name] = fit(dataclasses.replace(optimum.problem, base=base), optimum.values)
     return fits

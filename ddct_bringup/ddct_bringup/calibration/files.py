@@ -1,9 +1,12 @@
-"""The two files that a calibration writes: the scenario, and the tables of docs/calibration.md."""
+"""The files that a calibration writes: scenarios, and the tables of docs/calibration.md."""
 
-from ddct_bringup.calibration.parameters import BASE
-from ddct_bringup.calibration.record import NAMES, Record
+from collections.abc import Sequence
+
+from ddct_bringup.calibration.problem import Problem
+from ddct_bringup.calibration.record import Record
 from ddct_bringup.calibration.tables import all_tables
 from ddct_plant.page_tables import fill_tables
+from ddct_plant.scenario import Scenario
 
 _SCENARIO_HEAD = (
     '# The slip phase behind Table 5.1 of the thesis, which does not print it.',
@@ -14,32 +17,35 @@ _SCENARIO_HEAD = (
 
 
 def scenario_text(record: Record) -> str:
-    """Return the scenario as YAML, with comments on where each value comes from."""
-    frozen = {entry['name']: entry['frozen'] for entry in record['parameters']}
-    first, last = record['score_window_s']
+    """Return the calibrated scenario as YAML, with comments on where each value comes from."""
+    values = [entry['frozen'] for entry in record['parameters']]
+    return annotated_yaml(Problem(record['score_window_s'][1]).scenario(values), _SCENARIO_HEAD)
+
+
+def annotated_yaml(scenario: Scenario, head: Sequence[str]) -> str:
+    """Return a scenario of the calibrated kind as YAML below its head of comments."""
+    first, last = scenario.score_window_s
+    time, torque = (list(part) for part in (scenario.engine.time_s, scenario.engine.torque_n_m))
     lines = [
-        (f'description: {BASE.description}', ''),
-        (f'duration_s: {BASE.duration_s}', 'assumed'),
-        (f'control_start_s: {BASE.control_start_s}', 'thesis, Section 1.4.1'),
+        (f'description: {scenario.description}', ''),
+        (f'duration_s: {scenario.duration_s}', 'assumed'),
+        (f'control_start_s: {scenario.control_start_s}', 'thesis, Section 1.4.1'),
         (f'score_window_s: [{first}, {last}]', 'from control start; the end is fitted'),
         ('engine:', ''),
-        (f'  time_s: [0.0, {frozen["rise_end_s"]}]', 'the end of the rise is fitted'),
-        (
-            f'  torque_n_m: [{frozen["torque_start_n_m"]}, {frozen["torque_end_n_m"]}]',
-            'fitted; only the rise is determined, not its level',
-        ),
-        ('initial:', 'assumed: 20 km/h in second gear, no slip'),
-        *((f'  {name}: {value}', '') for name, value in vars(BASE.initial).items()),
-        ('load:', 'assumed: an ordinary car on a level road'),
-        *((f'  {name}: {value}', '') for name, value in vars(BASE.load).items()),
+        (f'  time_s: {time}', 'the end of the rise is fitted'),
+        (f'  torque_n_m: {torque}', 'fitted; only the rise is determined, not its level'),
+        ('initial:', 'assumed: no slip; 160 rad/s is 20 km/h in second gear'),
+        *((f'  {name}: {value}', '') for name, value in vars(scenario.initial).items()),
+        ('load:', 'assumed: a level road; an ordinary car has 0.32 and 0.0125'),
+        *((f'  {name}: {value}', '') for name, value in vars(scenario.load).items()),
         ('reference:', ''),
-        (f'  slope_rad_s2: {frozen["slope_rad_s2"]}', 'fitted'),
+        (f'  slope_rad_s2: {scenario.reference.slope_rad_s2}', 'fitted'),
         ('controllers:', ''),
         ('  pi:', 'fitted, to the PI row only'),
-        *((f'    {name}: {frozen[name]}', '') for name in NAMES[4:]),
+        *((f'    {name}: {gain}', '') for name, gain in scenario.controllers['pi'].items()),
     ]
     body = [f'{text:<37} # {comment}' if comment else text for text, comment in lines]
-    return '\n'.join([*_SCENARIO_HEAD, *body, ''])
+    return '\n'.join([*head, *body, ''])
 
 
 def fill_page(page: str, record: Record) -> str:
