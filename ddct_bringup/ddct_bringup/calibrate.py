@@ -5,8 +5,10 @@ import os
 import sys
 from pathlib import Path
 
-from ddct_bringup.calibration.ensemble import find_members, write_members
+from ddct_bringup.calibration.ensemble import find_members, members_in, write_members
 from ddct_bringup.calibration.files import fill_page, scenario_text
+from ddct_bringup.calibration.predicted_values import predict
+from ddct_bringup.calibration.predictions import FILE as PREDICTIONS_FILE
 from ddct_bringup.calibration.record import (
     RETURN_TOLERANCE,
     Record,
@@ -33,7 +35,8 @@ examples:
   calibrate --quick                  only check that the frozen scenario is the optimum
   calibrate --json -                 the result as JSON on standard output, alone
   calibrate --write my_thesis.yaml   write the calibrated scenario
-  calibrate --ensemble DIR           search the admissible scenarios again, a minute or two
+  calibrate --ensemble DIR           search the admissible scenarios again, about two minutes
+  calibrate --predict DIR            only predict again in those of DIR, about half a minute
 
 The exit code is 1 when a residual is outside its tolerance (5 % of t_a, 10 % of a
 sigma), or when --quick finds that the frozen scenario is not the optimum."""
@@ -49,10 +52,10 @@ def _run(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     if options.quick and (options.write or options.write_doc):
         parser.error('--quick finds nothing to write: leave out --write and --write-doc')
-    if options.ensemble is not None:
+    if options.ensemble is not None or options.predict is not None:
         if options.quick or options.json or options.write or options.write_doc:
-            parser.error('--ensemble writes the admissible scenarios: leave out the other options')
-        _make_ensemble(options.ensemble)
+            parser.error('--ensemble and --predict take no other option: leave it out')
+        _make_ensemble(options)
         return 0
     if options.json == options.write == STDOUT:
         parser.error('--json - and --write - both want standard output: give one a file')
@@ -78,12 +81,17 @@ def _run(argv: list[str]) -> int:
     return 0
 
 
-def _make_ensemble(folder: Path) -> None:
+def _make_ensemble(options: argparse.Namespace) -> None:
+    """Write the admissible scenarios, or keep those in the folder, and what they predict."""
+    folder: Path = options.ensemble or options.predict
     if not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise DdctError(f'--ensemble {folder}: is no folder that can be written: make it first')
-    members = find_members(load_scenario('thesis'), _progress)
-    write_members(members, folder)
-    _progress(f'{len(members)} admissible scenarios are in {folder}')
+        raise DdctError(f'{folder} is no folder that can be written: make it first')
+    frozen = load_scenario('thesis')
+    if options.ensemble is not None:
+        write_members(find_members(frozen, _progress), folder)
+    members = members_in(folder)
+    write_json(str(folder / PREDICTIONS_FILE), predict(frozen, members, _progress).as_record())
+    _progress(f'{len(members)} admissible scenarios and {PREDICTIONS_FILE} are in {folder}')
 
 
 def _progress(text: str) -> None:
@@ -130,8 +138,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")
     parser.add_argument('--write', metavar='FILE', help="write the scenario; '-' is stdout")
     parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
-    parser.add_argument(
-        '--ensemble', metavar='DIR', type=Path, help='write the kept admissible scenarios into DIR'
+    ensemble = parser.add_mutually_exclusive_group()
+    ensemble.add_argument(
+        '--ensemble',
+        metavar='DIR',
+        type=Path,
+        help='search the admissible scenarios that are kept, into DIR, and do as --predict',
+    )
+    ensemble.add_argument(
+        '--predict', metavar='DIR', type=Path, help='write what the scenarios in DIR predict'
     )
     return parser
 

@@ -65,7 +65,9 @@ def test_outputs_are_the_kept_files(calibrated, capsys, tmp_path):
     assert 'One row left out' in capsys.readouterr().out
 
 
-def test_ensemble_is_written_with_progress(monkeypatch, capsys, tmp_path):
+def test_ensemble_is_written_with_what_it_predicts_and_with_progress(
+    monkeypatch, capsys, tmp_path
+):
     def search(frozen, progress):
         progress('centre: score window to 1.7 s')
         return [dataclasses.replace(frozen, name='member', description='Centre of the region')]
@@ -73,17 +75,23 @@ def test_ensemble_is_written_with_progress(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(calibrate, 'find_members', search)
     assert calibrate.main(['--ensemble', str(tmp_path)]) == 0
     assert load_scenario(str(tmp_path / 'member.yaml')).engine == load_scenario('thesis').engine
+    record = json.loads((tmp_path / 'predictions.json').read_text())
+    for name, one in record['predictions'].items():
+        assert one['members'] == {'member': one['frozen']}, name
     assert capsys.readouterr().err.splitlines() == [
         'calibrate: centre: score window to 1.7 s',
-        f'calibrate: 1 admissible scenarios are in {tmp_path}',
+        'calibrate: predictions of thesis',
+        'calibrate: predictions of member',
+        f'calibrate: 1 admissible scenarios and predictions.json are in {tmp_path}',
     ]
 
 
-def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, capsys):
+@pytest.mark.parametrize('option', ['--ensemble', '--predict'])
+def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, capsys, option):
     monkeypatch.setattr(calibrate, 'find_members', None)
-    assert calibrate.main(['--ensemble', '/nowhere/folder']) == 1
+    assert calibrate.main([option, '/nowhere/folder']) == 1
     error = capsys.readouterr().err
-    assert error.startswith('calibrate: --ensemble /nowhere/folder: ')
+    assert error.startswith('calibrate: /nowhere/folder is no folder')
     assert len(error.splitlines()) == 1
 
 

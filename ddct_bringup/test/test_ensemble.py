@@ -10,6 +10,7 @@ from ddct_bringup.calibration.admissible import fitted_rows, why_not_admissible
 from ddct_bringup.calibration.analysis import changed_assumptions
 from ddct_bringup.calibration.ensemble import QUANTITIES, find_members, members, write_members
 from ddct_bringup.calibration.parameters import BASE, RANGE
+from ddct_bringup.calibration.predictions import folder_of_members
 from ddct_bringup.calibration.problem import Problem
 from ddct_bringup.calibration.record import values_of
 from ddct_bringup.calibration.region import RIM, Point, centre, rim
@@ -84,7 +85,7 @@ def test_rim_is_where_a_residual_reaches_its_limit():
 def test_files_are_written_as_they_are_kept(tmp_path):
     (tmp_path / 'gone.yaml').write_text('old')
     write_members(list(MEMBERS.values()), tmp_path)
-    kept = ensemble.folder_of_members()
+    kept = folder_of_members()
     for file in kept.glob('*.yaml'):
         assert (tmp_path / file.name).read_text() == file.read_text()
     assert {file.name for file in tmp_path.iterdir()} == {f'{name}.yaml' for name in MEMBERS}

@@ -5,7 +5,6 @@ They are chosen by the nine fitted figures; docs/predictions.md states the choic
 """
 
 import dataclasses
-import importlib.resources
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -14,6 +13,7 @@ from ddct_bringup.calibration.admissible import why_not_admissible
 from ddct_bringup.calibration.analysis import changed_assumptions
 from ddct_bringup.calibration.files import annotated_yaml
 from ddct_bringup.calibration.parameters import RANGE
+from ddct_bringup.calibration.predictions import folder_of_members
 from ddct_bringup.calibration.problem import Problem, Values
 from ddct_bringup.calibration.record import values_of
 from ddct_bringup.calibration.region import Point, centre, rim
@@ -23,7 +23,6 @@ from ddct_plant.output_file import write_text
 from ddct_plant.scenario import Scenario
 from ddct_plant.scenario_file import load_scenario
 
-FOLDER = 'admissible_scenarios'
 QUANTITIES = {
     'level': ('torque level', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
     'rise': ('rise of the torque', (-RANGE[0] / RANGE[1], 1.0, 0.0, 0.0, 0.0, 0.0)),
@@ -35,18 +34,14 @@ _DECIMALS = (2, 2, 4, 2, 5, 5)
 """Of the values in the files, in the order of PARAMETERS."""
 
 
+@cache
 def members() -> tuple[Scenario, ...]:
     """Return the kept scenarios in the order of their names."""
-    return _load(folder_of_members())
+    return members_in(folder_of_members())
 
 
-def folder_of_members() -> Path:
-    """Return the folder of their files, which come with this package."""
-    return Path(str(importlib.resources.files('ddct_bringup.calibration') / FOLDER))
-
-
-@cache
-def _load(folder: Path) -> tuple[Scenario, ...]:
+def members_in(folder: Path) -> tuple[Scenario, ...]:
+    """Return the scenarios that a folder has, in the order of their names."""
     return tuple(load_scenario(str(file)) for file in sorted(folder.glob('*.yaml')))
 
 

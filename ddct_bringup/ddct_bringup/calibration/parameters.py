@@ -4,17 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.scores.thesis_table import CALIBRATED, FIGURES, THESIS_TABLE
+from ddct_bringup.scores.thesis_table import CALIBRATED, THESIS_TABLE
 from ddct_plant.engine import TorqueProfile
 from ddct_plant.scenario import Scenario
 
-TOLERANCES = dict(zip(FIGURES, (0.05, 0.10, 0.10), strict=True))
-"""
-Relative deviation from the print that each figure may have: the unit of the scaled residuals.
-
-The rounding of the print (0.5 % of t_a, up to 3 % of a sigma) is no measure here: no parameters
-of this model come that close, so it would only say which figures to sacrifice.
-"""
 TARGETS = {row.controller: row.figures() for row in THESIS_TABLE if row.use == CALIBRATED}
 ROWS = tuple(TARGETS)
 """Controllers whose rows are fitted."""

@@ -21,11 +21,10 @@ from ddct_bringup.calibration.parameters import (
     RANGE,
     ROWS,
     TARGETS,
-    TOLERANCES,
 )
 from ddct_bringup.headless import run_headless
 from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.scores.thesis_table import FIGURES
+from ddct_bringup.scores.thesis_table import FIGURES, TOLERANCES
 from ddct_plant.engine import TorqueProfile
 from ddct_plant.errors import DdctError
 from ddct_plant.run_settings import RunSettings

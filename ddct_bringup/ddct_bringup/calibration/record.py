@@ -12,7 +12,7 @@ from ddct_bringup.calibration.analysis import (
     leave_one_row_out,
     vary_assumptions,
 )
-from ddct_bringup.calibration.parameters import BASE, LOWER, PARAMETERS, RANGE, TARGETS, TOLERANCES
+from ddct_bringup.calibration.parameters import BASE, LOWER, PARAMETERS, RANGE, TARGETS
 from ddct_bringup.calibration.problem import Fit, Problem, fit
 from ddct_bringup.calibration.search import (
     LocalOptimum,
@@ -21,7 +21,7 @@ from ddct_bringup.calibration.search import (
     rounded,
     search,
 )
-from ddct_bringup.scores.thesis_table import FIGURES
+from ddct_bringup.scores.thesis_table import FIGURES, TOLERANCES
 from ddct_plant.errors import ParameterError
 from ddct_plant.scenario import Scenario
 
