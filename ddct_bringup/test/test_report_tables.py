@@ -1,6 +1,7 @@
 """Cells of the report's tables, from entries and timing alone."""
 
 import dataclasses
+import re
 
 import pytest
 
@@ -61,6 +62,19 @@ def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
     assert cells[0].thesis_share == pytest.approx(0.71 / 1.562)
     assert (cells[1].share, cells[1].thesis) == (1.0, None)
     assert (cells[2].value, cells[2].text, cells[2].share) == (None, '–', 0.0)
+
+
+def test_a_predicted_figure_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
+    runs = [
+        run('mpc3', RunSettings(THESIS), engagement_time_s=0.62),
+        run('mpc4', RunSettings(THESIS)),
+        run('ls8', RunSettings(THESIS), engagement_time_s=0.71),
+    ]
+    predicted, undefined, calibrated = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
+    assert predicted.verdict == 'hit'
+    assert re.fullmatch(r'0\.\d{3} to 0\.\d{3}', predicted.spread)
+    assert undefined.verdict == 'miss'
+    assert (calibrated.verdict, calibrated.spread) == ('', '')
 
 
 def test_update_times_lie_on_a_logarithmic_scale():

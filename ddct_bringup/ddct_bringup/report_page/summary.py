@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
-from ddct_bringup.scores.thesis_table import ThesisRow, thesis_row
-from ddct_plant.scenario_file import load_scenario, scenario_digest
+from ddct_bringup.scores.thesis_conditions import is_thesis_run, predicted_range, verdict
+from ddct_bringup.scores.thesis_table import PREDICTED, ThesisRow, thesis_row
 
 
 @dataclass(frozen=True)
@@ -97,17 +97,20 @@ class Cell:
     """Where the thesis's figure is along the bar."""
     difference: str = ''
     """Ours against the thesis's, signed."""
+    spread: str = ''
+    """Range over the admissible scenarios, of a predicted figure."""
+    verdict: str = ''
+    """Hit or miss, of a predicted figure."""
 
 
 def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
-    """
-    Return for each run the row of Table 5.1 beside which it may be set.
-
-    That takes the thesis's own conditions: its scenario unchanged, the detailed architecture, the
-    linear clutch, new.
-    """
-    digest = scenario_digest(load_scenario('thesis'))
-    return [_row(run) if run.digest == digest else None for run in runs]
+    """Return for each run the row of Table 5.1 beside which it may be set."""
+    return [
+        thesis_row(run.entry['controller'])
+        if run.settings is not None and is_thesis_run(run.settings)
+        else None
+        for run in runs
+    ]
 
 
 def metric_cells(
@@ -115,28 +118,24 @@ def metric_cells(
 ) -> list[Cell]:
     """Return one cell per run; bars share the scale of the largest figure, ours or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
-    printed = [row.figures().get(column.key) if row else None for row in rows]
-    largest = max((abs(value) for value in (*values, *printed) if value is not None), default=0.0)
+    printed = [row if row is not None and column.key in row.figures() else None for row in rows]
+    figures = [row.figures()[column.key] for row in printed if row is not None]
+    largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
     return [
-        _cell(column, value, thesis, largest or 1.0)
-        for value, thesis in zip(values, printed, strict=True)
+        _cell(column, value, row, largest or 1.0)
+        for value, row in zip(values, printed, strict=True)
     ]
 
 
-def _row(run: ReportRun) -> ThesisRow | None:
-    settings = run.settings
-    if settings is None or not settings.detailed:
-        return None
-    if settings.clutch != 'linear' or settings.wear_gain != 1.0:
-        return None
-    return thesis_row(run.entry['controller'])
-
-
-def _cell(column: MetricColumn, value: float | None, thesis: float | None, largest: float) -> Cell:
+def _cell(
+    column: MetricColumn, value: float | None, row: ThesisRow | None, largest: float
+) -> Cell:
     text = '–' if value is None else format(value, column.form)
     share = 0.0 if value is None else abs(value) / largest
-    if thesis is None:
+    if row is None:
         return Cell(value, text, share)
+    thesis = row.figures()[column.key]
+    predicted = row.use == PREDICTED
     return Cell(
         value,
         text,
@@ -145,4 +144,6 @@ def _cell(column: MetricColumn, value: float | None, thesis: float | None, large
         f'{thesis:.2f}',
         thesis / largest,
         '' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
+        predicted_range(row.controller, column.key) if predicted else '',
+        verdict(row, column.key, value) if predicted else '',
     )

@@ -16,12 +16,15 @@ from ddct_bringup.scores.tables import (
     Column,
     print_runs,
 )
-from ddct_bringup.scores.thesis_table import thesis_row
+from ddct_bringup.scores.thesis_conditions import is_thesis_run, predicted_range, verdict
+from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, thesis_row
 from ddct_plant.run_settings import RunSettings
 
 _NOTE = (
     'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '
-    'fit residual;\npredicted: the row took no part in the fit.'
+    'fit residual;\npredicted: the row took no part in the fit. Below our figure is its range '
+    'over the admissible scenarios,\nbelow the print hit (within 5 % for t_a, 10 % for std) or '
+    'miss.'
 )
 _NO_CROSSING = "t_a '-': after control start w_d never changed its sign."
 
@@ -32,32 +35,29 @@ def print_comparison(
     """
     Print one row per run.
 
-    The thesis's figures are shown for its own conditions only: its scenario unchanged, the
-    detailed architecture, a new clutch.
+    The thesis's figures, and the ranges of what the scenario predicts, are shown for the thesis's
+    own conditions only.
     """
-    like_thesis = (
-        settings.scenario.name == 'thesis'
-        and not overrides
-        and settings.architecture == 'detailed'
-        and settings.wear_gain == 1.0
-    )
     columns = [CONTROLLER, ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD]
-    if like_thesis:
+    compared = is_thesis_run(settings)
+    if compared:
         columns = [
             CONTROLLER,
-            ENGAGEMENT_TIME,
-            _thesis('s', 'engagement_time_s'),
-            TORSION_STD,
-            _thesis('rpm', 'torsion_speed_std_rpm'),
-            ACCELERATION_STD,
-            _thesis('m/s^2', 'acceleration_std_m_s2'),
+            *(
+                column
+                for ours, unit, name in zip(columns[1:], _UNITS, FIGURES, strict=True)
+                for column in (_with_range(ours, name), _thesis(unit, name))
+            ),
             Column('thesis row', _use, number=False),
         ]
     print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
-    if like_thesis and any(thesis_row(run['controller']) for run in runs):
+    if compared and any(thesis_row(run['controller']) for run in runs):
         print(_NOTE, file=stream)
     if any(run['valid'] and run['metrics']['engagement_time_s'] is None for run in runs):
         print(_NO_CROSSING, file=stream)
+
+
+_UNITS = ('s', 'rpm', 'm/s^2')
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
@@ -68,10 +68,25 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     )
 
 
-def _thesis(unit: str, metric: str) -> Column:
+def _with_range(column: Column, name: str) -> Column:
+    """Return a metric's column with the range of what is predicted on a second line."""
+
+    def text(run: Entry) -> str:
+        spread = predicted_range(run['controller'], name)
+        return f'{column.text(run)}\n{spread}' if spread else column.text(run)
+
+    return Column(column.heading, text)
+
+
+def _thesis(unit: str, name: str) -> Column:
     def text(run: Entry) -> str:
         row = thesis_row(run['controller'])
-        return f'{row.figures()[metric]:.2f}' if row else UNDEFINED
+        if row is None:
+            return UNDEFINED
+        printed = f'{row.figures()[name]:.2f}'
+        if row.use != PREDICTED:
+            return printed
+        return f'{printed}\n{verdict(row, name, run["metrics"][name])}'
 
     return Column(f'thesis\n{unit}', text)
 

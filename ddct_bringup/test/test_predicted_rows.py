@@ -1,0 +1,87 @@
+"""What `compare` prints beside Table 5.1, and when it does."""
+
+import dataclasses
+import io
+
+import pytest
+
+from ddct_bringup.calibration import predictions
+from ddct_bringup.calibration.predictions import Prediction, Predictions
+from ddct_bringup.scores.comparison_table import print_comparison
+from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario, scenario_digest
+
+THESIS = load_scenario('thesis')
+KEPT = Predictions(
+    scenario_digest(THESIS),
+    {
+        '5.1 mpc3 engagement_time_s': Prediction(0.6, {'a': 0.55, 'b': 0.7, 'c': None}),
+        '5.1 mpc3 torsion_speed_std_rpm': Prediction(1.0, {'a': 0.5, 'b': 1.5, 'c': 1.0}),
+        '5.1 mpc3 acceleration_std_m_s2': Prediction(0.3, {'a': 0.3, 'b': 0.3, 'c': 0.3}),
+    },
+)
+FIGURES = (0.62, 1.0, 0.19)
+
+
+def run(controller, figures=FIGURES):
+    names = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
+    return {
+        'bag': controller,
+        'controller': controller,
+        'valid': True,
+        'reason': '',
+        'metrics': dict.fromkeys(METRIC_NAMES) | dict(zip(names, figures, strict=True)),
+        'fallbacks': None,
+    }
+
+
+@pytest.fixture(autouse=True)
+def kept(monkeypatch):
+    monkeypatch.setattr(predictions, 'kept_predictions', lambda: KEPT)
+
+
+def printed(*runs, settings=None, overrides=()):
+    stream = io.StringIO()
+    print_comparison(runs, settings or RunSettings(THESIS), overrides, stream)
+    return [' '.join(line.split()) for line in stream.getvalue().splitlines()]
+
+
+def test_predicted_row_has_value_and_range_print_and_verdict():
+    lines = printed(run('mpc3'))
+    row = lines.index('mpc3 0.620 0.63 1.000 0.90 0.190 0.19 predicted - - yes')
+    assert lines[row + 1] == '0.550 to - hit 0.50 to 1.50 miss 0.300 to 0.300 hit'
+
+
+def test_undefined_figure_is_a_miss():
+    lines = printed(run('mpc3', (None, 0.9, 0.19)))
+    assert '0.550 to - miss 0.50 to 1.50 hit 0.300 to 0.300 hit' in lines
+
+
+def test_calibrated_row_and_a_controller_without_a_row_have_neither():
+    lines = printed(run('pi'), run('ls1'))
+    row = lines.index('pi 0.620 0.88 1.000 0.70 0.190 0.18 calibrated - - yes')
+    assert lines[row + 1] == 'ls1 0.620 - 1.000 - 0.190 - - - - yes'
+
+
+@pytest.mark.parametrize(
+    'settings',
+    [
+        RunSettings(load_scenario('thesis', ['load.slope_rad=0.01'])),
+        RunSettings(dataclasses.replace(THESIS, duration_s=2.0)),
+        RunSettings(THESIS, 'feedforward'),
+        RunSettings(THESIS, wear_gain=0.7),
+    ],
+    ids=['scenario', 'duration', 'architecture', 'wear'],
+)
+def test_nothing_of_the_thesis_is_shown_under_other_conditions(settings):
+    lines = printed(run('mpc3'), settings=settings)
+    assert 'mpc3 0.620 1.000 0.190 - - yes' in lines
+    assert not any('to' in line.split() or 'thesis:' in line for line in lines)
+
+
+def test_no_range_is_shown_for_a_packaged_scenario_that_is_not_the_one_predicted_in(monkeypatch):
+    other = dataclasses.replace(KEPT, scenario_digest='another')
+    monkeypatch.setattr(predictions, 'kept_predictions', lambda: other)
+    lines = printed(run('mpc3'))
+    assert 'hit miss hit' in lines
