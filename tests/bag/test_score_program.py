@@ -29,6 +29,7 @@ ENTRY_KEYS = [
     'reason',
     'metrics',
     'fallbacks',
+    'safe_state',
 ]
 
 

@@ -19,7 +19,7 @@ from ddct_plant.errors import DdctError
 from ddct_plant.timebase import time_of_step
 
 Entry = dict[str, Any]
-"""One run of `scores.json`: bag, controller, ..., valid, reason, ..., metrics, fallbacks."""
+"""One run of `scores.json`: bag, ..., valid, reason, metrics, fallbacks, safe_state."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
 _COUNT = re.compile('[0-9]{1,9}')
@@ -59,9 +59,9 @@ def score_recording(recording: Recording, bag: str) -> Entry:
         **{name: getattr(facts, name) for name in _FACT_NAMES},
         'valid': not reason,
         'reason': reason,
-        'safe_state': None if facts.lockstep else safe_state(recording),
         'metrics': metrics.as_dict(),
         'fallbacks': fallbacks_in(recording.trajectory),
+        'safe_state': None if facts.lockstep else safe_state(recording),
     }
 
 
@@ -78,9 +78,9 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
         **{name: getattr(facts, name, None) for name in _FACT_NAMES},
         'valid': False,
         'reason': str(error),
-        'safe_state': None,
         'metrics': dict.fromkeys(METRIC_NAMES),
         'fallbacks': None,
+        'safe_state': None,
     }
 
 
@@ -112,11 +112,12 @@ def why_invalid(recording: Recording) -> str:
 
 def _why_early(recording: Recording) -> str:
     got, wanted = recording.trajectory.steps, recording.facts.steps
+    early = f'ended early: {got} of {wanted} steps'
+    if recording.facts.lockstep:
+        return early
     if recording.realtime.steps >= wanted:
-        why = 'the driveline took them all, but the recorder did not hear the last'
-    else:
-        why = 'the run stopped, or was stopped, before its end'
-    return f'ended early: {got} of {wanted} steps: {why}'
+        return f'{early}: the driveline took them all, but the recorder did not hear the last'
+    return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
 
 
 def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
