@@ -1,9 +1,11 @@
 """The words of Table 5.2 and the orders behind claims in words."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
+from ddct_bringup.thesis import orders
 from ddct_bringup.thesis.orders import below, each_lower, is_extreme, sigma_text, text
 from ddct_bringup.thesis.words import judge_words
 
@@ -88,3 +90,10 @@ def test_each_lower_counts_those_that_are_lower_in_every_row():
 
 def test_standard_deviations_are_shown_with_their_units():
     assert sigma_text((ROW, ROW), ('pi',)) == 'w_sr pi 4 rpm; A_x pi 4 m/s^2'
+
+
+def test_figure_that_does_not_exist_is_infinite(monkeypatch):
+    none = SimpleNamespace(engagement_time_s=None)
+    monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: None)
+    monkeypatch.setattr(orders, 'thesis_metrics', lambda run: none)
+    assert orders.metric('engagement_time_s', ('mpc4',)) == {'mpc4': math.inf}

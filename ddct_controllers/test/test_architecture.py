@@ -81,6 +81,15 @@ def test_both_parts_add_up_and_the_status_says_so():
     assert (status['saturated'], status['mine']) == ('false', 'yes')
 
 
+def test_detailed_takes_the_equilibrium_of_the_scenario():
+    scenario = replace(SETTINGS.scenario, equilibrium='full')
+    request = make_architecture(replace(SETTINGS, scenario=scenario), Recording()).update(BEFORE)
+    driveline = scenario.driveline
+    damping = driveline.total_ratio * driveline.shaft_damping * BEFORE.shaft_speed
+    assert request.torque == constant_slip_torque(driveline, 250.0, load_torque() + damping)
+    assert request.torque > static_torque()
+
+
 def test_base_is_feedback_alone():
     request = make_architecture(replace(SETTINGS, architecture='base'), Recording()).update(ON)
     assert request.torque == 7.0
