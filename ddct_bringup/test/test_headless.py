@@ -4,73 +4,23 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_controllers.architecture import make_architecture
-from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.registry import controller_names, make_controller
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.engine import Engine
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.registry import controller_names
 from ddct_plant.errors import DdctError
-from ddct_plant.initial import initial_state
-from ddct_plant.load import RoadLoad
-from ddct_plant.printed import ACTUATOR
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
-from ddct_reference.factory import make_reference
 
 SETTINGS = RunSettings(load_scenario('thesis'))
-
-
-def tight_tolerance_slip(settings: RunSettings, name: str) -> np.ndarray:
-    """
-    Return w_d (N+1,) in rad/s of the same sampled-data loop, its plant integrated to 1e-10.
-
-    Actuator and driveline are one continuous system here, so the clutch torque bends nowhere
-    within a period; saturation acts on the held request, as in the actuator.
-    """
-    scenario = settings.scenario
-    plant, filter_ = driveline_matrices(scenario.driveline), ACTUATOR.to_state_space()
-    initial = initial_state(settings)
-    engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
-    reference = make_reference(settings)
-    architecture = make_architecture(settings, make_controller(name, settings))
-    delayed = initial.torque_request
-    state = np.concatenate(
-        [
-            [initial.engine_speed, initial.shaft_speed, initial.wheel_speed, initial.twist],
-            np.linalg.solve(filter_.a, -filter_.b[:, 0] * delayed),
-        ]
-    )
-    slips = []
-    for step in range(scenario.steps + 1):
-        w_m, w_p, w_r, _ = state[:4]
-        slips.append(w_m - w_p)
-        speed = scenario.vehicle.wheel_radius_m * w_r
-        c_m, c_load = engine.torque(step), load.torque(speed)
-        references, rates = reference.update(step, w_m - w_p)
-        request = architecture.update(
-            Measurement(step, w_m, w_p, w_r, speed, c_m, references, rates)
-        ).torque
-
-        def derivative(_, x, held=delayed, c_m=c_m, c_load=c_load):
-            c_f = settings.wear_gain * (filter_.c @ x[4:])[0]
-            driveline = plant.a @ x[:4] + plant.b @ [c_m, c_f, c_load]
-            return np.concatenate([driveline, filter_.a @ x[4:] + filter_.b[:, 0] * held])
-
-        solution = solve_ivp(
-            derivative, (0.0, 0.01), state, method='DOP853', rtol=1e-10, atol=1e-10
-        )
-        state, delayed = solution.y[:, -1], max(request, 0.0)
-    return np.array(slips)
 
 
 @pytest.mark.parametrize('name', ['pi', 'ls8', 'hinf1'])
 def test_slip_is_within_1e_4_of_its_peak_of_a_tight_tolerance_integration(name):
     slip = run_headless(SETTINGS, name).slip_speed
-    error = np.abs(slip - tight_tolerance_slip(SETTINGS, name)).max()
+    error = np.abs(slip - tight_tolerance_run(SETTINGS, name)['w_d']).max()
     assert error < 1e-4 * np.abs(slip).max()
 
 
