@@ -1,7 +1,6 @@
 """Predictions with their spread: the kept values of the frozen scenario and of every member."""
 
 import importlib.resources
-import json
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.json_text import parse_json
 from ddct_plant.scenario import Scenario
 from ddct_plant.scenario_file import scenario_digest
 
@@ -84,7 +84,7 @@ def folder_of_members() -> Path:
 @cache
 def kept_predictions() -> Predictions:
     """Return the predictions that are kept with the ensemble."""
-    content = json.loads((folder_of_members() / FILE).read_text(encoding='utf-8'))
+    content = parse_json((folder_of_members() / FILE).read_text(encoding='utf-8'))
     return Predictions(
         content['scenario_digest'],
         {
