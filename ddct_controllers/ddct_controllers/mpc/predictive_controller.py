@@ -22,11 +22,11 @@ class PredictiveController(Controller, Generic[Estimator]):
     """
     Chooses the moves of the clutch torque that minimise the cost of `MpcSettings`.
 
-    C_m, C_load and the architecture's open-loop torque are known now and taken as constant over
-    the horizon. Limited is the whole clutch torque request, open loop included; moves are those of
-    the controller's own part. When the solver gives no solution, the rest of the last plan is
-    followed within the limits; each such step is counted and shown as `fallbacks` in
-    `controller/status`.
+    C_m, C_load, as far as the model has it, and the architecture's open-loop torque are known now
+    and taken as constant over the horizon. Limited is the whole clutch torque request, open loop
+    included; moves are those of the controller's own part. When the solver gives no solution, the
+    rest of the last plan is followed within the limits; each such step is counted and shown as
+    `fallbacks` in `controller/status`.
     """
 
     def __init__(
