@@ -12,6 +12,7 @@ from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bag_progress import with_progress
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
+from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
     Entry,
     bag_name,
@@ -40,7 +41,9 @@ examples:
   score --repair runs/broken/pi          rescue an interrupted recording, then score it
 
 The exit code is 0 only if every bag was scored and valid: whole, of the length that the
-run was meant to have, every value finite. peak_jerk_m_s3: 20 Hz low-pass without delay.
+run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
+steps without a reply, and no node in its safe state.
+peak_jerk_m_s3: 20 Hz low-pass without delay.
 vdv_m_s1_75 is weighted by
 {VDV_WEIGHTING}.
 """
