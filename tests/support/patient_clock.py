@@ -19,6 +19,7 @@ class PatientClock:
         """Become the clock of `owner`, before its run begins."""
         self._owner = owner
         self._offset: float | None = None
+        self._not_awaited: set[str] = set()
         owner._clock = self
 
     def __call__(self) -> float:
@@ -28,7 +29,12 @@ class PatientClock:
             return time.monotonic() + self._offset
         if started is None or owner.step == owner._plan.steps:
             return time.monotonic()
-        return started + (owner.step + (0.5 if owner.barrier.missing() else 1.5)) * PERIOD_S
+        missing = set(owner.barrier.missing()) - self._not_awaited
+        return started + (owner.step + (0.5 if missing else 1.5)) * PERIOD_S
+
+    def go_on_without(self, topic: str) -> None:
+        """Wait for the replies on `topic` no longer."""
+        self._not_awaited.add(topic)
 
     def release(self) -> None:
         """Let time pass from now on."""
