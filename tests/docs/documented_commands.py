@@ -68,4 +68,7 @@ def run_here(line: str) -> int:
         for point in entry_points(group='console_scripts', name=program)
         if point.dist is not None and point.dist.name.replace('-', '_') == package
     }.values()
-    return point.load()(arguments)
+    try:
+        return point.load()(arguments)
+    except SystemExit as end:  # of --help
+        return 1 if end.code else 0
