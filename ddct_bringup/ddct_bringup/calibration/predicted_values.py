@@ -2,7 +2,7 @@
 What a scenario predicts of the thesis's other results, by the ids that the thesis gate gives them.
 
 These took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2, of which the
-numbers behind the words are given too.
+numbers behind the words are given too. Of a word, whether it is a hit or a miss.
 """
 
 from collections.abc import Iterable
@@ -14,8 +14,7 @@ from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, THESIS_TABLE
 from ddct_bringup.studies.scored_run import metrics_of
 from ddct_bringup.studies.static_controller import StaticControllerAlone
-from ddct_bringup.thesis.values import COMPARED, WORN, WORN_ARCHITECTURE
-from ddct_bringup.thesis.words import oscillation_word, slip_word
+from ddct_bringup.thesis.values import SLIP_WORDS, WORN, WORN_ARCHITECTURE, judge_table_5_2
 from ddct_controllers.interface import Controller
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario import Scenario
@@ -69,17 +68,16 @@ def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     end = steps_in('score_window_s', scenario.score_window_s[1])
     slips: dict[str, float] = {}
     metrics: dict[str, Metrics] = {}
-    for name in COMPARED:
+    for name in SLIP_WORDS:
         run = run_headless(settings, name)
         slips[name] = abs(float(run.slip_speed[end]))
         metrics[name] = metrics_of(settings, run)
-    found: dict[str, Value] = {}
-    for name in COMPARED:
-        found |= {
-            f'5.2 {name} w_d {wear_gain:g}': slip_word(name, slips),
-            f'5.2 {name} w_sr {wear_gain:g}': oscillation_word(name, metrics),
-            f'5.2 {name} slip_rad_s {wear_gain:g}': slips[name],
-        }
+    found: dict[str, Value] = {
+        name: 'hit' if finding.holds else 'miss'
+        for name, finding in judge_table_5_2(wear_gain, slips, metrics).items()
+    }
+    for name in SLIP_WORDS:
+        found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = slips[name]
         found |= {
             f'5.2 {name} {figure} {wear_gain:g}': getattr(metrics[name], figure)
             for figure in FIGURES[1:]

@@ -5,6 +5,9 @@ The program `design thesis` finds it through the entry-point group `ddct.thesis_
 the closed loop is no part of ddct_controllers.
 """
 
+from collections.abc import Mapping
+
+from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.thesis_table import THESIS_TABLE
 from ddct_bringup.thesis.claims import claim_values
 from ddct_bringup.thesis.orders import CLEARLY, is_extreme, text
@@ -62,21 +65,26 @@ def _table_5_2() -> dict[str, Value | None]:
         runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
         slips = {name: abs(float(run.slip_speed[_end_step()])) for name, run in runs.items()}
         metrics = {name: thesis_metrics(run) for name, run in runs.items()}
-        twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
-        acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
-        words = {
-            'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-            'w_sr': judge_words(
-                OSCILLATION_WORDS[wear], [('rpm', twist), ('m/s^2', acceleration)]
-            ),
-        }
-        found |= {
-            f'5.2 {name} {what} {wear:g}': finding
-            for what, findings in words.items()
-            for name, finding in findings.items()
-        }
+        found |= judge_table_5_2(wear, slips, metrics)
         ends[wear] = slips
     return found | {'5.1 robust': _only_robust('hinf2', ends)}
+
+
+def judge_table_5_2(
+    wear: float, slips: Mapping[str, float], metrics: Mapping[str, Metrics]
+) -> dict[str, Finding]:
+    """Return what the words come to, by the gate's ids; `slips` are |w_d| at the end in rad/s."""
+    twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
+    acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
+    words = {
+        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
+        'w_sr': judge_words(OSCILLATION_WORDS[wear], [('rpm', twist), ('m/s^2', acceleration)]),
+    }
+    return {
+        f'5.2 {name} {what} {wear:g}': finding
+        for what, findings in words.items()
+        for name, finding in findings.items()
+    }
 
 
 def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:
