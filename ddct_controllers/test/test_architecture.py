@@ -115,6 +115,20 @@ def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():
     assert held[-1] == pytest.approx(static_torque(), rel=1e-4)
 
 
+def test_while_feedback_is_held_off_the_engine_follows_the_driver():
+    controller = Recording()
+    assert make_architecture(SETTINGS, controller).update(BEFORE).engine_torque is None
+    controller.commands_engine = True
+    assert make_architecture(SETTINGS, controller).update(BEFORE).engine_torque == 250.0
+
+
+def test_a_request_of_nothing_is_not_saturated():
+    base = replace(SETTINGS, architecture='base')
+    for torque, saturated in ((0.0, 'false'), (-1e-9, 'true')):
+        request = make_architecture(base, Recording(torque)).update(ON)
+        assert dict(request.status)['saturated'] == saturated
+
+
 def test_a_negative_request_is_reported_as_saturated_but_passed_on():
     request = make_architecture(SETTINGS, Recording(-1e4)).update(ON)
     assert request.torque < 0.0

@@ -252,6 +252,17 @@ def test_a_loop_that_needs_its_gain_has_a_reduction_margin():
     assert margins.gain_margin_db == math.inf
 
 
+def test_the_bandwidth_is_the_lowest_frequency_at_which_t_falls_by_3_db():
+    """Found on a grid of a million points; T rises through that level again later."""
+    factored = THIRD_OF_FIVE
+    omega = np.geomspace(1e-2, 1e2, 1_000_001)
+    values = factored.frequency_response(omega)
+    below = np.abs(values / (1.0 + values)) < math.sqrt(0.5)
+    assert np.count_nonzero(below[1:] != below[:-1]) > 2
+    found = loop_margins(ContinuousLoop(factored)).bandwidth_rad_s
+    assert found == pytest.approx(omega[np.argmax(below)], rel=2e-5)
+
+
 def test_a_weak_loop_never_crosses_over():
     margins = loop_margins(ContinuousLoop(FactoredTransferFunction(0.5, (), (1.0,))))
     assert margins.crossover_rad_s == 0.0

@@ -16,6 +16,7 @@ from ddct_controllers.mpc.transmission_model import (
 from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
 from ddct_controllers.mpc.wear_mpc import make_wear_mpc
 from ddct_controllers.mpc.wear_noise import WearNoise
+from ddct_controllers.mpc.wear_prediction import divided
 from ddct_plant.errors import DdctError, ParameterError
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
@@ -65,6 +66,16 @@ def measurement(step, speed=170.0):
         load_torque=60.0,
         open_loop_torque=170.0,
     )
+
+
+def test_what_drives_the_slip_is_divided_and_what_the_actuator_is_asked_is_not():
+    given, scaled = measurement(7), divided(measurement(7), 0.8)
+    assert scaled.engine_torque == 250.0
+    assert scaled.load_torque == 75.0
+    assert np.array(scaled.slip_reference) * 0.8 == pytest.approx(given.slip_reference)
+    assert np.array(scaled.slip_reference_rate) * 0.8 == pytest.approx(given.slip_reference_rate)
+    kept = ('open_loop_torque', 'engine_speed', 'shaft_speed', 'wheel_speed', 'step')
+    assert all(getattr(scaled, name) == getattr(given, name) for name in kept)
 
 
 def test_a_reset_controller_is_a_new_one():
