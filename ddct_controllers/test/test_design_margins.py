@@ -6,6 +6,7 @@ import control
 import numpy as np
 import pytest
 
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loop_stability import closed_loop_stable, unstable_poles
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
@@ -250,6 +251,23 @@ def test_a_loop_that_needs_its_gain_has_a_reduction_margin():
     margins = loop_margins(ContinuousLoop(FactoredTransferFunction(3.0, (), (-1.0,))))
     assert margins.gain_reduction_margin_db == pytest.approx(20.0 * math.log10(3.0), abs=1e-9)
     assert margins.gain_margin_db == math.inf
+
+
+def test_the_higher_of_two_peaks_is_found_where_the_grid_ranks_them_the_other_way():
+    """A local maximum a few percent lower on the grid is solved for too."""
+    curve = LoopCurve(ContinuousLoop(FactoredTransferFunction(1.0, (), (0.0, 1.0))))
+    low, high = curve.omega[400], math.sqrt(curve.omega[700] * curve.omega[701])
+
+    def two_peaks(values: np.ndarray) -> np.ndarray:
+        # |L|^2 = 1/(w^2 (w^2 + 1)) tells w; the second peak is between two points, which see 0.97.
+        square = np.abs(values) ** -2.0
+        at = 0.5 * np.log((np.sqrt(1.0 + 4.0 * square) - 1.0) / 2.0)
+        width = 3.0 * math.log(curve.omega[701] / curve.omega[700])
+        first = 0.99 * np.exp(-(((at - math.log(low)) / width) ** 2))
+        return first + np.exp(-(((at - math.log(high)) / width) ** 2))
+
+    assert two_peaks(curve.values).max() == pytest.approx(0.99, abs=1e-9)
+    assert curve.peak(two_peaks) == pytest.approx((1.0, high), rel=1e-6)
 
 
 def test_the_bandwidth_is_the_lowest_frequency_at_which_t_falls_by_3_db():

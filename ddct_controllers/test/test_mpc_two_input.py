@@ -196,6 +196,15 @@ def test_it_asks_for_nothing_that_the_engine_cannot_do(authority, settings):
     assert max(np.abs(np.subtract(free, deviations(mpc, authority)))) > 5.0, 'a limit binds'
 
 
+def test_each_move_ahead_has_what_the_engine_can_reach_by_then():
+    """From the demand at 300 N m/s: 3, 6 and 9 N m either way."""
+    mpc = controller(EngineAuthority(slew_n_m_s=300.0), replace(MPC4, control_steps=3))
+    vehicle = Vehicle()
+    vehicle.drive_to_control_start(mpc)
+    vehicle.answer(mpc)
+    assert mpc._reachable == pytest.approx(np.array([[-3.0, -6.0, -9.0], [3.0, 6.0, 9.0]]))
+
+
 def test_the_clutch_makes_up_for_what_the_engine_may_not_do():
     authority = EngineAuthority(deviation_n_m=10.0)
     free, limited = answers(controller()), answers(controller(authority), authority)

@@ -8,8 +8,12 @@ from ddct_plant.actuator import Actuator
 from ddct_plant.clutch import LinearClutch
 from ddct_plant.engine import Engine, TorqueProfile
 from ddct_plant.errors import ParameterError
+from ddct_plant.initial import initial_state
 from ddct_plant.load import LoadParameters, RoadLoad
 from ddct_plant.printed import ACTUATOR
+from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario_file import load_scenario
+from ddct_plant.static_torque import constant_slip_torque
 from ddct_plant.vehicle import VehicleParameters
 
 VEHICLE = VehicleParameters()
@@ -113,6 +117,15 @@ def test_actuator_saturates_before_its_dynamics():
 def test_actuator_starts_at_rest_on_what_it_can_give():
     actuator = Actuator(-300.0)
     assert [actuator.update(0.0) for _ in range(2)] == [[0.0] * 11] * 2
+
+
+def test_a_run_downhill_starts_with_no_request_where_the_static_torque_is_negative():
+    changes = ['load.slope_rad=-0.3', 'engine.torque_n_m=[0, 0]']
+    settings = RunSettings(load_scenario('thesis', changes))
+    start = initial_state(settings)
+    driveline = settings.scenario.driveline
+    assert constant_slip_torque(driveline, start.engine_torque, start.load_torque) < -1.0
+    assert (start.torque_request, start.clutch_torque) == (0.0, 0.0)
 
 
 def test_actuator_torque_is_continuous_from_period_to_period():
