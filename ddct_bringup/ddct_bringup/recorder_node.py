@@ -13,7 +13,7 @@ from std_msgs.msg import Header
 from ddct_bringup.bag.cdr import CdrNormaliser
 from ddct_bringup.bag.message_definitions import load_definition
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.tick_buffer import Tick, TickBuffer
+from ddct_bringup.bag.tick_buffer import Tick, TickBuffer, TwoMessagesError
 from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
 from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
@@ -29,12 +29,15 @@ from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
 from ddct_plant.graph.refusals import Refusals
 from ddct_plant.graph.run_info import RUN_INFO_TOPIC
 from ddct_plant.graph.settings import declare
+from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.stamp_limit import StampLimit
 from ddct_plant.names import require_name
 from ddct_plant.timebase import START_NS, stamp_of_step
 
 ACK = 'recorder/ack'
+ASKS_AGAIN = 'driveline/joint_states'
+"""A message of this topic that comes again after the acknowledgement says that it was lost."""
 TIMING = 'controller/timing'
 DIAGNOSTICS = '/diagnostics'
 PATIENCE_S = 5.0
@@ -86,12 +89,18 @@ class RecorderNode(GraphNode):
         self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
         # Acknowledgements differ in nothing but the stamp.
         self._ack_cdr = bytearray(serialize_message(ack_message(START_NS)))
+        self._acknowledged = 0
+        self._second_node: DdctError | None = None
         self._subscribe_all()
         self.publish_run_info()
         self._patience = self.create_timer(PATIENCE_S, self._say_who_is_silent, clock=_STEADY)
 
     def close(self) -> None:
-        """Finish the bag and write `timing.json`; raise DdctError when nothing was recorded."""
+        """
+        Finish the bag and write `timing.json`.
+
+        End with a DdctError when nothing was recorded, or two nodes where one belongs.
+        """
         try:
             self._write_ticks(self._buffer.drain())
             if self._bag is None:
@@ -100,6 +109,8 @@ class RecorderNode(GraphNode):
             self._timing.late_messages += self._buffer.dropped
             self._timing.refused_messages = self._refusals.count
             self._timing.write(self._folder)
+            if self._second_node is not None:
+                raise self._second_node
         except DdctError as error:
             self.finish(error)
 
@@ -124,6 +135,7 @@ class RecorderNode(GraphNode):
 
     def _tick_receiver(self, topic: str) -> Callable[[bytes], None]:
         offer, limit = self._buffer.offer, self._limit
+        asks_again = topic == ASKS_AGAIN
 
         def receive(cdr: bytes) -> None:
             stamp = stamp_of_cdr(cdr)
@@ -131,16 +143,34 @@ class RecorderNode(GraphNode):
             if reason:
                 self._refusals.add(reason)
                 return
-            ready = offer(topic, stamp, cdr)
+            try:
+                ready = offer(topic, stamp, cdr)
+            except TwoMessagesError as error:
+                names = publishers_of(self, topic)
+                self._on_second_node(DdctError(f'{error}; publishers: {names}'))
+                return
             if ready:
                 self._write_ticks(ready)
+            elif asks_again and stamp == self._acknowledged:
+                self._ack.publish(bytes(self._ack_cdr))
 
         return receive
 
     def _on_run_info(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
-        self._nodes.hear(status_name_of(message), dict(status_pairs_of(message)), cdr)
+        try:
+            self._nodes.hear(status_name_of(message), dict(status_pairs_of(message)), cdr)
+        except DdctError as error:
+            self._on_second_node(error)
         self._write_ticks([])
+
+    def _on_second_node(self, error: DdctError) -> None:
+        """Raise the error; once a real-time run is under way keep it until the clutch is open."""
+        if self.settings.lockstep or self._bag is None:
+            raise error
+        if self._second_node is None:
+            self._second_node = error
+            self.get_logger().error(str(error))
 
     def _on_timing(self, cdr: bytes) -> None:
         message = deserialize_message(cdr, DiagnosticArray)
@@ -186,6 +216,7 @@ class RecorderNode(GraphNode):
         ack = bytes(self._ack_cdr)
         # The tick is safe here now: the graph goes on while it is being written.
         self._ack.publish(ack)
+        self._acknowledged = stamp
         for topic in self._tick_topics:
             cdr = ack if topic == ACK else tick.get(topic)
             if cdr is not None:

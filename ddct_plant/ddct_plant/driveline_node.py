@@ -31,6 +31,7 @@ from ddct_plant.graph.realtime_owner import RealtimeOwner
 from ddct_plant.graph.refusals import Refusals
 from ddct_plant.graph.safe_state import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_fail_safe_ramp, declare_timeout
+from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.tick_owner import (
     CLUTCH,
@@ -80,6 +81,7 @@ class DrivelineNode(GraphNode):
         self.driveline = Driveline(
             scenario.driveline, scenario.vehicle, initial_state(self.settings)
         )
+        self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.plan.steps))
         self.owner = self._make_owner()
         self.refusals = Refusals(self)
         self._create_publishers()
@@ -90,6 +92,10 @@ class DrivelineNode(GraphNode):
             self._subscribe(Header, RECORDER_TOPIC, lambda m: m)
         self.publish_run_info(driveline_info(self.plan.steps, self.plan.clutch))
         self._start_timers()
+
+    def close(self) -> None:
+        """Stop looking at the graph."""
+        self._sole_publishers.close()
 
     def _declare_plan(self) -> TickPlan:
         duration_s = declare(
@@ -117,12 +123,14 @@ class DrivelineNode(GraphNode):
 
     def _make_owner(self) -> LockstepOwner | RealtimeOwner:
         if self.settings.lockstep:
-            return LockstepOwner(self.driveline, self.plan, self._publish_tick, self.finish)
+            return LockstepOwner(
+                self.driveline, self.plan, self._publish_tick, self._sole_publishers.finish
+            )
         owner = RealtimeOwner(
             self.driveline,
             self.plan,
             self._publish_tick,
-            self.finish,
+            self._sole_publishers.finish,
             on_started=lambda: self._start_ticks(owner),
         )
         return owner
@@ -143,6 +151,8 @@ class DrivelineNode(GraphNode):
 
     def _subscribe(self, message_type: type, topic: str, read: Callable[[Any], Any]) -> None:
         def receive(message: Any) -> None:
+            if topic == CLUTCH and self._sole_publishers.found:
+                return  # whose torque it is cannot be told: without it the clutch opens
             stamp = stamp_ns(message)
             try:
                 reply = read(message)

@@ -6,7 +6,6 @@ import pytest
 from support.in_process_graph import GraphOf
 from support.runs import expected, plan, record
 
-from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.execution import execute
 from ddct_plant.errors import DdctError
 from ddct_plant.load_node import LoadNode
@@ -39,17 +38,19 @@ def test_two_controllers_on_one_topic_are_noticed(graph_of: GraphOf) -> None:
     graph.add('controller', {'controller': 'pi'}, key='second')
     node, complaint = graph.first_failure()
     assert node == 'recorder'
-    assert 'two different messages for stamp 16' in complaint
+    assert 'node controller came twice, with controller ls8 and pi' in complaint
     assert 'ROS_DOMAIN_ID' in complaint
 
 
-def test_a_second_copy_of_a_follower_changes_no_bit(graph_of: GraphOf) -> None:
-    run = plan()
-    graph = graph_of(run)
+def test_two_controllers_of_different_names_are_both_named(graph_of: GraphOf) -> None:
+    graph = graph_of(plan('ls8'))
     graph.add_all()
-    graph.add('load', key='second')
-    graph.run()
-    assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+    rename = ['--ros-args', '-r', 'controller:__node:=other']
+    graph.add('controller', {'controller': 'pi'}, key='second', cli_args=rename)
+    node, complaint = graph.first_failure()
+    assert node == 'recorder'
+    assert ' carries two different messages for stamp 1' in complaint
+    assert complaint.endswith('; publishers: /controller and /other')
 
 
 def test_a_failed_graph_in_one_process_leaves_nothing_for_the_next_to_hear(

@@ -88,6 +88,26 @@ def test_one_percent_lost_and_doubled_messages_change_no_bit(graph_of: GraphOf) 
     assert timing['resends'] >= 10
 
 
+def test_lost_acknowledgements_are_repeated(graph_of: GraphOf) -> None:
+    run = plan(duration_s=0.5)
+    graph = graph_of(run)
+    graph.add('driveline', cli_args=lossy_remaps('driveline', ['recorder/ack']))
+    relay = Relay(
+        'driveline',
+        'recorder/ack',
+        _type_of('recorder/ack'),
+        lost=0.2,
+        doubled=0.0,
+        seed=1,
+        context=graph.context,
+    )
+    graph.add_other(relay)
+    graph.add_all()
+    graph.run()
+    assert relay.lost >= 5
+    assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+
+
 def test_a_node_stopped_for_half_a_second_changes_no_bit(tmp_path: Path) -> None:
     run = plan(duration_s=10.0)
     bag = tmp_path / 'bag'

@@ -16,6 +16,10 @@ Tick = dict[str, bytes]
 """Serialised messages of one stamp by topic."""
 
 
+class TwoMessagesError(DdctError):
+    """Two nodes publish one topic."""
+
+
 @dataclass
 class TickBuffer:
     """
@@ -96,7 +100,7 @@ class TickBuffer:
 
     def _require_same(self, topic: str, first: bytes, second: bytes, step: int) -> None:
         if first != second and not self.same(topic, first, second):
-            raise DdctError(
+            raise TwoMessagesError(
                 f'{topic} carries two different messages for stamp {stamp_of_step(step)} ns: stop '
                 'the second node that publishes it, or use another ROS_DOMAIN_ID'
             )

@@ -13,6 +13,7 @@ from ddct_plant.graph.messages import stamp_ns
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.refusals import Refusals
+from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.stamp_limit import PLANT_TOPICS, StampLimit
 from ddct_plant.timebase import step_of_stamp
 
@@ -39,6 +40,8 @@ class FollowerNode(GraphNode):
         self.limit = None if lockstep else StampLimit()
         self.refusals = Refusals(self)
         self._reply: Reply = ()
+        self._answered: Any = None
+        self._disputed = False
         for message_type, topic, read in inputs:
             receive = self._receiver(topic, read)
             self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
@@ -63,6 +66,8 @@ class FollowerNode(GraphNode):
         offer, complete, repeat = self.join.offer, Verdict.COMPLETE, Verdict.REPEAT
 
         def receive(message: Any) -> None:
+            if self._disputed:
+                return
             stamp = stamp_ns(message)
             if self.limit is not None and not self.admits(topic, stamp):
                 return
@@ -76,7 +81,10 @@ class FollowerNode(GraphNode):
                 self._answer(stamp)
                 self.publish_reply()
             elif verdict is repeat:
-                self.publish_reply()
+                if values != self._answered:
+                    self._on_second_publisher(topic, stamp)
+                else:
+                    self.publish_reply()
 
         return receive
 
@@ -93,10 +101,22 @@ class FollowerNode(GraphNode):
 
     def _answer(self, stamp: int) -> None:
         step, inputs = self.join.take()
+        self._answered = inputs[self.join.topics[0]]
         try:
             self._reply = self.answer(step, stamp, inputs)
         except DdctError as error:
             raise DdctError(f'at stamp {stamp} ns: {error}') from error
+
+    def _on_second_publisher(self, topic: str, stamp: int) -> None:
+        """Raise DdctError in lock-step; in real time obey neither publisher any more."""
+        error = DdctError(
+            f'{topic} carries two different messages for stamp {stamp} ns, publishers: '
+            f'{publishers_of(self, topic)}: stop one, or use another ROS_DOMAIN_ID'
+        )
+        if self.settings.lockstep:
+            raise error
+        self._disputed = True
+        self.get_logger().error(f'{error}; {topic} counts as missing from now on')
 
     def publish_reply(self) -> None:
         """Publish the reply to the last stamp, again if it was published before."""

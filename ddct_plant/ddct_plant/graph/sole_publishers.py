@@ -1,0 +1,153 @@
+"""See to it that each topic of the loop has one live publisher."""
+
+import importlib
+import time
+from collections.abc import Callable
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+from ddct_plant.errors import DdctError
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.sequence import SequenceWatch
+
+LOOP_TOPICS = (
+    '/clock',
+    'driveline/joint_states',
+    'clutch/slip',
+    'vehicle/twist',
+    'vehicle/accel',
+    'engine/torque_demand',
+    'engine/torque',
+    'load/torque',
+    'clutch/slip_reference',
+    'controller/status',
+    'clutch/torque_request',
+    'engine/torque_request',
+    'actuator/torque',
+    'clutch/torque',
+    'recorder/ack',
+)
+"""Every topic of a tick: each has one publisher, or none."""
+LOOK_S = 0.2
+"""How often the graph is looked at, and a doubtful end asks for the last replies again."""
+PROOF_S = 1.0
+"""How long the end of a run waits for a second publisher in the graph to be heard."""
+OPEN_S = 1.0
+"""How long a real-time run goes on with a second publisher: until then the clutch is open."""
+_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
+
+
+def publishers_of(node: Node, topic: str) -> str:
+    """Return the names of the nodes that the graph shows as publishers of a topic of `node`."""
+    shown = node.get_publishers_info_by_topic(node.resolve_topic_name(topic))
+    names = sorted(f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in shown)
+    return ' and '.join(names)
+
+
+class _Probe:
+    """Reads the sequence numbers of one topic, beside the executor, which does not give them."""
+
+    def __init__(self, node: Node, topic: str, type_name: str) -> None:
+        self.since = time.monotonic()
+        package, kind, name = type_name.split('/')
+        self.subscription: Subscription = node.create_subscription(
+            getattr(importlib.import_module(f'{package}.{kind}'), name),
+            topic,
+            lambda _: None,
+            RECORDER_QOS,
+            raw=True,
+        )
+        self._watch = SequenceWatch()
+
+    def two_alive(self) -> bool:
+        handle, message_type = self.subscription.handle, self.subscription.msg_type
+        while (taken := handle.take_message(message_type, True)) is not None:
+            self._watch.hear(taken[1]['publication_sequence_number'])
+        return self._watch.two_alive
+
+
+class SolePublishers:
+    """
+    Look for a second live publisher of any topic of the loop.
+
+    The graph alone proves nothing: it shows a killed node for 20 s. So where it shows two
+    publishers, their messages are listened to until both have been heard. In lock-step that ends
+    the node. In real time the node goes to its safe state, and ends `OPEN_S` later.
+    """
+
+    def __init__(self, node: GraphNode, ask_again: Callable[[], None]) -> None:
+        """Look from a timer of `node`; `ask_again()` makes every follower repeat its reply."""
+        self._node = node
+        self.found: DdctError | None = None
+        """The second publisher, once there is one."""
+        self._found_at = 0.0
+        self._topics = {topic: node.resolve_topic_name(topic) for topic in LOOP_TOPICS}
+        self._ask_again = ask_again
+        self._listener: Node | None = None
+        self._probes: dict[str, _Probe] = {}
+        self._at_end = False
+        node.create_timer(LOOK_S, node.guarded(self._on_timer), clock=_STEADY)
+
+    def finish(self, error: DdctError | None = None) -> None:
+        """End the node, but not well before it is sure that there is no second publisher."""
+        if error is None and self._in_doubt():
+            self._at_end = True
+            self._ask_again()
+        else:
+            self._node.finish(error or self.found)
+
+    def close(self) -> None:
+        """Stop listening."""
+        if self._listener is not None:
+            self._listener.destroy_node()
+
+    def _on_timer(self) -> None:
+        doubt = self._in_doubt()
+        if self.found is not None:
+            if self._node.settings.lockstep or time.monotonic() - self._found_at > OPEN_S:
+                self._node.finish(self.found)
+        elif self._at_end:
+            if doubt:
+                self._ask_again()
+            else:
+                self._node.finish()
+
+    def _in_doubt(self) -> bool:
+        """Say whether the graph shows a second publisher that had no time yet to be heard."""
+        count = self._node.count_publishers
+        for topic, name in self._topics.items():
+            if count(name) > 1:
+                self._listen(topic, name)
+            elif topic in self._probes:
+                self._listening().destroy_subscription(self._probes.pop(topic).subscription)
+        if self.found is not None:
+            return False
+        now = time.monotonic()
+        return any(now - probe.since < PROOF_S for probe in self._probes.values())
+
+    def _listen(self, topic: str, name: str) -> None:
+        if topic not in self._probes:
+            shown = self._node.get_publishers_info_by_topic(name)
+            self._probes[topic] = _Probe(self._listening(), name, shown[0].topic_type)
+        if self._probes[topic].two_alive() and self.found is None:
+            self._found_at = time.monotonic()
+            self.found = DdctError(
+                f'{topic} has two live publishers, of the nodes '
+                f'{publishers_of(self._node, topic)}: stop one, or use another ROS_DOMAIN_ID'
+            )
+            if not self._node.settings.lockstep:
+                self._node.get_logger().error(f'{self.found}: opening the clutch')
+
+    def _listening(self) -> Node:
+        if self._listener is None:
+            self._listener = Node(
+                'sole_publishers',
+                context=self._node.context,
+                use_global_arguments=False,
+                enable_rosout=False,
+                start_parameter_services=False,
+            )
+        return self._listener

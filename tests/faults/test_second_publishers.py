@@ -1,0 +1,122 @@
+"""Two live publishers of one topic of the loop end the run, and the names are told."""
+
+from typing import Any
+
+import pytest
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from support.in_process_graph import GraphOf, InProcessGraph
+from support.processes import START_S, Programs
+from support.runs import expected, plan
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.topics import TOPICS, TopicSpec
+from ddct_bringup.bag.wire import message_type
+from ddct_bringup.run.graph_nodes import NODE_NAMES
+from ddct_plant.driveline_node import DrivelineNode
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.sole_publishers import LOOP_TOPICS
+from ddct_plant.graph.tick_owner import RealtimeOwner
+
+LOOP = [topic for topic in TOPICS if topic.every_tick]
+
+
+class Echo(Node):
+    """Publishes the last message of a topic again and again."""
+
+    def __init__(self, topic: TopicSpec, **options: Any) -> None:
+        """Listen to `topic` and repeat it."""
+        super().__init__('echo', **options)
+        self._publisher = self.create_publisher(message_type(topic), topic.name, RECORDER_QOS)
+        self._last: bytes | None = None
+        self.create_subscription(
+            message_type(topic), topic.name, self._keep, RECORDER_QOS, raw=True
+        )
+        self.create_timer(0.02, self._repeat, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _keep(self, cdr: bytes) -> None:
+        self._last = cdr
+
+    def _repeat(self) -> None:
+        if self._last is not None:
+            self._publisher.publish(self._last)
+
+
+def _graph(graph: InProcessGraph, *, recorded: bool) -> InProcessGraph:
+    if not recorded:
+        graph.add('driveline', {'require_recorder': False})
+    graph.add_all(without=() if recorded else ['recorder'])
+    return graph
+
+
+def _owner(graph: InProcessGraph) -> RealtimeOwner:
+    driveline = graph.nodes['driveline']
+    assert isinstance(driveline, DrivelineNode)
+    assert isinstance(driveline.owner, RealtimeOwner)
+    return driveline.owner
+
+
+def _clutch_torque(graph: InProcessGraph) -> float:
+    """Return the torque in N m that the driveline integrates last."""
+    return _owner(graph)._driveline.outputs().efforts[1]
+
+
+def test_every_topic_of_a_tick_is_looked_at() -> None:
+    assert sorted(LOOP_TOPICS) == sorted(topic.name for topic in LOOP)
+
+
+@pytest.mark.parametrize('topic', LOOP, ids=lambda topic: topic.name)
+def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
+    graph_of: GraphOf, topic: TopicSpec
+) -> None:
+    controller = 'mpc4' if topic.two_input_only else 'ls8'
+    recorded = topic.name in ('recorder/ack', 'engine/torque')
+    graph = graph_of(plan(controller, duration_s=0.3))
+    graph.add_other(Echo(topic, context=graph.context))
+    node, complaint = _graph(graph, recorded=recorded).first_failure()
+    assert node == 'driveline'
+    assert complaint.startswith(f'{topic.name} has two live publishers, of the nodes /')
+    assert '/echo' in complaint
+    assert 'another ROS_DOMAIN_ID' in complaint
+
+
+@pytest.mark.parametrize('recorded', [True, False], ids=['recorded', 'not recorded'])
+@pytest.mark.parametrize('name', [name for name in NODE_NAMES if name != 'recorder'])
+def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
+    graph_of: GraphOf, name: str, recorded: bool
+) -> None:
+    graph = graph_of(plan(duration_s=0.3))
+    graph.add(name, key='second')
+    _, complaint = _graph(graph, recorded=recorded).first_failure()
+    assert 'has two live publishers, of the nodes ' in complaint
+    assert f'/{name} and /{name}' in complaint
+
+
+def test_in_real_time_a_second_controller_opens_the_clutch_before_its_name_is_told(
+    graph_of: GraphOf,
+) -> None:
+    graph = graph_of(plan('ls8', mode='realtime', duration_s=60.0))
+    graph.add_all()
+    graph.spin_until(lambda: _owner(graph).step >= 100, 'control')
+    assert _clutch_torque(graph) > 10.0
+    rename = ['--ros-args', '-r', 'controller:__node:=other', '-r', 'run_info:=other_info']
+    graph.add('controller', {'controller': 'pi'}, key='second', cli_args=rename)
+    node, complaint = graph.first_failure()
+    assert node == 'driveline'
+    assert ' has two live publishers, of the nodes /controller and /other' in complaint
+    assert abs(_clutch_torque(graph)) < 1e-6
+
+
+def test_a_killed_node_that_the_graph_still_shows_is_no_second_publisher(
+    graph_of: GraphOf, programs: Programs
+) -> None:
+    run = plan(duration_s=0.3)
+    graph = graph_of(run)
+    load = programs.start_node('ddct_plant.load_node', graph.parameters['*'])
+    graph.wait_for_publisher('load/torque', START_S)
+    load.process.kill()
+    load.wait()
+    graph.add_all()
+    graph.run()
+    assert graph.nodes['driveline'].count_publishers('load/torque') == 2, 'it was forgotten'
+    assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
