@@ -12,6 +12,7 @@ from support.waiting import wait_until
 
 from ddct_bringup import score
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.run.shared_memory import SHARED_MEMORY, remove_segments, segments_of
 
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')
 
@@ -96,9 +97,46 @@ def test_the_nodes_of_a_killed_bringup_end_by_themselves(
     programs: Programs, tmp_path: Path
 ) -> None:
     bringup = _running(programs, tmp_path / 'runs')
-    assert len(processes_left()) == 9
+    assert len(processes_left()) == 10, 'bringup, its guardian and the nodes'
     bringup.send(signal.SIGKILL)
     bringup.wait()
     wait_until(lambda: not processes_left(), 'no node left', 20.0)
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
+
+
+def _segments(programs: Programs, node: Program) -> set[str]:
+    """Return the shared-memory segments of a node that was started by hand, once it has some."""
+    found: set[str] = set()
+
+    def look() -> bool:
+        found.update(segments_of(node.process.pid))
+        return len(found) >= 2
+
+    wait_until(look, 'shared memory', START_S)
+    return found
+
+
+def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
+    programs: Programs, tmp_path: Path
+) -> None:
+    live = programs.start_node(
+        'ddct_plant.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+    )
+    dead = programs.start_node(
+        'ddct_plant.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+    )
+    foreign = _segments(programs, live) | _segments(programs, dead)
+    dead.process.kill()
+    dead.wait()
+    bringup = _running(programs, tmp_path / 'runs')
+    clutch = node_of('clutch_node')
+    own = segments_of(clutch)
+    assert len(own) >= 2
+    os.kill(clutch, signal.SIGKILL)
+    assert bringup.wait() == 1
+    there = {file.name for file in SHARED_MEMORY.iterdir()}
+    assert not {name for name in there for segment in own if segment in name}
+    assert {f'{segment}_el' for segment in foreign} <= there
+    live.stop()
+    remove_segments(foreign)

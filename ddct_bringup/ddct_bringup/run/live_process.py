@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from ddct_bringup.run.node_processes import POLL_S, end_with_parent
+from ddct_bringup.run.node_process import end_with_parent
+from ddct_bringup.run.node_processes import POLL_S
 from ddct_bringup.run.ros_domain import own_domain
 from ddct_plant.errors import DdctError
 

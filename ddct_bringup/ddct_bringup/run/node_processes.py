@@ -1,62 +1,20 @@
 """Start the graph's nodes as processes, watch them, and leave none behind."""
 
-import contextlib
-import ctypes
-import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_bringup.run.graph_nodes import NodeSpec
+from ddct_bringup.run.guardian import Guardian
+from ddct_bringup.run.node_process import NodeProcess
 from ddct_plant.errors import DdctError
 
 STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
 """Signals to stop a node with, and how long to wait after each, in s; a busy machine is slow."""
 POLL_S = 0.01
-_SET_PARENT_DEATH_SIGNAL = 1
-
-
-@dataclass
-class NodeProcess:
-    """A running node and what it prints."""
-
-    name: str
-    process: subprocess.Popen[bytes]
-    printed: int
-    """File descriptor, in memory: a full disk must not swallow the reason of a failure."""
-    log: Path
-    """Where `keep_log` writes it."""
-    hung: bool = False
-    """Whether it had to be killed because it did not stop when asked."""
-
-    def last_words(self) -> str:
-        """Return the last line that the node printed, or '' if it printed nothing."""
-        lines = self._all_words().decode(errors='replace').strip().splitlines()
-        return lines[-1].strip() if lines else ''
-
-    def keep_log(self) -> None:
-        """Write what the node printed to its log, if there is room for it."""
-        with contextlib.suppress(OSError):
-            self.log.write_bytes(self._all_words())
-        os.close(self.printed)
-
-    def _all_words(self) -> bytes:
-        # Not by seek and read: the node writes at the file position that we share with it.
-        return os.pread(self.printed, os.fstat(self.printed).st_size, 0)
-
-    def obituary(self) -> str:
-        """Say in one line how the node ended."""
-        code = self.process.returncode
-        if self.hung:
-            return f'node {self.name} did not stop when asked and was killed'
-        if code < 0:
-            return f'node {self.name} was killed by {signal.Signals(-code).name}'
-        words = self.last_words().removeprefix(f'{self.name}: ')
-        return f'node {self.name} ended with code {code}{f": {words}" if words else ""}'
+LOOK_S = 0.5
+"""How often the nodes' pulse and shared memory are looked at."""
 
 
 class NodeProcesses:
@@ -69,34 +27,32 @@ class NodeProcesses:
         self._nodes: list[NodeProcess] = []
 
     def __enter__(self) -> 'NodeProcesses':
+        self._guardian = Guardian()
         return self
 
     def __exit__(self, *_: object) -> None:
         self.stop(lambda name: True)
         for node in self._nodes:
-            node.keep_log()
+            node.close()
+        self._guardian.dismiss()
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
         """Start one process per node, in the given order."""
         for spec in specs:
-            command = [sys.executable, '-m', spec.module]
-            command += ['--ros-args', '--params-file', str(self._parameter_file)]
-            printed = os.memfd_create(spec.name)
-            process = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=printed,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                preexec_fn=end_with_parent,
-            )
             log = self._logs / f'{spec.name}.log'
-            self._nodes.append(NodeProcess(spec.name, process, printed, log))
+            node = NodeProcess(spec, self._parameter_file, log)
+            self._nodes.append(node)
+            self._guardian.watch(node.process.pid)
 
     def wait_for(self, name: str, stopped: Callable[[], bool]) -> None:
-        """Wait until node `name` has done its work; raise DdctError when any node fails."""
+        """
+        Wait until node `name` has done its work.
+
+        Raise DdctError when any node fails or hangs, KeyboardInterrupt when `stopped()`.
+        """
+        looked_at = time.monotonic()
         while True:
-            ended = [node for node in self._nodes if node.process.poll() is not None]
+            ended = [node for node in self._nodes if not node.running]
             if any(node.name != name or node.process.returncode != 0 for node in ended):
                 culprit = _culprit(ended)
                 raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
@@ -104,16 +60,25 @@ class NodeProcesses:
                 return
             if stopped():
                 raise KeyboardInterrupt
+            now = time.monotonic()
+            if now - looked_at >= LOOK_S:
+                self._look(now - looked_at)
+                looked_at = now
             time.sleep(POLL_S)
 
+    def _look(self, elapsed_s: float) -> None:
+        for node in self._nodes:
+            node.look(elapsed_s)
+        for node in self._nodes:
+            if silence := node.silence():
+                raise DdctError(f'{silence}; its log is {node.log}')
+
     def stop(self, chosen: Callable[[str], bool]) -> None:
-        """Stop the chosen nodes, first by SIGINT, then harder."""
+        """Stop the chosen nodes, first by SIGINT, then harder; one that was stopped goes on."""
         nodes = [node for node in self._nodes if chosen(node.name)]
         for number, patience_s in STOP_LADDER:
             for node in nodes:
-                if node.process.poll() is None:
-                    node.hung = number == signal.SIGKILL
-                    node.process.send_signal(number)
+                node.send(number)
             deadline = time.monotonic() + patience_s
             while time.monotonic() < deadline and _running(nodes):
                 time.sleep(POLL_S)
@@ -128,14 +93,9 @@ class NodeProcesses:
 
 
 def _running(nodes: Sequence[NodeProcess]) -> bool:
-    return any(node.process.poll() is None for node in nodes)
+    return any(node.running for node in nodes)
 
 
 def _culprit(ended: Sequence[NodeProcess]) -> NodeProcess:
     """Return the node to blame: one that was killed or failed before one that noticed."""
     return min(ended, key=lambda node: (node.process.returncode == 0, node.name == 'driveline'))
-
-
-def end_with_parent() -> None:
-    """Let the kernel end this node should the supervisor itself be killed (Linux)."""
-    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGTERM)

@@ -21,6 +21,7 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_help import node_help
+from ddct_plant.graph.pulse import pulse
 from ddct_plant.stop_signals import stop_signals
 
 SLICE_S = 0.1
@@ -122,8 +123,9 @@ def run_node(
                 print(node_help(name, factory, sys.argv))
                 return 0
             require_ros_arguments(argv)
+        beat = pulse()
         with stop_signals() as stops:
-            error = _run(factory, arguments, lambda: bool(stops))
+            error = _run(factory, arguments, lambda: beat() or bool(stops))
         if error is not None:
             raise error
         return 0
