@@ -72,9 +72,15 @@ def gone(pid: int) -> bool:
 
 def wait_as_supervisor(nodes: NodeProcesses) -> str:
     """Return why the supervisor ends, having stopped everything."""
+    deadline = time.monotonic() + WITHIN_S
+
+    def stopped() -> bool:
+        assert time.monotonic() < deadline, 'nothing was noticed'
+        return False
+
     try:
         with pytest.raises(DdctError) as raised:
-            nodes.wait_for('driveline', lambda: False)
+            nodes.wait_for('driveline', stopped)
     finally:
         nodes.__exit__()
     return str(raised.value)
