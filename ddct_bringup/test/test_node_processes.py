@@ -183,7 +183,12 @@ def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, 
         os.kill(pids[0], signal.SIGSTOP)
     supervisor.kill()
     supervisor.communicate()
-    wait_until(lambda: all(gone(pid) for pid in pids))
+    try:
+        wait_until(lambda: all(gone(pid) for pid in pids))
+    finally:
+        for pid in pids:
+            if not gone(pid):
+                os.kill(pid, signal.SIGKILL)
     assert (tmp_path / 'whole').exists(), 'the recorder could not finish'
 
 
