@@ -15,8 +15,8 @@ from ddct_bringup.bag.wire import message_type
 from ddct_bringup.run.graph_nodes import NODE_NAMES
 from ddct_plant.driveline_node import DrivelineNode
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.realtime_owner import RealtimeOwner
 from ddct_plant.graph.sole_publishers import LOOP_TOPICS
-from ddct_plant.graph.tick_owner import RealtimeOwner
 
 LOOP = [topic for topic in TOPICS if topic.every_tick]
 
@@ -92,18 +92,20 @@ def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
     assert f'/{name} and /{name}' in complaint
 
 
-def test_in_real_time_a_second_controller_opens_the_clutch_before_its_name_is_told(
-    graph_of: GraphOf,
+@pytest.mark.parametrize(
+    ('name', 'changes'), [('controller', {'controller': 'pi'}), ('clutch', {}), ('load', {})]
+)
+def test_in_real_time_a_second_publisher_opens_the_clutch_before_its_name_is_told(
+    graph_of: GraphOf, name: str, changes: dict[str, str]
 ) -> None:
     graph = graph_of(plan('ls8', mode='realtime', duration_s=60.0))
     graph.add_all()
-    graph.spin_until(lambda: _owner(graph).step >= 100, 'control')
-    assert _clutch_torque(graph) > 10.0
-    rename = ['--ros-args', '-r', 'controller:__node:=other', '-r', 'run_info:=other_info']
-    graph.add('controller', {'controller': 'pi'}, key='second', cli_args=rename)
+    graph.spin_until(lambda: _clutch_torque(graph) > 10.0, 'a clutch that transmits')
+    rename = ['--ros-args', '-r', f'{name}:__node:=other', '-r', 'run_info:=other_info']
+    graph.add(name, changes, key='second', cli_args=rename)
     node, complaint = graph.first_failure()
     assert node == 'driveline'
-    assert ' has two live publishers, of the nodes /controller and /other' in complaint
+    assert f' has two live publishers, of the nodes /{name} and /other' in complaint
     assert abs(_clutch_torque(graph)) < 1e-6
 
 
