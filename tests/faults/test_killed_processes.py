@@ -126,7 +126,9 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     dead = programs.start_node(
         'ddct_plant.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
-    foreign = _segments(programs, live) | _segments(programs, dead)
+    left = _segments(programs, dead)
+    # The middleware itself takes over the port of a dead node.
+    foreign = _segments(programs, live) | {name for name in left if 'port' not in name}
     dead.process.kill()
     dead.wait()
     bringup = _running(programs, tmp_path / 'runs')
@@ -139,4 +141,4 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     assert not {name for name in there for segment in own if segment in name}
     assert {f'{segment}_el' for segment in foreign} <= there
     live.stop()
-    remove_segments(foreign)
+    remove_segments(foreign | left)
