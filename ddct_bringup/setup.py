@@ -6,10 +6,12 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
 MPC_STUDIES = {
+    'admissible_scenarios': ['admissible_scenarios', 'prediction_ranges', 'worn_ranges'],
     'clutch_torque_limit': ['clutch_torque_limit'],
     'engine_authority': ['engine_authority'],
     'mpc4_readings': ['mpc4_readings'],
     'readings': ['readings'],
+    'score_windows': ['score_windows'],
     'state_of_art': ['state_of_art', 'pedal_positions'],
     'torque_level': ['torque_level'],
     'torsion_weight': ['torsion_weight'],

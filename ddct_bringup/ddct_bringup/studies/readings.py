@@ -22,6 +22,7 @@ from ddct_controllers.mpc.transmission_model import (
     transmission_model,
 )
 from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario import Scenario
 from ddct_plant.table import text_or_dash
 from ddct_plant.units import rpm_from_rad_s
 
@@ -43,9 +44,9 @@ class Reading:
     """What becomes of C_fOL beside the controller."""
     architecture: str = 'detailed'
 
-    def score(self, row: TableRow) -> Metrics:
-        """Return the metrics of its run in the thesis scenario."""
-        run = RunSettings(THESIS_SCENARIO, self.architecture)
+    def score(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> Metrics:
+        """Return the metrics of its run in a scenario with the thesis's driveline."""
+        run = RunSettings(scenario, self.architecture)
         settings = self.change(thesis_settings(row))
         mpc = slip_mpc(run, settings, self.knowledge, self.model, noise_rpm=self.noise_rpm)
         return scored_run(run, self.beside(mpc))
