@@ -97,6 +97,24 @@ def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations():
     assert analysis.std == pytest.approx(np.sqrt(np.diag(covariance)) * RANGE, rel=1e-6)
 
 
+def test_standard_error_of_a_function_is_that_of_the_normal_equations():
+    """Of the slope of C_m, against the covariance and a difference quotient."""
+    optimum = fit(PROBLEM, VALUES)
+    values = np.array(optimum.values)
+
+    def rate(at: np.ndarray) -> float:
+        return float((at[1] - at[0]) / at[2])
+
+    gradient = np.array([(rate(values + h) - rate(values - h)) / 2e-4 for h in 1e-4 * np.eye(6)])
+    jacobian = PROBLEM.jacobian(values) / RANGE
+    variance = np.sum(optimum.residuals**2) / (9 - 7)
+    held = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
+    free = np.linalg.inv(jacobian.T @ jacobian) * variance
+    expected = [gradient @ free @ gradient, gradient[1:] @ held @ gradient[1:]]
+    found = identifiability(optimum).std_of(gradient)
+    assert found == pytest.approx(np.sqrt(expected), rel=1e-5)
+
+
 def test_engagement_time_without_engagement_is_the_time_that_the_reference_would_still_need():
     scenario = PROBLEM.scenario([*VALUES[:4], 0.0, 0.0])
     slip = run_headless(RunSettings(scenario), 'pi').slip_speed

@@ -16,6 +16,7 @@ from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.report import main
 from ddct_bringup.score import main as score
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_bringup.scores.thesis_conditions import predicted_range
 from ddct_plant.run_settings import RunSettings
 
 
@@ -47,6 +48,16 @@ def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None
         assert float(text.replace('−', '-')) == pytest.approx(value, abs=0.51 * 10.0**-decimals)
     for printed in ('0.88', '0.71', '0.79', '1.15', '0.87', 'calibrated'):
         assert printed in reader.text
+
+
+def test_a_predicted_figure_has_its_range_and_whether_it_is_a_hit(tmp_path: Path) -> None:
+    record(plan('mpc3', 'headless', duration_s=3.0), tmp_path / 'mpc3')
+    out = tmp_path / 'report.html'
+    assert main([str(tmp_path), '--out', str(out)]) == 0
+    text = read(out).text
+    assert predicted_range('mpc3', 'torsion_speed_std_rpm') in text
+    assert 'predicted' in text
+    assert 'miss' in text
 
 
 def test_the_page_says_where_it_comes_from(page: Path) -> None:

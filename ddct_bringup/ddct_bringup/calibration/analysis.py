@@ -1,6 +1,7 @@
 """What the nine numbers say about the fitted parameters, and what the fit predicts by itself."""
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,20 @@ class Identifiability:
     """(6,) with C_m start held, which has 0."""
     correlation_given_start: np.ndarray
     """(5, 5) of all but C_m start, which is held."""
+    covariance_root: np.ndarray
+    """(6, 6) R with R R^T the covariance in the parameters' units."""
+    covariance_root_given_start: np.ndarray
+    """(6, 5) the same with C_m start held."""
+
+    def std_of(self, gradient: Sequence[float]) -> tuple[float, float]:
+        """
+        Return the std of a function of the parameters, free and with C_m start held.
+
+        `gradient` (6,) is that of the function, per unit of each parameter.
+        """
+        roots = (self.covariance_root, self.covariance_root_given_start)
+        free, held = (float(np.linalg.norm(np.asarray(gradient) @ root)) for root in roots)
+        return free, held
 
     @property
     def weakest(self) -> np.ndarray:
@@ -56,7 +71,9 @@ def identifiability(optimum: Fit) -> Identifiability:
     held = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
     held_std = np.sqrt(np.diag(held))
     # By the SVD: J^T J would lose the digits of the weakest direction.
-    std = np.sqrt(variance * np.sum((directions.T / singular_values) ** 2, axis=1))
+    root = np.sqrt(variance) * directions.T / singular_values
+    std = np.sqrt(np.sum(root**2, axis=1))
+    held_root = np.vstack([np.zeros(len(held)), np.linalg.cholesky(held)])
     return Identifiability(
         degrees_of_freedom=degrees,
         residual_std=float(np.sqrt(variance)),
@@ -66,6 +83,8 @@ def identifiability(optimum: Fit) -> Identifiability:
         std=std * RANGE,
         std_given_start=np.array([0.0, *(held_std * RANGE[1:])]),
         correlation_given_start=held / np.outer(held_std, held_std),
+        covariance_root=RANGE[:, None] * root,
+        covariance_root_given_start=RANGE[:, None] * held_root,
     )
 
 

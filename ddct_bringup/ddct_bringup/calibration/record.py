@@ -41,6 +41,7 @@ def calibrate(progress: Progress) -> Record:
         'objective': _objective(optimum),
         'score_window_s': [BASE.control_start_s, optimum.problem.window_end_s],
         'parameters': _parameters(optimum, frozen),
+        'torque_and_slopes': _torque_and_slopes(optimum),
         'residuals': residual_rows(optimum.problem.figures(frozen)),
         'frozen_objective': _half_square(optimum.problem.residuals(frozen)),
         'windows': [_optimum(one) for one in found.windows],
@@ -152,6 +153,34 @@ def _parameters(optimum: Fit, frozen: Sequence[float]) -> list[Record]:
         }
         for index, parameter in enumerate(PARAMETERS)
     ]
+
+
+def _torque_and_slopes(optimum: Fit) -> list[Record]:
+    """Return levels, rise and slopes that the fit implies, with their standard errors."""
+    analysis = identifiability(optimum)
+    start, end, rise_end, slope = optimum.values[:4]
+    rate = (end - start) / rise_end
+    none = (0.0, 0.0)
+    quantities = (
+        ('C_m start', 'N m', start, (1.0, 0.0, 0.0, 0.0, *none)),
+        ('C_m end', 'N m', end, (0.0, 1.0, 0.0, 0.0, *none)),
+        ('rise of C_m', 'N m', end - start, (-1.0, 1.0, 0.0, 0.0, *none)),
+        ('slope of C_m', 'N m/s', rate, (*np.divide((-1.0, 1.0, -rate), rise_end), 0.0, *none)),
+        ('slope of the reference', 'rad/s^2', slope, (0.0, 0.0, 0.0, 1.0, *none)),
+    )
+    entries = []
+    for quantity, unit, value, gradient in quantities:
+        free, held = analysis.std_of(gradient)
+        entries.append(
+            {
+                'quantity': quantity,
+                'unit': unit,
+                'value': value,
+                'std': free,
+                'std_given_start': held,
+            }
+        )
+    return entries
 
 
 def _at_bound(value: float, index: int) -> bool:

@@ -28,6 +28,7 @@ def all_tables(record: Record) -> dict[str, CalibrationTable]:
     end = _number(record['score_window_s'][1])
     return {
         'parameters': parameter_table(record),
+        'torque_and_slopes': torque_table(record),
         'residuals': residual_table(record),
         'windows': optima_table('Optima by end of the score window', record['windows']),
         'starts': optima_table(f'Optima from every start, window to {end} s', record['starts']),
@@ -92,6 +93,23 @@ def parameter_table(record: Record) -> CalibrationTable:
             'bounds from',
         ),
         rows,
+    )
+
+
+def torque_table(record: Record) -> CalibrationTable:
+    """Return torque levels and slopes at the optimum with their standard errors."""
+    return CalibrationTable(
+        'Engine torque and reference, with standard errors',
+        ('quantity', 'optimum', 'standard error', 'standard error, C_m start held'),
+        [
+            (
+                f'{entry["quantity"]}, {entry["unit"]}',
+                _number(entry['value']),
+                _number(entry['std'], 2),
+                _number(entry['std_given_start'], 2) if entry['std_given_start'] else '-',
+            )
+            for entry in record['torque_and_slopes']
+        ],
     )
 
 
