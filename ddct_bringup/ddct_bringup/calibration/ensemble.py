@@ -112,7 +112,7 @@ def _centres(frozen: Scenario, progress: Progress) -> dict[float, Point]:
             progress(f'centre: score window to {end:.1f} s')
             at = centre(Problem(end), values)
             values = at.values
-            if not why_not_admissible(_member(Problem(end), at, '', '')):
+            if not why_not_admissible(_member(Problem(end), at, 'centre', '')):
                 centres[end] = at
     return dict(sorted(centres.items()))
 

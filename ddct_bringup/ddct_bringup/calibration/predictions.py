@@ -15,7 +15,7 @@ from ddct_plant.scenario_file import scenario_digest
 FOLDER = 'admissible_scenarios'
 FILE = 'predictions.json'
 Value = float | str | None
-"""A figure, None where it is not defined, or a word of Table 5.2."""
+"""A figure, None where it is not defined; hit or miss of a word of Table 5.2."""
 
 
 @dataclass(frozen=True)

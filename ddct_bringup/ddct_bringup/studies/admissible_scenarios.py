@@ -8,7 +8,7 @@ from ddct_bringup.calibration.record import values_of
 from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, THESIS_TABLE, ThesisRow
 from ddct_bringup.studies.scored_run import FIGURE_HEADERS
 from ddct_bringup.thesis.runs import THESIS_SCENARIO
-from ddct_bringup.thesis.values import COMPARED, WORN
+from ddct_bringup.thesis.values import OSCILLATION_WORDS, SLIP_WORDS, WORN
 from ddct_controllers.design.study import Study
 from ddct_plant.scenario import Scenario
 
@@ -100,29 +100,26 @@ def _hits_at_once(row: ThesisRow) -> str:
 
 
 def worn_ranges() -> Study:
-    """Return Table 5.2 as words and numbers of the frozen scenario, with their ranges."""
-    kinds: tuple[tuple[str, str, str], ...] = (
-        ('w_d', 'word', ''),
-        ('slip_rad_s', '|w_d| at the end of the window rad/s', '.1f'),
-        ('w_sr', 'word of w_sr and A_x', ''),
-        *((name, _HEADERS[name], _FORMS[name]) for name in FIGURES[1:]),
-    )
+    """Return the words of Table 5.2 as hit or miss, and their numbers, with their ranges."""
+    rows: list[tuple[str, ...]] = []
+    for gain in WORN:
+        for name in SLIP_WORDS:
+            kinds = (
+                ('w_d', f'w_d "{SLIP_WORDS[name]}"', ''),
+                ('slip_rad_s', '|w_d| at the end of the window rad/s', '.1f'),
+                ('w_sr', f'w_sr, A_x "{OSCILLATION_WORDS[gain][name]}"', ''),
+                *((figure, _HEADERS[figure], _FORMS[figure]) for figure in FIGURES[1:]),
+            )
+            for kind, header, form in kinds:
+                found = _kept(f'5.2 {name} {kind} {gain:g}')
+                value = _text(found.frozen, form)
+                rows.append((name, f'{gain:g}', header, value, found.text(form)))
     return Study(
         'Table 5.2, value and range',
-        ('controller', 'K_usura', 'figure', 'value', 'range'),
-        [
-            _worn_row(name, gain, kind, header, form)
-            for name in COMPARED
-            for gain in WORN
-            for kind, header, form in kinds
-        ],
-        ('A word has beside it in how many of the scenarios it is the word.',),
+        ('controller', 'K_usura', 'word or figure', 'value', 'range'),
+        rows,
+        ('A verdict on a word has beside it in how many of the scenarios it is that.',),
     )
-
-
-def _worn_row(name: str, gain: float, kind: str, header: str, form: str) -> tuple[str, ...]:
-    found = _kept(f'5.2 {name} {kind} {gain:g}')
-    return (name, f'{gain:g}', header, _text(found.frozen, form), found.text(form))
 
 
 def _kept(name: str) -> Prediction:
