@@ -9,7 +9,7 @@ from support.processes import START_S, Programs
 from support.runs import plan
 
 from ddct_plant.driveline_node import DrivelineNode
-from ddct_plant.graph.tick_owner import LOAD
+from ddct_plant.graph.tick_owner import LOAD, TickOwner
 from ddct_plant.timebase import stamp_of_step
 
 
@@ -18,10 +18,14 @@ def _graph(graph: InProcessGraph, timeout_s: float = 1.0) -> InProcessGraph:
     return graph
 
 
-def _step(graph: InProcessGraph) -> int:
+def _owner(graph: InProcessGraph) -> TickOwner:
     driveline = graph.nodes['driveline']
     assert isinstance(driveline, DrivelineNode)
-    return driveline.owner.step
+    return driveline.owner
+
+
+def _step(graph: InProcessGraph) -> int:
+    return _owner(graph).step
 
 
 @pytest.mark.parametrize(
@@ -81,6 +85,9 @@ def test_a_follower_that_is_started_in_the_middle_ends_with_the_reason(
     graph.add_all()
     graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
     graph.remove(late)
+    resends = _owner(graph).resends
+    # By then no reply of the removed node is under way, and the step stands still.
+    graph.spin_until(lambda: _owner(graph).resends >= resends + 2, 'a tick sent again')
     graph.add(late)
     node, complaint = graph.first_failure()
     assert node == late
