@@ -12,6 +12,7 @@ from ddct_plant.run_settings import RunSettings
 from ddct_plant.scenario_file import load_scenario
 
 THESIS = load_scenario('thesis')
+SLOPE = 'load.slope_rad=0.05'
 OURS = {
     'engagement_time_s': 0.111,
     'torsion_speed_std_rpm': 2.222,
@@ -26,6 +27,7 @@ def entry(controller='ls8'):
         'bag': controller,
         'controller': controller,
         'wear_gain': 1.0,
+        'mode': 'lockstep',
         'valid': True,
         'reason': '',
         'metrics': {**dict.fromkeys(METRIC_NAMES), **OURS},
@@ -85,7 +87,7 @@ def test_each_figure_of_the_thesis_stands_right_of_ours(controller, printed_figu
         (RunSettings(THESIS, wear_gain=1.3), ()),
         (RunSettings(THESIS, architecture='feedforward'), ()),
         (RunSettings(dataclasses.replace(THESIS, name='mine')), ()),
-        (RunSettings(THESIS), ('load.slope_rad=0.05',)),
+        (RunSettings(load_scenario('thesis', [SLOPE])), (SLOPE,)),
     ],
     ids=['worn', 'thicker', 'architecture', 'scenario', 'changed scenario'],
 )

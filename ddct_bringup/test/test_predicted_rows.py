@@ -29,6 +29,7 @@ def run(controller, figures=FIGURES):
     return {
         'bag': controller,
         'controller': controller,
+        'mode': 'lockstep',
         'valid': True,
         'reason': '',
         'metrics': dict.fromkeys(METRIC_NAMES) | dict(zip(names, figures, strict=True)),

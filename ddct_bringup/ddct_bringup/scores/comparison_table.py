@@ -1,6 +1,7 @@
 """The table that `compare` prints: our scores beside Table 5.1 of the thesis."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TextIO
 
 from ddct_bringup.scores.scoring import Entry
@@ -69,26 +70,24 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
 
 
 def _with_range(column: Column, name: str) -> Column:
-    """Return a metric's column with the range of what is predicted on a second line."""
-
-    def text(run: Entry) -> str:
-        spread = predicted_range(run['controller'], name)
-        return f'{column.text(run)}\n{spread}' if spread else column.text(run)
-
-    return Column(column.heading, text)
+    """Return a metric's column with the range of what is predicted beneath."""
+    return replace(column, below=lambda run: predicted_range(run['controller'], name))
 
 
 def _thesis(unit: str, name: str) -> Column:
+    """Return the column of the print, with the verdict beneath where it is predicted."""
+
     def text(run: Entry) -> str:
         row = thesis_row(run['controller'])
-        if row is None:
-            return UNDEFINED
-        printed = f'{row.figures()[name]:.2f}'
-        if row.use != PREDICTED:
-            return printed
-        return f'{printed}\n{verdict(row, name, run["metrics"][name])}'
+        return f'{row.figures()[name]:.2f}' if row else UNDEFINED
 
-    return Column(f'thesis\n{unit}', text)
+    def below(run: Entry) -> str:
+        row = thesis_row(run['controller'])
+        if row is None or row.use != PREDICTED:
+            return ''
+        return verdict(row, name, run['metrics'][name])
+
+    return Column(f'thesis\n{unit}', text, below=below)
 
 
 def _use(run: Entry) -> str:

@@ -26,6 +26,13 @@ class Column:
     text: Callable[[Entry], str]
     number: bool = True
     """Whether to align it to the right."""
+    below: Callable[[Entry], str] = lambda run: ''
+    """What a second line says beneath the text; empty for none."""
+
+    def cell(self, run: Entry) -> str:
+        """Return the text of a run's cell, of one line or two."""
+        lines = (self.text(run), self.below(run))
+        return '\n'.join(printable(line) for line in lines if line)
 
 
 def fact(name: str, heading: str) -> Column:
@@ -80,7 +87,7 @@ def print_runs(
     for column in columns:
         table.add_column(column.heading, justify='right' if column.number else 'left')
     for run in runs:
-        table.add_row(*(Text(printable(column.text(run))) for column in columns))
+        table.add_row(*(Text(column.cell(run)) for column in columns))
     console = Console(
         file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
     )
