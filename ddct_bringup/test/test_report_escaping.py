@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.headless import run_headless
 from ddct_bringup.report_page.page import report_page, symbols
@@ -73,6 +74,7 @@ def recording(text: str) -> Recording:
         run_info={text: {text: text}},
         counts={text: 1},
         missed={},
+        realtime=RealtimeFacts(),
     )
 
 

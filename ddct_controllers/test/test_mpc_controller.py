@@ -8,7 +8,7 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.observer import NoiseLevels, Observer
+from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.settings import InputTerms
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc, thesis_settings
@@ -257,8 +257,8 @@ class _Listening(Observer):
     """Keeps what it is told of the inputs."""
 
     def __init__(self):
-        stiffness = RUN.scenario.driveline.halfshaft_stiffness
-        super().__init__(MODEL, NoiseLevels(), stiffness, initial_request=0.0)
+        start = AtRest(RUN.scenario.driveline.halfshaft_stiffness, initial_request=0.0)
+        super().__init__(MODEL, kalman_gain(MODEL, NoiseLevels()), start)
         self.heard = []
 
     def predict(self, inputs):

@@ -92,11 +92,17 @@ def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         taken = [path for path in files if path.exists()]
-        page = folder / _PAGE
-        ours = not page.exists() or generator in read_text_file(page)
     except OSError as error:
         raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
-    if not ours:
+    page = folder / _PAGE
+    if page.exists() and not _is_made_by(generator, page):
         raise DdctError(f'{page} is not a page of ours: choose another --out')
     if taken and not overwrite:
         raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')
+
+
+def _is_made_by(generator: str, page: Path) -> bool:
+    try:
+        return generator in read_text_file(page)
+    except OSError:
+        return False
