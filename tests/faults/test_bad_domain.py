@@ -8,6 +8,7 @@ from support.complaints import assert_one_line
 from support.processes import Programs
 
 from ddct_bringup import bringup, compare
+from ddct_bringup.run.ros_domain import own_domain
 
 
 @pytest.mark.parametrize('domain', ['abc', '-1', '233'])
@@ -37,3 +38,15 @@ def test_a_run_without_a_graph_does_not_look_at_it(
 ) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', '999')
     assert bringup.main(['--headless', '--out', str(tmp_path / 'out')]) == 0
+
+
+def test_each_graph_has_another_domain_than_the_one_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nodes that were killed in the last one are still seen in it, and hold its shared memory."""
+    monkeypatch.delenv('ROS_DOMAIN_ID')
+    domains = []
+    for _ in range(10):
+        with own_domain() as domain:
+            domains.append(domain)
+    assert len(set(domains)) == len(domains)

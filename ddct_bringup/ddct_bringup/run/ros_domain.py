@@ -1,5 +1,6 @@
 """Give each graph a ROS domain of its own, so that graphs on one machine do not mix."""
 
+import itertools
 import os
 import socket
 from collections.abc import Iterator
@@ -12,6 +13,8 @@ _DOMAINS = range(1, 100)
 """Domain ids whose DDS ports stay below those that the kernel hands out."""
 _FIRST_PORT = 28400
 """A domain is taken while somebody listens on this port plus its id."""
+_TURNS = itertools.count(os.getpid())
+"""Where the search for a free domain begins: nodes killed in the last one still haunt it."""
 
 
 @contextmanager
@@ -36,7 +39,7 @@ def own_domain() -> Iterator[int]:
 
 @contextmanager
 def _reserved() -> Iterator[int]:
-    first = os.getpid() % len(_DOMAINS)
+    first = next(_TURNS) % len(_DOMAINS)
     for domain in [*_DOMAINS[first:], *_DOMAINS[:first]]:
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as lock:
             try:
