@@ -9,9 +9,7 @@ from ddct_bringup.calibration import predictions
 from ddct_bringup.calibration.predictions import Prediction, Predictions
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.scores.thesis_table import (
-    FIGURES as TABLE_FIGURES,
-)
+from ddct_bringup.scores.thesis_table import FIGURES as TABLE_FIGURES
 from ddct_bringup.scores.thesis_table import (
     PREDICTED,
     PREDICTION_TOLERANCE,
@@ -62,6 +60,7 @@ def test_predicted_row_has_value_and_range_print_and_verdict():
     lines = printed(run('mpc3'))
     row = lines.index('mpc3 0.620 0.63 1.200 0.90 0.190 0.19 predicted - - yes')
     assert lines[row + 1] == '0.550 to - hit 0.50 to 1.50 miss 0.300 to 0.300 hit'
+    assert 'below the print hit (within 25 % of it) or miss.' in lines
 
 
 def test_undefined_figure_is_a_miss():

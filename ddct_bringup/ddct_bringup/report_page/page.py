@@ -23,7 +23,7 @@ from ddct_bringup.report_page.runs import ReportRun
 from ddct_bringup.report_page.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
 from ddct_bringup.report_page.update_times import TICKS, update_times
 from ddct_bringup.scores.tables import fallback_note
-from ddct_bringup.scores.thesis_table import THESIS_TABLE
+from ddct_bringup.scores.thesis_table import PREDICTION_TOLERANCE, THESIS_TABLE
 from ddct_plant.graph.run_info import package_version
 
 SHOWN_AT_FIRST = 12
@@ -50,6 +50,7 @@ def report_page(runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence]) -> 
         runs=shown,
         columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
         further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
+        prediction_tolerance=PREDICTION_TOLERANCE,
         loop_columns=LOOP_COLUMNS,
         loops=loop_rows(evidence),
         no_loops=without_evidence(evidence),

@@ -18,14 +18,14 @@ from ddct_bringup.scores.tables import (
     print_runs,
 )
 from ddct_bringup.scores.thesis_conditions import is_thesis_run, predicted_range, verdict
-from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, thesis_row
+from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, PREDICTION_TOLERANCE, thesis_row
 from ddct_plant.run_settings import RunSettings
 
 _NOTE = (
     'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '
     'fit residual;\npredicted: the row took no part in the fit. Below our figure is its range '
-    'over the admissible scenarios,\nbelow the print hit (within 5 % for t_a, 10 % for std) or '
-    'miss.'
+    'over the admissible scenarios,\n'
+    f'below the print hit (within {100 * PREDICTION_TOLERANCE:.0f} % of it) or miss.'
 )
 _NO_CROSSING = "t_a '-': after control start w_d never changed its sign."
 

@@ -28,10 +28,9 @@ class ThesisRow:
         return {name: getattr(self, name) for name in FIGURES}
 
     def hit(self, name: str, value: float | None) -> bool:
-        """Return whether a figure of ours is within its tolerance; an undefined one is not."""
+        """Return whether a predicted figure is near enough; an undefined one is not."""
         printed = self.figures()[name]
-        tolerance = PREDICTION_TOLERANCE if self.use == PREDICTED else TOLERANCES[name]
-        return value is not None and abs(value / printed - 1.0) <= tolerance
+        return value is not None and abs(value / printed - 1.0) <= PREDICTION_TOLERANCE
 
 
 FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
