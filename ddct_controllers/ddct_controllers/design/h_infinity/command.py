@@ -18,6 +18,7 @@ from ddct_controllers.design.h_infinity.report import (
 )
 from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.design.thesis.printed_weights import PRINTED_WEIGHTS
 from ddct_controllers.designed import BILINEAR, HOLD, DesignedController
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.errors import ParameterError
@@ -29,8 +30,8 @@ from ddct_plant.table import print_table
 _DESCRIPTION = """\
 Chapter 3 of the thesis: specifications to weights, synthesis, cleaning, discretisation, and
 what the closed loop then does. A controller is given only when its closed loop was verified.
---weights thesis: as printed. fitted: those that lead to nearly the printed Hinf1. sampled: as
-printed with one more on the torque, and hold and delay in the plant; this is the one to run.
+--weights thesis: K and w_2 as printed. fitted: those that lead to nearly the printed Hinf1.
+sampled: as printed with one more on the torque, and hold and delay in the plant; run this one.
 K grows with the square of the rise time, w_2 falls with it, unless they are given.
 --out writes the controller as DIR/NAME.yaml, which `bringup` and `compare` take, and charts."""
 _EXAMPLES = """\
@@ -40,7 +41,7 @@ examples:
   design h-infinity --weights sampled --rise-time 0.4 --overshoot 10 --name mine --out designs
   compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
 _DEFAULTS = THESIS_SPECIFICATIONS
-_PRINTED_RECIPE = 'thesis'
+_DEFAULT_RECIPE = 'thesis'
 
 
 def add_parser(subparsers: Any) -> None:
@@ -54,7 +55,7 @@ def add_parser(subparsers: Any) -> None:
     add = parser.add_argument
     add('--rise-time', type=float, metavar='S', help='t_r (default: 0.3)')
     add('--overshoot', type=float, metavar='PERCENT', help='(default: 8)')
-    add('--weights', choices=tuple(RECIPES), default=_PRINTED_RECIPE, help='(default: thesis)')
+    add('--weights', choices=tuple(RECIPES), default=_DEFAULT_RECIPE, help='(default: thesis)')
     add('--low-frequency-gain', type=float, metavar='K', help='|S| near 0 over w^2')
     add('--bandwidth', type=float, metavar='W_2', help='corner of W_t in rad/s')
     add('--effort', type=float, metavar='TORQUE', help='N m per rpm that cost 1 (sampled)')
@@ -111,9 +112,8 @@ def page_tables() -> dict[str, Any]:
 
 
 def _printed_records() -> dict[str, Record]:
-    weights = make_weights(_PRINTED_RECIPE)
     return {
-        name: printed_record(controller, weights, _DEFAULTS)
+        name: printed_record(controller, PRINTED_WEIGHTS, _DEFAULTS)
         for name, controller in H_INFINITY_CONTROLLERS.items()
     }
 

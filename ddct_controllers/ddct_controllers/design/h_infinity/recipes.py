@@ -1,4 +1,4 @@
-"""Recipes of weights: the thesis's printed ones, those behind its Hinf1, and our own."""
+"""Recipes of weights: the thesis's, those behind its Hinf1, and our own; S_p and T_p unrounded."""
 
 from dataclasses import dataclass
 
@@ -37,12 +37,12 @@ class WeightRecipe:
 
 
 RECIPES = {
-    'thesis': WeightRecipe('printed in Section 3.2.1', 0.15, 28.0, BUTTERWORTH),
+    'thesis': WeightRecipe('of Section 3.2.1, K and w_2 as printed', 0.15, 28.0, BUTTERWORTH),
     'fitted': WeightRecipe(
         'that lead to nearly the printed Hinf1', *(0.35, 28.0), damping=1.0, back_off=1.0
     ),
     'sampled': WeightRecipe(
-        'printed, and one on the torque; hold and delay in the plant',
+        'the same, and one on the torque; hold and delay in the plant',
         *(0.15, 28.0, BUTTERWORTH),
         effort=EffortWeight(torque_n_m_per_rpm=0.055, corner_rad_s=30.0),
         sampled=True,
