@@ -10,9 +10,10 @@ from scipy.optimize import brentq
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY, new_chart
 from ddct_controllers.design.drawing.charts import draw_bound
-from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS, make_weights
+from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, relative_error, wear_family
 from ddct_controllers.design.h_infinity.weighted_norms import WeightedNorms, weighted_norms
+from ddct_controllers.design.thesis.printed_weights import PRINTED_WEIGHTS
 from ddct_controllers.design.thesis_figures.loop_shaping_figures import (
     draw_loop_in_nichols,
     draw_step,
@@ -28,9 +29,6 @@ _ERROR_LINES: tuple[dict[str, Any], ...] = (
     {'color': BLUE, 'linestyle': '-'},
 )
 """For the two ends of the wear, of which one lies on the other."""
-_WEIGHTS = make_weights('thesis')
-
-
 _PRINTED_SENSITIVITY_NORM = 0.97
 
 
@@ -40,7 +38,7 @@ def _loop(factor: float) -> ContinuousLoop:
 
 
 def _norms(factor: float) -> WeightedNorms:
-    w_s, w_t = _WEIGHTS.sensitivity, _WEIGHTS.complementary
+    w_s, w_t = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
     return weighted_norms(_loop(factor), w_s, w_t, PRINTED_W_U)
 
 
@@ -97,11 +95,11 @@ class _Bounded:
 
 _BOUNDED = (
     _Bounded(
-        *('3.5', 'S_n', 'W_s', _WEIGHTS.sensitivity.transfer_function(), 'sensitivity'),
+        *('3.5', 'S_n', 'W_s', PRINTED_WEIGHTS.sensitivity.transfer_function(), 'sensitivity'),
         printed_norm=_PRINTED_SENSITIVITY_NORM,
     ),
     _Bounded(
-        *('3.6', 'T_n', 'W_t', _WEIGHTS.complementary.transfer_function(), 'complementary'),
+        *('3.6', 'T_n', 'W_t', PRINTED_WEIGHTS.complementary.transfer_function(), 'complementary'),
         printed_norm=0.997,
     ),
     _Bounded('3.7', 'T_n', 'W_u', PRINTED_W_U, 'uncertainty', printed_norm=0.32),
