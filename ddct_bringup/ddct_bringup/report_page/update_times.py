@@ -24,6 +24,8 @@ class UpdateTimes:
     p99_us: float
     largest_us: float
     missed_steps: int
+    worst_lateness_us: float | None
+    """None in lock-step."""
     resends: int
     late_messages: int
     wall_time_s: float
@@ -46,6 +48,7 @@ def update_times(run: ReportRun) -> UpdateTimes | None:
         p99_us=p99,
         largest_us=largest,
         missed_steps=timing.missed_steps,
+        worst_lateness_us=timing.worst_lateness_us,
         resends=timing.resends,
         late_messages=timing.late_messages,
         wall_time_s=timing.wall_time_s,
