@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.records import mcap_of, salvage_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
@@ -34,18 +34,12 @@ _FACT_NAMES = (
 )
 
 
-def score_bag(path: Path, *, relative_to: Path | None = None) -> Entry:
-    """
-    Read and score a bag folder or .mcap file, with the `timing.json` beside it if there is one.
-
-    "bag" is the path, relative to the folder `relative_to` if it lies in it. Raise DdctError when
-    the bag cannot be read.
-    """
-    return score_recording(read_bag(path), bag_name(path, relative_to))
-
-
 def score_recording(recording: Recording, bag: str) -> Entry:
-    """Return the entry of a recording that was read before; raise DdctError for bad timing."""
+    """
+    Score a recording, with the `timing.json` beside it if there is one; `bag` names it.
+
+    Raise DdctError for timing that cannot be used.
+    """
     facts = recording.facts
     metrics = compute_metrics(
         recording.trajectory,
