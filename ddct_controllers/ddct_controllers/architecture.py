@@ -1,5 +1,6 @@
 """Control architectures of the thesis: how open loop and feedback make one torque request."""
 
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
@@ -9,7 +10,7 @@ import numpy as np
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.checks import require_finite
-from ddct_plant.errors import DdctError
+from ddct_plant.errors import DdctError, ForeignError
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import RunSettings
 from ddct_plant.static_torque import StaticTorque
@@ -59,24 +60,13 @@ class Architecture:
         load_torque = self._load.torque(measurement.vehicle_speed)
         open_loop = self._open_loop(measurement, load_torque)
         measurement = measurement.within(load_torque, open_loop)
-        try:
-            if measurement.step >= self._start_step:
-                feedback = 'on'
-                command = self._checked(self._controller.update(measurement), measurement.step)
-            else:
-                feedback = 'held off'
-                self._controller.hold(measurement)
-                command = self._feedback_off(measurement)
-        except np.linalg.LinAlgError as error:  # the numbers of a loop that diverges
-            raise DdctError(
-                f'{self._name}: it cannot go on at step {measurement.step} ({error}): the loop '
-                'diverges in this scenario, or its options do not suit it'
-            ) from error
+        on = measurement.step >= self._start_step
+        command = self._command(measurement, on)
         torque = open_loop + command.clutch_torque
         return TorqueRequest(
             torque,
             (
-                ('feedback', feedback),
+                ('feedback', 'on' if on else 'held off'),
                 ('open_loop_torque_n_m', repr(open_loop)),
                 ('closed_loop_torque_n_m', repr(command.clutch_torque)),
                 ('saturated', 'true' if torque < 0.0 else 'false'),
@@ -84,6 +74,27 @@ class Architecture:
             ),
             command.engine_torque,
         )
+
+    def _command(self, measurement: Measurement, on: bool) -> Command:
+        """Return what the controller commands; DdctError with its name for whatever it raises."""
+        try:
+            if on:
+                return self._checked(self._controller.update(measurement), measurement.step)
+            self._controller.hold(measurement)
+            return self._feedback_off(measurement)
+        except DdctError:
+            raise
+        except np.linalg.LinAlgError as error:  # the numbers of a loop that diverges
+            raise DdctError(
+                f'{self._name}: it cannot go on at step {measurement.step} ({error}): the loop '
+                'diverges in this scenario, or its options do not suit it'
+            ) from error
+        except Exception as error:
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            raise ForeignError(
+                f'{self._name}: it failed at step {measurement.step} ({type(error).__name__}: '
+                f'{error}, in {place.filename} line {place.lineno}): mend the controller'
+            ) from error
 
     def _feedback_off(self, measurement: Measurement) -> Command:
         """Return no torque of the controller's own; the engine then follows the driver."""

@@ -1,5 +1,6 @@
 """Each architecture adds its open loop, and starts feedback, where the thesis has it."""
 
+import inspect
 import math
 from dataclasses import replace
 
@@ -10,7 +11,7 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError
+from ddct_plant.errors import DdctError, ForeignError
 from ddct_plant.load import RoadLoad
 from ddct_plant.run_settings import ARCHITECTURES, RunSettings
 from ddct_plant.scenario_file import load_scenario
@@ -157,6 +158,21 @@ def test_a_status_that_the_graph_cannot_carry_names_controller_and_step(status):
         make_architecture(SETTINGS, controller).update(ON)
     assert str(caught.value).startswith(f"controller 'mine': its status at step {START} is ")
     assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize(('measurement', 'method'), [(ON, 'update'), (BEFORE, 'hold')])
+def test_a_controller_that_raises_is_named_with_the_step_and_the_line(measurement, method):
+    controller = Recording()
+    controller.registered_name = 'mine'
+    setattr(controller, method, lambda measurement: 1 / 0)
+    line = inspect.currentframe().f_lineno - 1
+    with pytest.raises(ForeignError) as caught:
+        make_architecture(SETTINGS, controller).update(measurement)
+    assert str(caught.value) == (
+        f"controller 'mine': it failed at step {measurement.step} (ZeroDivisionError: division by "
+        f'zero, in {__file__} line {line}): mend the controller'
+    )
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
 
 
 def test_an_estimate_that_diverges_ends_the_run_with_the_controllers_name():

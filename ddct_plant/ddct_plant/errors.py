@@ -16,5 +16,9 @@ class DdctError(Exception):
         super().__init__(printable(text))
 
 
+class ForeignError(DdctError):
+    """Code of a third party raised, which is the cause; a node's log keeps its traceback."""
+
+
 class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""

@@ -96,6 +96,7 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
         ('bare_number', 'float'),
         ('text', "'12.5'"),
         ('bad_status', "status at step 60 is (('iterations', 3),)"),
+        ('raising', 'failed at step 60 (ZeroDivisionError: float division by zero, in '),
     ],
 )
 def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
@@ -103,7 +104,7 @@ def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'bringup', f'controller {name!r}: its', words)
+    assert_one_line(capfd.readouterr().err, 'bringup', f'controller {name!r}: it', words)
     assert not (out / name).exists()
 
 
@@ -139,7 +140,8 @@ def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_l
         'ddct_bringup.bringup', *('--controller', 'raising', '--out', str(out))
     )
     assert run.wait() == 1
-    assert_one_line(run.errors(), 'bringup', 'node controller', 'float division by zero')
+    words = "controller 'raising': it failed at step 60 (ZeroDivisionError: float division by zero"
+    assert_one_line(run.errors(), 'bringup', 'node controller', words)
     log = out / 'raising.partial' / 'work' / 'controller.log'
     assert str(log) in run.errors()
     assert 'Traceback' in log.read_text(encoding='utf-8')

@@ -105,7 +105,7 @@ class FollowerNode(GraphNode):
         try:
             self._reply = self.answer(step, stamp, inputs)
         except DdctError as error:
-            raise DdctError(f'at stamp {stamp} ns: {error}') from error
+            raise type(error)(f'at stamp {stamp} ns: {error}') from error
 
     def _on_second_publisher(self, topic: str, stamp: int) -> None:
         """Raise DdctError in lock-step; in real time obey neither publisher any more."""

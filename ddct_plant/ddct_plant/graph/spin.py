@@ -2,6 +2,7 @@
 
 import gc
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -12,7 +13,7 @@ from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedE
 from rclpy.task import Future
 
 from ddct_plant.cli import run_program
-from ddct_plant.errors import DdctError
+from ddct_plant.errors import DdctError, ForeignError
 from ddct_plant.graph.arguments import (
     help_asked,
     init_ros,
@@ -114,7 +115,8 @@ def run_node(
 
     A program that has arguments of its own, or its own `--help`, passes on its whole command line
     as `arguments`, checked. 0 after its work is done, after SIGINT or SIGTERM, or after `--help`;
-    1, with one line on standard error, after a DdctError.
+    1, with one line on standard error, after a DdctError; above it stands the traceback of what
+    a third party's code raised.
     """
 
     def program(argv: list[str]) -> int:
@@ -126,6 +128,8 @@ def run_node(
         beat = pulse()
         with stop_signals() as stops:
             error = _run(factory, arguments, lambda: beat() or bool(stops))
+        if isinstance(error, ForeignError):
+            traceback.print_exception(error)
         if error is not None:
             raise error
         return 0
