@@ -43,7 +43,9 @@ def test_the_page_has_every_metric_of_scores_json_to_the_last_bit(
 def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None:
     reader = read(page)
     for name, value, text in reader.metrics:
-        assert value is not None, name
+        if value is None:
+            assert (name, text) == ('worst_lateness_us', '–'), 'only in real time'
+            continue
         decimals = len(text.partition('.')[2])
         assert float(text.replace('−', '-')) == pytest.approx(value, abs=0.51 * 10.0**-decimals)
     for printed in ('0.88', '0.71', '0.79', '1.15', '0.87', 'calibrated'):
@@ -58,6 +60,7 @@ def test_a_predicted_figure_has_its_range_and_whether_it_is_a_hit(tmp_path: Path
     assert predicted_range('mpc3', 'torsion_speed_std_rpm') in text
     assert 'predicted' in text
     assert 'miss' in text
+    assert 'a hit is within 25 % of the print' in text
 
 
 def test_the_page_says_where_it_comes_from(page: Path) -> None:
