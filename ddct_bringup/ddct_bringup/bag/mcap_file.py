@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
-from ddct_bringup.bag.mcap_writer import McapWriter
+from mcap.writer import Writer
+
 from ddct_bringup.bag.metadata import (
     HASH_KEY,
     QOS_KEY,
@@ -52,8 +53,14 @@ class McapFile:
         self._channels = tuple(channels)
         self._custom_data = dict(custom_data)
         self._schemas: dict[str, int] = {}
+        self._counts = [0] * len(channels)
+        self._first_ns = self._last_ns = 0
         self._sink = _Sink(path)
-        self._writer = McapWriter(self._sink, 'ros2', 'ddct_bringup', _CHUNK_BYTES)
+        self._writer = Writer(
+            cast(IO[bytes], self._sink), chunk_size=_CHUNK_BYTES, enable_data_crcs=True
+        )
+        # The library would name itself with its version here, and the bytes change with it.
+        self._writer.start('ros2', 'ddct_bringup')
         self._ids = [self._register(channel) for channel in channels]
         self._add_metadata()
 
@@ -61,7 +68,10 @@ class McapFile:
         """Append a message to the channel with this index; raise DdctError when it fails."""
         if self._sink.closed:
             raise DdctError(f'{self._path}: the recording is already closed')
-        self._writer.add_message(self._ids[channel], stamp_ns, data)
+        self._first_ns = min(self._first_ns or stamp_ns, stamp_ns)
+        self._last_ns = max(self._last_ns, stamp_ns)
+        self._counts[channel] += 1
+        self._writer.add_message(self._ids[channel], stamp_ns, data, stamp_ns)
 
     def finish(self) -> None:
         """Write the summary and `metadata.yaml`, once; do nothing after a failed write."""
@@ -80,25 +90,21 @@ class McapFile:
         # rosbag2 gives each type one schema, however many topics have it.
         schema = self._schemas.get(channel.type_name)
         if schema is None:
-            schema = self._schemas[channel.type_name] = self._writer.add_schema(
+            schema = self._schemas[channel.type_name] = self._writer.register_schema(
                 channel.type_name, 'ros2msg', channel.schema_text.encode()
             )
         metadata = {QOS_KEY: channel.qos, HASH_KEY: channel.type_hash}
-        return self._writer.add_channel(channel.topic, SERIALIZATION, schema, metadata)
+        return self._writer.register_channel(channel.topic, SERIALIZATION, schema, metadata)
 
     def _add_metadata(self) -> dict[str, Any]:
-        statistics = self._writer.statistics()
-        counts = statistics.channel_message_counts
         information = bag_information(
             self._path.name,
             [
-                TopicCount(
-                    each.topic, each.type_name, each.type_hash, each.qos, counts.get(key, 0)
-                )
-                for key, each in zip(self._ids, self._channels, strict=True)
+                TopicCount(each.topic, each.type_name, each.type_hash, each.qos, count)
+                for each, count in zip(self._channels, self._counts, strict=True)
             ],
-            statistics.message_start_time,
-            statistics.message_end_time,
+            self._first_ns,
+            self._last_ns,
             self._custom_data,
         )
         self._writer.add_metadata(RECORD_NAME, metadata_record(information))
@@ -129,6 +135,7 @@ class _Sink:
     def __init__(self, path: Path) -> None:
         self._path = path
         self.closed = False
+        self._written = 0
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open('xb', buffering=0)
@@ -147,7 +154,11 @@ class _Sink:
         except OSError as error:
             self.close()
             raise _cannot_write(self._path, error) from error
+        self._written += len(data)
         return len(data)
+
+    def tell(self) -> int:
+        return self._written
 
     def close(self) -> None:
         self.closed = True
