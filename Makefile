@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test mutants lint bench lock clean
+.PHONY: help setup demo test test-fast mutants lint bench lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -26,7 +26,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | demo | test | mutants | lint | bench | clean   (see docs/setup.md)'
+	@echo 'make setup | demo | test | test-fast | mutants | lint | bench | clean   (see docs/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -81,6 +81,15 @@ test: setup
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \
 	exit $$status
+
+# Pure tests: no graph, browser or compiler. Left out are the files of the whole design workflows.
+FAST_FOLDERS := ddct_plant/test ddct_reference/test ddct_controllers/test
+SLOW_TESTS := $(addprefix ddct_controllers/test/test_,design_hinf_command.py \
+    design_hinf_page.py design_hinf_sampled.py design_loop_shaping_command.py \
+    design_loop_shaping_search.py margins_command.py)
+test-fast: setup
+	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile $(FAST_FOLDERS) \
+	    $(SLOW_TESTS:%=--ignore=%)
 
 # MUTANTS='--claim TEXT' or files of tests/mutants try only those.
 mutants: setup

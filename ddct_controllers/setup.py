@@ -10,9 +10,7 @@ setup(
     name=PACKAGE,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
-    package_data={
-        PACKAGE: ['design/thesis/numbers/*.yaml', 'mpc/export/c/*.c', 'mpc/export/c/*.h']
-    },
+    package_data={PACKAGE: ['mpc/export/c/*.c', 'mpc/export/c/*.h']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -28,7 +26,7 @@ setup(
     entry_points={
         'console_scripts': [
             'controller = ddct_controllers.controller_node:main',
-            'design = ddct_controllers.design_program:main',
+            'design = ddct_controllers.workflows.design_program:main',
         ],
     },
 )

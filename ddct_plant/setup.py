@@ -10,7 +10,7 @@ setup(
     name=PACKAGE,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['scenarios/*.yaml']},
+    package_data={PACKAGE: ['scenario/packaged/*.yaml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -25,12 +25,12 @@ setup(
     license='Apache-2.0',
     entry_points={
         'console_scripts': [
-            'actuator = ddct_plant.actuator_node:main',
-            'clutch = ddct_plant.clutch_node:main',
-            'driveline = ddct_plant.driveline_node:main',
-            'engine = ddct_plant.engine_node:main',
-            'identify = ddct_plant.identify:main',
-            'load = ddct_plant.load_node:main',
+            'actuator = ddct_plant.nodes.actuator_node:main',
+            'clutch = ddct_plant.nodes.clutch_node:main',
+            'driveline = ddct_plant.nodes.driveline_node:main',
+            'engine = ddct_plant.nodes.engine_node:main',
+            'identify = ddct_plant.identification.identify:main',
+            'load = ddct_plant.nodes.load_node:main',
         ],
     },
 )

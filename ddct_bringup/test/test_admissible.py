@@ -4,12 +4,12 @@ import dataclasses
 
 import pytest
 
-from ddct_bringup.calibration import admissible
-from ddct_bringup.calibration.admissible import fitted_rows, why_not_admissible
-from ddct_bringup.calibration.parameters import BASE, ROWS
-from ddct_plant.errors import ParameterError
-from ddct_plant.scenario import Scenario
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.reproduction.calibration import admissible
+from ddct_bringup.reproduction.calibration.admissible import fitted_rows, why_not_admissible
+from ddct_bringup.reproduction.calibration.parameters import BASE, ROWS
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
 
 SCENARIO = load_scenario('thesis')
 

@@ -4,14 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.studies.admissible_scenarios import (
+from ddct_bringup.reproduction.studies.admissible_scenarios import (
     admissible_scenarios,
     prediction_ranges,
     worn_ranges,
 )
-from ddct_bringup.studies.score_windows import score_windows
-from ddct_controllers.design.study import Study
-from ddct_plant.page_tables import fill_tables
+from ddct_bringup.reproduction.studies.score_windows import score_windows
+from ddct_bringup.reproduction.studies.study import Study
+from ddct_plant.program.page_tables import fill_tables
 
 PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'predictions.md'
 
@@ -28,9 +28,9 @@ def figures(cell: str) -> list[float | None]:
 
 
 def test_page_has_the_tables_of_the_studies(studies):
-    """After a change: design mpc --write-doc docs/predictions.md."""
+    """After a change: reproduce studies --write-doc docs/predictions.md."""
     page = PAGE.read_text(encoding='utf-8')
-    assert fill_tables(page, 'mpc', studies) == page
+    assert fill_tables(page, 'studies', studies) == page
 
 
 def test_no_scenario_has_a_whole_predicted_row(studies):

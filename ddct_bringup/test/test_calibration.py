@@ -5,15 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ddct_bringup.calibration.analysis import identifiability
-from ddct_bringup.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE, ROWS
-from ddct_bringup.calibration.problem import Problem, fit, row_figures
-from ddct_bringup.calibration.record import check_frozen, values_of
-from ddct_bringup.headless import run_headless
-from ddct_bringup.scores.thesis_table import PREDICTED, THESIS_TABLE, thesis_row
-from ddct_plant.errors import ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.reproduction.calibration.analysis import identifiability
+from ddct_bringup.reproduction.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE, ROWS
+from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_figures
+from ddct_bringup.reproduction.calibration.record import check_frozen, values_of
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis')
 PROBLEM = Problem(SCENARIO.score_window_s[1])

@@ -5,15 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ddct_bringup.calibration import record
-from ddct_bringup.calibration.pi_loop import pi_growth_rate
-from ddct_bringup.calibration.problem import Fit, Problem
-from ddct_bringup.calibration.search import LocalOptimum, Search, lowest_stable
-from ddct_bringup.headless import run_headless
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario import Scenario
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.reproduction.calibration import record
+from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.problem import Fit, Problem
+from ddct_bringup.reproduction.calibration.search import LocalOptimum, Search, lowest_stable
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
 
 DURATION_S = 20.0
 

@@ -1,4 +1,4 @@
-"""Program `calibrate`: what it prints and writes, and how it refuses."""
+"""Program `reproduce calibration`: what it prints and writes, and how it refuses."""
 
 import dataclasses
 import json
@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup import calibrate
-from ddct_plant.scenario import ReferenceParameters
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.programs import reproduce
+from ddct_bringup.reproduction.calibration import command
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import ReferenceParameters
 
 DOCS = Path(__file__).resolve().parents[2] / 'docs'
 RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
@@ -17,18 +18,18 @@ RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
 @pytest.fixture
 def calibrated(monkeypatch):
     """Spare the tests of the outputs the minute and a half of the calibration itself."""
-    monkeypatch.setattr(calibrate, 'calibrate', lambda progress: RECORD)
+    monkeypatch.setattr(command, 'calibrate', lambda progress: RECORD)
 
 
 def test_help_has_examples(capsys):
     with pytest.raises(SystemExit) as end:
-        calibrate.main(['--help'])
+        reproduce.main(['calibration', '--help'])
     assert end.value.code == 0
     assert 'examples:' in capsys.readouterr().out
 
 
 def test_quick_check_of_the_frozen_scenario_passes_and_shows_fit_residuals(capsys, tmp_path):
-    assert calibrate.main(['--quick', '--json', str(tmp_path / 'check.json')]) == 0
+    assert reproduce.main(['calibration', '--quick', '--json', str(tmp_path / 'check.json')]) == 0
     output = capsys.readouterr()
     assert 'not reproductions' in output.out
     assert 'local refit' in output.err
@@ -43,14 +44,14 @@ def test_quick_check_fails_for_a_scenario_that_is_not_the_optimum(monkeypatch, c
     other = dataclasses.replace(
         scenario, reference=ReferenceParameters(scenario.reference.slope_rad_s2 + 5.0)
     )
-    monkeypatch.setattr(calibrate, 'load_scenario', lambda name: other)
-    assert calibrate.main(['--quick']) == 1
+    monkeypatch.setattr(command, 'load_scenario', lambda name: other)
+    assert reproduce.main(['calibration', '--quick']) == 1
     errors = capsys.readouterr().err.splitlines()
-    assert errors[-1].startswith('calibrate: scenario thesis is not the optimum')
+    assert errors[-1].startswith('reproduce: scenario thesis is not the optimum')
 
 
 def test_json_on_standard_output_stands_alone(calibrated, capsys):
-    assert calibrate.main(['--json', '-']) == 0
+    assert reproduce.main(['calibration', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out) == RECORD
 
 
@@ -59,7 +60,7 @@ def test_outputs_are_the_kept_files(calibrated, capsys, tmp_path):
     kept = (DOCS / 'calibration.md').read_text(encoding='utf-8')
     page.write_text(kept.replace('0.524', '0.999'), encoding='utf-8')
     scenario = tmp_path / 'thesis.yaml'
-    assert calibrate.main(['--write', str(scenario), '--write-doc', str(page)]) == 0
+    assert reproduce.main(['calibration', '--write', str(scenario), '--write-doc', str(page)]) == 0
     assert page.read_text(encoding='utf-8') == kept
     assert load_scenario(str(scenario)) == load_scenario('thesis')
     assert 'One row left out' in capsys.readouterr().out
@@ -72,26 +73,26 @@ def test_ensemble_is_written_with_what_it_predicts_and_with_progress(
         progress('centre: score window to 1.7 s')
         return [dataclasses.replace(frozen, name='member', description='Centre of the region')]
 
-    monkeypatch.setattr(calibrate, 'find_members', search)
-    assert calibrate.main(['--ensemble', str(tmp_path)]) == 0
+    monkeypatch.setattr(command, 'find_members', search)
+    assert reproduce.main(['calibration', '--ensemble', str(tmp_path)]) == 0
     assert load_scenario(str(tmp_path / 'member.yaml')).engine == load_scenario('thesis').engine
     record = json.loads((tmp_path / 'predictions.json').read_text())
     for name, one in record['predictions'].items():
         assert one['members'] == {'member': one['frozen']}, name
     assert capsys.readouterr().err.splitlines() == [
-        'calibrate: centre: score window to 1.7 s',
-        'calibrate: predictions of thesis',
-        'calibrate: predictions of member',
-        f'calibrate: 1 admissible scenarios and predictions.json are in {tmp_path}',
+        'reproduce calibration: centre: score window to 1.7 s',
+        'reproduce calibration: predictions of thesis',
+        'reproduce calibration: predictions of member',
+        f'reproduce calibration: 1 admissible scenarios and predictions.json are in {tmp_path}',
     ]
 
 
 @pytest.mark.parametrize('option', ['--ensemble', '--predict'])
 def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, capsys, option):
-    monkeypatch.setattr(calibrate, 'find_members', None)
-    assert calibrate.main([option, '/nowhere/folder']) == 1
+    monkeypatch.setattr(command, 'find_members', None)
+    assert reproduce.main(['calibration', option, '/nowhere/folder']) == 1
     error = capsys.readouterr().err
-    assert error.startswith('calibrate: /nowhere/folder is no folder')
+    assert error.startswith('reproduce: /nowhere/folder is no folder')
     assert len(error.splitlines()) == 1
 
 
@@ -100,9 +101,9 @@ def test_no_scenario_is_written_when_a_residual_is_outside_its_tolerance(
 ):
     record = json.loads(json.dumps(RECORD))
     record['residuals'][4]['deviation'] = 0.2
-    monkeypatch.setattr(calibrate, 'calibrate', lambda progress: record)
+    monkeypatch.setattr(command, 'calibrate', lambda progress: record)
     scenario = tmp_path / 'thesis.yaml'
-    assert calibrate.main(['--write', str(scenario)]) == 1
+    assert reproduce.main(['calibration', '--write', str(scenario)]) == 1
     assert not scenario.exists()
     error = capsys.readouterr().err
     assert 'hinf1 torsion_speed_std_rpm +20.0 % is outside the tolerance' in error
@@ -113,10 +114,10 @@ def test_file_that_cannot_be_written_is_refused_before_the_work(monkeypatch, cap
     def no_work(progress):
         raise AssertionError('the calibration ran')
 
-    monkeypatch.setattr(calibrate, 'calibrate', no_work)
-    assert calibrate.main([option, '/nowhere/file']) == 1
+    monkeypatch.setattr(command, 'calibrate', no_work)
+    assert reproduce.main(['calibration', option, '/nowhere/file']) == 1
     error = capsys.readouterr().err
-    assert error.startswith('calibrate: ') and '/nowhere/file' in error
+    assert error.startswith('reproduce: ') and '/nowhere/file' in error
     assert len(error.splitlines()) == 1
 
 
@@ -130,5 +131,5 @@ def test_file_that_cannot_be_written_is_refused_before_the_work(monkeypatch, cap
 )
 def test_options_that_contradict_each_other_are_refused(capsys, arguments):
     with pytest.raises(SystemExit) as end:
-        calibrate.main(arguments)
+        reproduce.main(['calibration', *arguments])
     assert end.value.code == 2

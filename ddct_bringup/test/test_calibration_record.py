@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.calibration.files import fill_page, scenario_text
-from ddct_bringup.calibration.pi_loop import pi_growth_rate
-from ddct_bringup.calibration.problem import Problem, row_figures
-from ddct_bringup.calibration.record import NAMES, outside_tolerance, residual_rows
-from ddct_bringup.calibration.search import rounded
-from ddct_plant.errors import DdctError
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.reproduction.calibration.files import fill_page, scenario_text
+from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.problem import Problem, row_figures
+from ddct_bringup.reproduction.calibration.record import NAMES, outside_tolerance, residual_rows
+from ddct_bringup.reproduction.calibration.search import rounded
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
 
 DOCS = Path(__file__).resolve().parents[2] / 'docs'
 RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
@@ -41,7 +41,7 @@ def test_residual_outside_its_tolerance_is_named():
 
 
 def test_scenario_file_is_what_the_record_writes():
-    kept = importlib.resources.files('ddct_plant') / 'scenarios' / 'thesis.yaml'
+    kept = importlib.resources.files('ddct_plant.scenario') / 'packaged' / 'thesis.yaml'
     assert kept.read_text(encoding='utf-8') == scenario_text(RECORD)
     optimum = [entry['value'] for entry in RECORD['parameters']]
     assert Problem(RECORD['score_window_s'][1]).scenario(rounded(optimum)) == SCENARIO
@@ -53,7 +53,7 @@ def test_page_has_the_numbers_of_the_record():
 
 def test_page_that_lacks_a_table_is_refused():
     with pytest.raises(DdctError, match='must have these tables'):
-        fill_page(PAGE.replace('<!-- calibrate: fit -->', ''), RECORD)
+        fill_page(PAGE.replace('<!-- calibration: fit -->', ''), RECORD)
 
 
 def test_chosen_optimum_is_the_lowest_with_a_stable_pi():

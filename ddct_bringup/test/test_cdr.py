@@ -3,9 +3,9 @@
 import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 
-from ddct_bringup.bag.cdr import CdrNormaliser
-from ddct_bringup.bag.message_definitions import load_definition
-from ddct_plant.errors import DdctError
+from ddct_bringup.bag.file.cdr import CdrNormaliser
+from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_plant.base.errors import DdctError
 
 STAMP = {'sec': 3, 'nanosec': 70_000_000}
 HEADER = {'stamp': STAMP, 'frame_id': ''}

@@ -1,6 +1,5 @@
 """Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
 
-import importlib.metadata
 import re
 from pathlib import Path
 
@@ -8,38 +7,24 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from ddct_bringup.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.scores.thesis_table import thesis_row
-from ddct_bringup.thesis import run_figures as thesis_run_figures
-from ddct_bringup.thesis import scenario_figures as thesis_scenario_figures
-from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
-from ddct_controllers.design.thesis_figures.collect import (
-    ENTRY_POINT_GROUP,
-    OWN_FIGURES,
-    collect_figures,
-    figures_not_drawn,
-)
-from ddct_controllers.design.thesis_figures.figure_tables import page_tables
-from ddct_controllers.design.thesis_figures.thesis_figure import (
+from ddct_bringup.reproduction.figures.collect import collect_figures, figures_not_drawn
+from ddct_bringup.reproduction.figures.figure_tables import page_tables
+from ddct_bringup.reproduction.figures.thesis_figure import (
     Drawing,
     DrawnFigure,
     figure_order,
 )
-from ddct_plant.page_tables import fill_tables, read_page
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.units import rpm_from_rad_s
+from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.program.page_tables import fill_tables, read_page
+from ddct_plant.scenario.settings import RunSettings
 
-FIGURES = {
-    figure.number: figure
-    for figure in sorted(
-        (*OWN_FIGURES, *thesis_scenario_figures.FIGURES, *thesis_run_figures.FIGURES),
-        key=lambda figure: figure_order(figure.number),
-    )
-}
+FIGURES = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 PAGE = Path(__file__).parents[2] / 'docs' / 'figures.md'
-SETUP = Path(__file__).parents[1] / 'setup.py'
 
 
 def drawing(number: str) -> Drawing:
@@ -176,27 +161,13 @@ def test_tanh_figure_reaches_zero_at_the_chosen_times():
 def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
     counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
     every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
-    reasons = figures_not_drawn(set())
-    assert list(reasons) == every
-    without_own = {number for number, reason in reasons.items() if 'not installed' in reason}
-    assert set(FIGURES) == without_own
-
-
-def test_installed_package_adds_its_figures_to_those_of_the_design(monkeypatch):
-    text = SETUP.read_text(encoding='utf-8')
-    listed = re.search(rf"'{ENTRY_POINT_GROUP}': \[(.*?)\]", text, re.DOTALL)[1]
-    points = [
-        importlib.metadata.EntryPoint(name, value, ENTRY_POINT_GROUP)
-        for name, value in re.findall(r"'(\w+) = ([\w.:]+)'", listed)
-    ]
-    monkeypatch.setattr(importlib.metadata, 'entry_points', lambda group: points)
-    assert [figure.number for figure in collect_figures()] == list(FIGURES)
+    assert sorted([*FIGURES, *figures_not_drawn()], key=figure_order) == every
 
 
 def test_page_of_the_documentation_is_what_the_command_writes():
     drawn = [DrawnFigure(figure, drawing(number).remark) for number, figure in FIGURES.items()]
     page = read_page(str(PAGE))
-    written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn(set(FIGURES))))
+    written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn()))
     number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')
     assert number.sub('#', page) == number.sub('#', written)
     values = [[float(text) for text in number.findall(text)] for text in (page, written)]

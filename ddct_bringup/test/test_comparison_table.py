@@ -8,8 +8,8 @@ from printed_table import value_under
 
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 THESIS = load_scenario('thesis')
 SLOPE = 'load.slope_rad=0.05'

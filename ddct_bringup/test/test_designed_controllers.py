@@ -5,14 +5,14 @@ import json
 import pytest
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.compare import main as compare
-from ddct_bringup.headless import run_headless
+from ddct_bringup.programs.compare import main as compare
 from ddct_bringup.run.execution import execute
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1.0']))
 

@@ -5,18 +5,23 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ddct_bringup.calibration import ensemble
-from ddct_bringup.calibration.admissible import fitted_rows, why_not_admissible
-from ddct_bringup.calibration.analysis import changed_assumptions
-from ddct_bringup.calibration.ensemble import QUANTITIES, find_members, members, write_members
-from ddct_bringup.calibration.parameters import BASE, RANGE
-from ddct_bringup.calibration.predictions import folder_of_members
-from ddct_bringup.calibration.problem import Problem
-from ddct_bringup.calibration.record import values_of
-from ddct_bringup.calibration.region import RIM, Point, centre, rim
-from ddct_plant.errors import DdctError
-from ddct_plant.scenario import Scenario
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.reproduction.calibration import ensemble
+from ddct_bringup.reproduction.calibration.admissible import fitted_rows, why_not_admissible
+from ddct_bringup.reproduction.calibration.analysis import changed_assumptions
+from ddct_bringup.reproduction.calibration.ensemble import (
+    QUANTITIES,
+    find_members,
+    members,
+    write_members,
+)
+from ddct_bringup.reproduction.calibration.parameters import BASE, RANGE
+from ddct_bringup.reproduction.calibration.problem import Problem
+from ddct_bringup.reproduction.calibration.record import values_of
+from ddct_bringup.reproduction.calibration.region import RIM, Point, centre, rim
+from ddct_bringup.thesis.predictions import folder_of_members
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
 
 FROZEN = load_scenario('thesis')
 MEMBERS = {member.name: member for member in members()}

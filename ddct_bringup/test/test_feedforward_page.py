@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers import feedforward
 from ddct_controllers.design.feedforward.design import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.lti import StateSpace
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import constant_slip_torque
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'feedforward.md'
 SCENARIO = load_scenario('thesis')

@@ -6,17 +6,17 @@ import json
 import numpy as np
 import pytest
 
-from ddct_bringup import compare
-from ddct_bringup.headless import run_headless
+from ddct_bringup.programs import compare
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.analysis.evidence import frequency_evidence
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 STEP_RPM = 1.0
 AT_STEP = 100

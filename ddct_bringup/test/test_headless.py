@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
 
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SCENARIO = load_scenario('thesis')
 START = SCENARIO.control_start_step

@@ -2,11 +2,11 @@
 
 import pytest
 
-from ddct_bringup.run.heard_nodes import HeardNodes
-from ddct_plant.errors import DdctError
+from ddct_bringup.record.heard_nodes import HeardNodes
+from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.run_info import run_info_pairs
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 

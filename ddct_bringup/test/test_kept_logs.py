@@ -8,8 +8,8 @@ import pytest
 from ddct_bringup.run import execution
 from ddct_bringup.run.execution import execute, kept_logs
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 QUIET = '[INFO] [1.0] [load]: started\nnothing of note, [ERROR] in the middle of a line\n'
 WITH_ERROR = '[INFO] [1.0] [actuator]: x\n[ERROR] [2.0] [actuator]: safe state\n'

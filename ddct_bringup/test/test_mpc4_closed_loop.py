@@ -5,23 +5,29 @@ import math
 import numpy as np
 import pytest
 
-from ddct_bringup.headless import run_headless, run_loop
+from ddct_bringup.reproduction.runs.runs import thesis_run
+from ddct_bringup.reproduction.studies.scored_run import metrics_of
+from ddct_bringup.reproduction.studies.static_controller import StaticControllerAlone
+from ddct_bringup.reproduction.studies.two_input.actuator_left_out import (
+    LoopWithoutActuator,
+    model_without_actuator,
+)
+from ddct_bringup.reproduction.studies.two_input.mpc4_readings import READINGS
+from ddct_bringup.reproduction.studies.two_input.torque_level import closed_loop, growth
+from ddct_bringup.reproduction.studies.two_input.two_input_figures import (
+    close_time_s,
+    deviation_range,
+)
 from ddct_bringup.run.closed_loop import ClosedLoop
-from ddct_bringup.studies.actuator_left_out import LoopWithoutActuator, model_without_actuator
-from ddct_bringup.studies.mpc4_readings import READINGS
-from ddct_bringup.studies.scored_run import metrics_of
-from ddct_bringup.studies.static_controller import StaticControllerAlone
-from ddct_bringup.studies.torque_level import closed_loop, growth
-from ddct_bringup.studies.two_input_figures import close_time_s, deviation_range
-from ddct_bringup.thesis.runs import thesis_run
+from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
-from ddct_controllers.mpc.transmission_model import transmission_model
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_controllers.registry import make_controller
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 START = SETTINGS.scenario.control_start_step

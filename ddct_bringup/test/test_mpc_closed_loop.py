@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ddct_bringup.headless import run_headless
-from ddct_bringup.studies.clutch_torque_limit import clutch_torque_limit, limit_at
-from ddct_bringup.studies.readings import readings
-from ddct_bringup.studies.scored_run import figures, metrics_of, scored_run
-from ddct_bringup.thesis.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.studies.clutch_torque_limit import clutch_torque_limit, limit_at
+from ddct_bringup.reproduction.studies.readings import readings
+from ddct_bringup.reproduction.studies.scored_run import figures, metrics_of, scored_run
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SETTINGS = RunSettings(THESIS_SCENARIO)
 
@@ -212,7 +212,7 @@ def test_limit_falls_when_the_slip_may_stray_further():
 
 def test_limit_agrees_with_another_solver():
     cvxpy = pytest.importorskip('cvxpy')
-    from ddct_bringup.studies.clutch_torque_limit import _predict
+    from ddct_bringup.reproduction.studies.clutch_torque_limit import _predict
 
     strays = 2.0
 

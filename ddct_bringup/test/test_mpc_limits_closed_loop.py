@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 START = load_scenario('thesis').control_start_step
 AS_DRAWN = ('mpc1', 'mpc2', 'mpc3')

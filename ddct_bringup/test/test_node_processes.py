@@ -9,16 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.run import node_process, node_processes
-from ddct_bringup.run.graph_nodes import NodeSpec
-from ddct_bringup.run.node_processes import STOP_LADDER, NodeProcesses
-from ddct_plant.errors import DdctError
+from ddct_bringup.processes import node_process, node_processes
+from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.node_processes import STOP_LADDER, NodeProcesses
+from ddct_plant.base.errors import DdctError
 
 WITHIN_S = 20.0
 """How long a small program may take to start or to end on a loaded machine."""
 LIVE = """
 import os, signal, sys, time
-from ddct_plant.graph.pulse import pulse
+from ddct_plant.program.pulse import pulse
 beat = pulse()
 def run():
     print('ready', flush=True)
@@ -47,7 +47,7 @@ def processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
             (tmp_path / 'stubs' / f'{name}_node.py').write_text(LIVE + text)
         made = NodeProcesses(tmp_path, tmp_path / 'parameters.yaml')
         made.__enter__()
-        made.start([NodeSpec(name, 'stubs') for name in texts])
+        made.start([NodeSpec(name, f'stubs.{name}_node') for name in texts])
         for node in made._nodes:
             wait_until(lambda node=node: b'ready' in node._all_words())
         return made
@@ -150,11 +150,11 @@ def test_ctrl_c_in_the_terminal_reaches_the_supervisor_alone(processes):
 SUPERVISOR = """
 import sys, time
 from pathlib import Path
-from ddct_bringup.run.graph_nodes import NodeSpec
-from ddct_bringup.run.node_processes import NodeProcesses
+from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.node_processes import NodeProcesses
 folder = Path(sys.argv[1])
 with NodeProcesses(folder, folder / 'parameters.yaml') as nodes:
-    nodes.start([NodeSpec(name, 'stubs') for name in sys.argv[2:]])
+    nodes.start([NodeSpec(name, f'stubs.{name}_node') for name in sys.argv[2:]])
     pids = [*(node.process.pid for node in nodes._nodes), nodes._guardian._process.pid]
     while not all(b'ready' in node._all_words() for node in nodes._nodes):
         time.sleep(0.01)
@@ -204,7 +204,7 @@ def test_the_guardian_kills_what_does_not_heed_the_end_of_its_supervisor(tmp_pat
     )
     wait_until(ready.exists)
     guard = (
-        'from ddct_bringup.run import guardian; guardian.PATIENCE_S = 0.1;'
+        'from ddct_bringup.processes import guardian; guardian.PATIENCE_S = 0.1;'
         f'guardian.guard(["{deaf.pid}"])'
     )
     subprocess.run([sys.executable, '-c', guard], check=True, timeout=WITHIN_S)

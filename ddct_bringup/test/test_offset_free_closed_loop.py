@@ -5,21 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_bringup.headless import run_headless, run_loop
+from ddct_bringup.reproduction.studies.disturbed_run import NoisySpeeds, slip_after_load_step
+from ddct_bringup.reproduction.studies.scored_run import scored_run
+from ddct_bringup.reproduction.studies.torsion_weight import torsion_weight
+from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, WEAR_GAINS
+from ddct_bringup.reproduction.studies.wear_estimate import wear_estimate
 from ddct_bringup.run.closed_loop import ClosedLoop
-from ddct_bringup.studies.disturbed_run import NoisySpeeds, slip_after_load_step
-from ddct_bringup.studies.scored_run import scored_run
-from ddct_bringup.studies.torsion_weight import torsion_weight
-from ddct_bringup.studies.wear import LOAD_STEP_N_M, WEAR_GAINS
-from ddct_bringup.studies.wear_estimate import wear_estimate
-from ddct_controllers.mpc.observer import NoiseLevels
-from ddct_controllers.mpc.transmission_model import transmission_model
-from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN
+from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_controllers.mpc.estimate.observer import NoiseLevels
+from ddct_controllers.mpc.estimate.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN
+from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SCENARIO = load_scenario('thesis')
 LONG = replace(SCENARIO, duration_s=5.0)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from ddct_bringup.run.output_folder import MARKER, StagedFolder
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 
 def staged(final: Path, content: str, *, overwrite: bool) -> StagedFolder:

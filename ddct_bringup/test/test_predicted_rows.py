@@ -5,20 +5,20 @@ import io
 
 import pytest
 
-from ddct_bringup.calibration import predictions
-from ddct_bringup.calibration.predictions import Prediction, Predictions
+from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.scores.thesis_table import FIGURES as TABLE_FIGURES
-from ddct_bringup.scores.thesis_table import (
+from ddct_bringup.thesis import predictions
+from ddct_bringup.thesis.predictions import Prediction, Predictions
+from ddct_bringup.thesis.table_5_1 import FIGURES as TABLE_FIGURES
+from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,
     PREDICTION_TOLERANCE,
     THESIS_TABLE,
     thesis_row,
 )
-from ddct_controllers.design.thesis.number_file import thesis_numbers
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario, scenario_digest
+from ddct_plant.scenario.file import load_scenario, scenario_digest
+from ddct_plant.scenario.settings import RunSettings
 
 THESIS = load_scenario('thesis')
 KEPT = Predictions(

@@ -2,17 +2,17 @@
 
 import pytest
 
-from ddct_bringup.calibration.ensemble import members
-from ddct_bringup.calibration.predicted_values import OPEN_LOOP, predicted_values
-from ddct_bringup.calibration.predictions import (
+from ddct_bringup.reproduction.calibration.ensemble import members
+from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP, predicted_values
+from ddct_bringup.thesis.predictions import (
     Prediction,
     kept_predictions,
     prediction,
     predictions_for,
 )
-from ddct_bringup.scores.thesis_table import PREDICTED, THESIS_TABLE
-from ddct_plant.scenario import Scenario
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
 
 FROZEN = load_scenario('thesis')
 AGAIN = ('thesis', 'window_3.0_level_high', 'road_load_times_1.5')
@@ -25,7 +25,7 @@ def scenario(name: str) -> Scenario:
 
 @pytest.mark.parametrize('name', AGAIN)
 def test_kept_values_are_those_of_the_controllers_as_they_are(name):
-    """After a change of a controller: calibrate --predict, see docs/predictions.md."""
+    """After a change of a controller: reproduce calibration --predict, see docs/predictions.md."""
     computed = predicted_values(scenario(name))
     kept = {
         key: one.frozen if name == 'thesis' else one.members[name]

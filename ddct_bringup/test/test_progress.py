@@ -7,8 +7,8 @@ import pytest
 
 from ddct_bringup.run import progress
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 PLAN = RunPlan(RunSettings(load_scenario('thesis')), 'pi', 'headless')
 

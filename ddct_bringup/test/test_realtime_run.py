@@ -8,13 +8,13 @@ import pytest
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording, why_invalid
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 STEPS = 300
 TOLERATED = 3

@@ -10,8 +10,8 @@ from bokeh.models import GlyphRenderer
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.report_page.charts import QUANTITIES, ChartRun, chart_document
-from ddct_bringup.report_page.line_looks import LineLook
+from ddct_bringup.report.charts import QUANTITIES, ChartRun, chart_document
+from ddct_bringup.report.line_looks import LineLook
 
 STEPS = 20
 RPM = 30.0 / math.pi

@@ -11,13 +11,13 @@ import pytest
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.headless import run_headless
-from ddct_bringup.report_page.page import report_page, symbols
-from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.report.page import report_page, symbols
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording, unreadable_entry
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=0.7', 'score_window_s=[0.1,0.6]']))
 EVIL = '</script></textarea></style>--><evil onload="x"> \'"&amp; w_<evil>'

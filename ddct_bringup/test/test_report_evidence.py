@@ -7,12 +7,12 @@ import json
 import pytest
 from test_report_escaping import SETTINGS, recording
 
-from ddct_bringup.report_page import evidence
-from ddct_bringup.report_page.evidence import COMPUTED
-from ddct_bringup.report_page.loop_table import loop_rows
-from ddct_bringup.report_page.runs import ReportRun
+from ddct_bringup.report import evidence
+from ddct_bringup.report.evidence import COMPUTED
+from ddct_bringup.report.loop_table import loop_rows
+from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.analysis.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence import frequency_evidence
 
 
 @pytest.fixture(scope='module')

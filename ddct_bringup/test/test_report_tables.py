@@ -5,20 +5,20 @@ import re
 
 import pytest
 
-from ddct_bringup.report_page.evidence import LoopEvidence
-from ddct_bringup.report_page.loop_table import (
+from ddct_bringup.report.evidence import LoopEvidence
+from ddct_bringup.report.loop_table import (
     LOOP_COLUMNS,
     NOT_LINEAR,
     loop_rows,
     without_evidence,
 )
-from ddct_bringup.report_page.runs import ReportRun
-from ddct_bringup.report_page.summary import TABLE_5_1, comparable_rows, metric_cells
-from ddct_bringup.report_page.update_times import TICKS, update_times
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.summary import TABLE_5_1, comparable_rows, metric_cells
+from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 THESIS = load_scenario('thesis')
 

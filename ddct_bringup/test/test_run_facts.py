@@ -5,7 +5,7 @@ import math
 import pytest
 
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 FACTS = RunFacts(
     controller='pi',

@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from ddct_bringup.run import shared_memory
-from ddct_bringup.run.shared_memory import remove_segments, segments_of
+from ddct_bringup.processes import shared_memory
+from ddct_bringup.processes.shared_memory import remove_segments, segments_of
 
 
 @pytest.fixture

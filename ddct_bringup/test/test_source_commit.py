@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.run import record
+from ddct_bringup.run import description
 from ddct_bringup.run.source_commit import short_commit, source_commit
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 MODULE = Path('ddct_bringup') / 'ddct_bringup' / 'run' / 'source_commit.py'
 OTHER = Path('ddct_plant') / 'ddct_plant' / 'clutch.py'
@@ -103,9 +103,9 @@ def test_a_hook_of_another_repository_does_not_lead_astray(
 
 
 def test_the_bag_tells_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(record, 'source_commit', lambda: 'abc-dirty')
+    monkeypatch.setattr(description, 'source_commit', lambda: 'abc-dirty')
     settings = RunSettings(load_scenario('thesis'))
-    assert record.custom_data(settings, 'pi', 300)['commit'] == 'abc-dirty'
+    assert description.custom_data(settings, 'pi', 300)['commit'] == 'abc-dirty'
 
 
 def test_a_short_commit_keeps_its_mark() -> None:

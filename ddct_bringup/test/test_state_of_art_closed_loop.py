@@ -6,16 +6,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ddct_bringup.headless import run_headless
-from ddct_bringup.studies import state_of_art as studies
-from ddct_bringup.studies.scored_run import metrics_of
-from ddct_bringup.studies.state_of_art import settled_s
+from ddct_bringup.reproduction.studies import state_of_art as studies
+from ddct_bringup.reproduction.studies.scored_run import metrics_of
+from ddct_bringup.reproduction.studies.state_of_art import settled_s
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SCENARIO = load_scenario('thesis')
 LITTLE_AUTHORITY = {'lag_s': 0.1, 'deviation_n_m': 40.0, 'slew_n_m_s': 500.0}

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
 
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_bringup.scores.thesis_table import FIGURES, thesis_row
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_bringup.thesis.table_5_1 import FIGURES, thesis_row
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis')
 

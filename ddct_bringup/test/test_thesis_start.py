@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ddct_bringup.headless import run_headless
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rpm_from_rad_s
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 
 PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'calibration.md'
 SETTINGS = RunSettings(load_scenario('thesis'))

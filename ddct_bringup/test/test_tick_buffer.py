@@ -2,9 +2,9 @@
 
 import pytest
 
-from ddct_bringup.bag.tick_buffer import GIVE_UP_AFTER_STEPS, LAG_LIMIT_STEPS, TickBuffer
-from ddct_plant.errors import DdctError
-from ddct_plant.timebase import stamp_of_step
+from ddct_bringup.record.tick_buffer import GIVE_UP_AFTER_STEPS, LAG_LIMIT_STEPS, TickBuffer
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
 
 
 class Buffer:

@@ -4,9 +4,9 @@ import pytest
 
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_bringup.bag.topics import TOPICS, recorded_topics, resolved_name
-from ddct_plant.errors import DdctError
-from ddct_plant.graph.stamp_limit import PLANT_TOPICS
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.ticks.stamp_limit import PLANT_TOPICS
 
 
 def stamps_of(steps=5):

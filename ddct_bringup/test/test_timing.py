@@ -8,7 +8,7 @@ import pytest
 
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.run.timing_file import read_timing
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 
 def test_what_the_recorder_wrote_is_read_back(tmp_path):

@@ -6,12 +6,12 @@ from scipy.integrate import solve_ivp
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import make_controller
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.engine import Engine
-from ddct_plant.initial import initial_state
-from ddct_plant.load import RoadLoad
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.run_settings import RunSettings
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.engine import Engine
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_reference
 
 

@@ -7,13 +7,12 @@ from numbers import Real
 
 import numpy as np
 
-from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement, Status
-from ddct_plant.checks import require_finite
-from ddct_plant.errors import DdctError, ForeignError
-from ddct_plant.load import RoadLoad
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.static_torque import StaticTorque
+from ddct_plant.base.checks import require_finite
+from ddct_plant.base.errors import DdctError, ForeignError
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.settings import RunSettings
 
 _FEEDBACK_OFF = Command(0.0)
 
@@ -168,5 +167,8 @@ def _make_open_loop(settings: RunSettings) -> OpenLoop:
         return lambda m, load: static.torque(m.engine_torque, load, m.engine_speed, m.shaft_speed)
     if settings.architecture == 'base':
         return lambda m, load: 0.0
+    # Only here: the other architectures need not wait for the imports of the design.
+    from ddct_controllers.feedforward import Feedforward
+
     feedforward = Feedforward(scenario.driveline)
     return lambda m, load: feedforward.update(m.engine_torque, load)

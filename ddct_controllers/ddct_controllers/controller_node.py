@@ -14,7 +14,8 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import controller_label, controller_names, make_controller
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.arrivals import (
     read_joint_speeds,
     read_slip_reference,
@@ -26,7 +27,6 @@ from ddct_plant.graph.messages import StatusMessage, status_message, torque_mess
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.timebase import stamp_of_step
 
 TIMING_BATCH = 20
 """Update times are published in batches of this many steps."""

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ddct_controllers.design.h_infinity.bilinear import from_w_plane
-from ddct_plant.cascade import Factor
-from ddct_plant.checks import require_choice
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.input_file import read_text_file
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.base.checks import require_choice
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.linear.bilinear import from_w_plane
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 FORMAT = 'ddct-linear-controller-1'
 """First value of every file; a change of meaning changes the number."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ddct_plant.lti import StateSpace
+from ddct_plant.linear.lti import StateSpace
 
 
 class DiscreteFilter:

@@ -2,7 +2,7 @@
 
 from ddct_controllers.design.feedforward.design import design_feedforward, state_at_rest
 from ddct_controllers.discrete_filter import DiscreteFilter
-from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 class Feedforward:

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import StateSpace
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.scenario.settings import RunSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,9 @@
 
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 
 class LinearController(Controller):

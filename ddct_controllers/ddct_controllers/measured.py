@@ -3,7 +3,7 @@
 import math
 
 from ddct_controllers.interface import Measurement
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 MOST = 1e9
 """Largest size of a number, in its SI unit; far beyond any vehicle."""

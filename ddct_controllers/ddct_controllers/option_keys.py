@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
 
 
 def require_known_keys(name: str, given: Iterable[object], known: Iterable[str]) -> None:

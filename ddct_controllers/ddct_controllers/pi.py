@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
-from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import StateSpace
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
 
 _GAINS = ('proportional_gain', 'integral_gain')
 

@@ -1,6 +1,6 @@
 """Controllers that the thesis prints as transfer functions, in N m per rpm of slip error."""
 
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
 def _from_g_c1(gain: float) -> FactoredTransferFunction:

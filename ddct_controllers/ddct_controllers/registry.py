@@ -3,19 +3,18 @@
 import importlib.metadata
 from collections.abc import Callable, Mapping
 
-from ddct_controllers.design.h_infinity.controllers import SYNTHESISED, synthesised_controller
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
-from ddct_controllers.entry_points import load_entry_point
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.linear import LinearController
 from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
 from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.names import require_name
-from ddct_plant.run_settings import RunSettings
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.names import require_name
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.scenario.settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
 """Third parties add `name = module:factory` here; the factory takes a ControllerContext."""
@@ -96,7 +95,13 @@ def _third_party_factory(name: str) -> Factory:
 
 
 def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
-    factory = load_entry_point(point, 'controller')
+    try:
+        factory = point.load()
+    except Exception as error:
+        raise DdctError(
+            f'controller {point.name!r}: the entry point {point.value} cannot be loaded '
+            f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
+        ) from error
 
     def make(context: ControllerContext) -> Controller:
         try:

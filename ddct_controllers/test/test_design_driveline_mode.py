@@ -11,11 +11,11 @@ from ddct_controllers.design.analysis.driveline_mode import (
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
 from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import RPM_PER_RAD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RPM_PER_RAD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 def sampled(controller: FactoredTransferFunction) -> StateSpace:

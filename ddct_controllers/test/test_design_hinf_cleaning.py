@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.h_infinity.cleaning import FAST_RAD_S, clean, factor_text
-from ddct_controllers.design.h_infinity.synthesis import SynthesisError
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import SynthesisError
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 RAW_ZEROS = (0.7567, 0.009368, 0.004946, (82.23, 2563.0), (121.4, 7696.0), (134.1, 4.27e4))
 RAW_POLES = (1.418e5, 138.0, 89.52, 0.005905, (0.01896, 9.053e-5), (5.344, 339.4))

@@ -5,15 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from ddct_controllers.design.h_infinity.controllers import synthesised_controller
 from ddct_controllers.design.h_infinity.weights import WeightError
-from ddct_controllers.design_program import main
 from ddct_controllers.designed import BILINEAR, DesignedController, load_designed
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_controllers.synthesised import synthesised_controller
+from ddct_controllers.workflows.design_program import main
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 

@@ -14,23 +14,23 @@ from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.factored_form import factored_form
-from ddct_controllers.design.h_infinity.controllers import (
+from ddct_controllers.design.h_infinity.design import design_h_infinity
+from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
+from ddct_controllers.design.h_infinity.recipes import make_weights
+from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U
+from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
+from ddct_controllers.linear import LinearController
+from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_controllers.synthesised import (
     SYNTHESISED,
     synthesised_controller,
     synthesised_design,
 )
-from ddct_controllers.design.h_infinity.design import design_h_infinity
-from ddct_controllers.design.h_infinity.recipes import make_weights
-from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U
-from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
-from ddct_controllers.design.thesis.printed_weights import PRINTED_WEIGHTS
-from ddct_controllers.linear import LinearController
-from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_controllers.registry import controller_names, make_controller
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 HINF1 = H_INFINITY_CONTROLLERS['hinf1']
@@ -83,7 +83,7 @@ def test_a_design_takes_less_than_half_a_second(recipe):
 
 def test_another_process_synthesises_the_same_controller_to_the_bit():
     code = (
-        'from ddct_controllers.design.h_infinity.controllers import *\n'
+        'from ddct_controllers.synthesised import *\n'
         'for name in SYNTHESISED:\n'
         '    model = synthesised_controller(name)\n'
         '    print(*(getattr(model, part).tobytes().hex() for part in "abcd"))\n'

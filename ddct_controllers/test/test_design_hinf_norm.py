@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import sampled_plant
-from ddct_controllers.design.h_infinity.bilinear import from_w_plane, to_w_plane
-from ddct_controllers.design.h_infinity.norm import h_infinity_norm
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 
 def norm_of(*factors) -> float:

@@ -7,10 +7,10 @@ import pytest
 
 from ddct_controllers.design.analysis.plant_corners import PlantCorners
 from ddct_controllers.design.analysis.worst_corner import worst_corner
-from ddct_controllers.design.h_infinity.command import page_tables
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_plant.lti import discretise_zoh
-from ddct_plant.page_tables import fill_tables
+from ddct_controllers.workflows.h_infinity_command import page_tables
+from ddct_plant.linear.lti import discretise_zoh
+from ddct_plant.program.page_tables import fill_tables
 
 PAGE = Path(__file__).parents[2] / 'docs' / 'h_infinity.md'
 NOT_TO_THE_DIGIT = {'cleaning', 'controllers'}

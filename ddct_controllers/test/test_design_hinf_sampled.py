@@ -9,14 +9,14 @@ from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.plant_corners import PlantCorners
 from ddct_controllers.design.analysis.worst_corner import WorstCorner, worst_corner
-from ddct_controllers.design.h_infinity.bilinear import from_w_plane, to_w_plane
-from ddct_controllers.design.h_infinity.controllers import SYNTHESISED, synthesised_controller
 from ddct_controllers.design.h_infinity.design import design_h_infinity, generalised_plant
-from ddct_controllers.design.h_infinity.norm import h_infinity_norm
 from ddct_controllers.design.h_infinity.problem import sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import make_weights
-from ddct_controllers.design.h_infinity.synthesis import synthesise
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise
+from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
 from ddct_controllers.design.state_space import close_loop, frequency_response
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
+from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 
 HIGHEST_SENSITIVITY = 2.0
 """At the worst corner, wanted of at least one of our controllers."""

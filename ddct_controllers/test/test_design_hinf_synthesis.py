@@ -7,17 +7,27 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
-from ddct_controllers.design.h_infinity import lmi as lmi_synthesis
 from ddct_controllers.design.h_infinity import problem as hinf_problem
-from ddct_controllers.design.h_infinity import synthesis as riccati_synthesis
-from ddct_controllers.design.h_infinity.coordinates import balanced
 from ddct_controllers.design.h_infinity.design import design_h_infinity, generalised_plant
-from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
-from ddct_controllers.design.h_infinity.plant import GeneralisedPlant, GeneralisedPlantError
 from ddct_controllers.design.h_infinity.problem import mixed_sensitivity
 from ddct_controllers.design.h_infinity.recipes import HinfWeights, make_weights
-from ddct_controllers.design.h_infinity.riccati import central_controller, stabilising_solutions
-from ddct_controllers.design.h_infinity.synthesis import SynthesisError, synthesise, verified_norm
+from ddct_controllers.design.h_infinity.synthesis import gamma_iteration as riccati_synthesis
+from ddct_controllers.design.h_infinity.synthesis import lmi as lmi_synthesis
+from ddct_controllers.design.h_infinity.synthesis.coordinates import balanced
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
+    SynthesisError,
+    synthesise,
+    verified_norm,
+)
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
+    GeneralisedPlant,
+    GeneralisedPlantError,
+)
+from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
+from ddct_controllers.design.h_infinity.synthesis.riccati import (
+    central_controller,
+    stabilising_solutions,
+)
 from ddct_controllers.design.h_infinity.weights import (
     ComplementaryWeight,
     SensitivityWeight,
@@ -27,8 +37,8 @@ from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
     TimeSpecifications,
 )
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 PRINTED = make_weights('thesis')
 W_1, W_2 = PRINTED.sensitivity.shifted(), PRINTED.complementary.transfer_function()

@@ -23,8 +23,8 @@ from ddct_controllers.design.h_infinity.weights import (
     stable_weight,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 SLOW, FAST = np.array([1e-6]), np.array([1e6])
 

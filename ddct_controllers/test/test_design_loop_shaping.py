@@ -20,9 +20,9 @@ from ddct_controllers.design.loop_shaping.design import (
 from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork
 from ddct_controllers.design.loop_shaping.specifications import prototype_phase_margin
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 DRIVELINE = DrivelineParameters()
 TABLE_2_1 = {

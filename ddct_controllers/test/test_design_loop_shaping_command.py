@@ -5,12 +5,12 @@ import json
 
 import pytest
 
-from ddct_controllers.design.loop_shaping import command as loop_shaping_command
 from ddct_controllers.designed import load_designed
 from ddct_controllers.registry import make_controller
-from ddct_plant.cli import run_program
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_controllers.workflows import loop_shaping_command
+from ddct_plant.program.command_line import run_program
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 OWN = ['loop-shaping', '--rise-time', '0.6', '--overshoot', '14']
 

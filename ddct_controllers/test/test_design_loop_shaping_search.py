@@ -12,9 +12,9 @@ from ddct_controllers.design.loop_shaping.specifications import (
 from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.design.verified_design import verify
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 DRIVELINE = DrivelineParameters()
 

@@ -19,15 +19,15 @@ from ddct_controllers.design.state_space import (
     series,
 )
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.actuator import Actuator
-from ddct_plant.clutch import LinearClutch
-from ddct_plant.driveline import Driveline
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import InitialState
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import rpm_from_rad_s
-from ddct_plant.vehicle import VehicleParameters
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.vehicle import VehicleParameters
 
 OMEGA = np.geomspace(1e-3, 300.0, 200)
 LS2 = PRINTED_CONTROLLERS['ls2']

@@ -12,8 +12,8 @@ from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_lo
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
 from ddct_controllers.design.state_space import frequency_response, scaled, series
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 NAMES = sorted(PRINTED_CONTROLLERS)
 

@@ -8,7 +8,7 @@ import pytest
 from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork, with_crossover
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
 
 OMEGA = np.geomspace(1e-2, 1e3, 20001)
 

@@ -16,7 +16,7 @@ from ddct_controllers.design.loop_shaping.nichols import (
     nichols_curve,
 )
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
 
 
 def loop_values(curve: NicholsCurve) -> np.ndarray:

@@ -11,8 +11,8 @@ from ddct_controllers.design.loop_shaping.nyquist import (
     stabilising_sign,
 )
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
 @pytest.mark.parametrize(('gain', 'unstable'), [(1.0, 1), (-1.0, 2)])

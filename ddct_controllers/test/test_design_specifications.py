@@ -22,8 +22,8 @@ from ddct_controllers.design.loop_shaping.specifications import (
     prototype_sensitivity_peak,
     rise_time_crossover_product,
 )
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.printed import ACTUATOR
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.printed import ACTUATOR
 
 CHAPTER_2 = TimeSpecifications(rise_time_s=0.25, overshoot=0.14)
 CHAPTER_3 = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)

@@ -13,10 +13,10 @@ from ddct_controllers.design.analysis.steady_state import (
 from ddct_controllers.design.loop_shaping.design import integrators
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.driveline_model import engine_to_slip, load_to_slip
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.units import RPM_PER_RAD_S
+from ddct_plant.base.units import RPM_PER_RAD_S
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
+from ddct_plant.models.parameters import DrivelineParameters
 
 DRIVELINE = DrivelineParameters()
 PLANT = plant_in_rpm(DRIVELINE)

@@ -8,9 +8,9 @@ import pytest
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 
 SECOND_ORDER = FactoredTransferFunction(25.0, (), (0.0, 5.0))
 """Closed by unit feedback: w_n = 5 rad/s, zeta = 0.5."""

@@ -14,9 +14,9 @@ from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, Pla
 from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
 from ddct_controllers.design.state_space import frequency_response, scaled
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.lti import StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 @pytest.fixture(scope='module')

@@ -8,10 +8,10 @@ import pytest
 from ddct_controllers.designed import DesignedController, load_designed
 from ddct_controllers.linear import LinearController
 from ddct_controllers.registry import controller_label, make_controller
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 G_C = FactoredTransferFunction(-0.1 / 3.0, (0.8361, (82.23, 2563.0)), (0.0, (5.325, 339.3)))
 SETTINGS = RunSettings(load_scenario('thesis'))

@@ -15,14 +15,14 @@ from ddct_controllers.design.feedforward.residual import engine_residual, load_r
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.feedforward import Feedforward
-from ddct_plant.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
-from ddct_plant.errors import DdctError
-from ddct_plant.lti import StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.static_torque import constant_slip_torque
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import RAD_S_PER_RPM
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RAD_S_PER_RPM
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.static_torque import constant_slip_torque
 
 DRIVELINE = DrivelineParameters()
 WITHOUT_DRAGS = replace(DRIVELINE, shaft_damping=0.0)

@@ -6,9 +6,9 @@ import pytest
 from ddct_controllers.interface import Measurement
 from ddct_controllers.linear import LinearController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 
 def response(controller: LinearController, errors_rpm: list[float]) -> list[float]:

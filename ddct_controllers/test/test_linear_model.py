@@ -5,9 +5,9 @@ import pytest
 
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 LINEAR = [

@@ -9,7 +9,7 @@ from ddct_controllers.design.loop_shaping.report import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.page_tables import fill_tables
+from ddct_plant.program.page_tables import fill_tables
 
 PAGE = Path(__file__).parents[2] / 'docs' / 'loop_shaping.md'
 

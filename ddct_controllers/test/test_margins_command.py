@@ -7,12 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from ddct_controllers.design import margins_command
-from ddct_controllers.design.analysis import evidence
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
-from ddct_plant.cli import run_program
-from ddct_plant.lti import StateSpace
+from ddct_controllers.workflows import evidence, margins_command
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.program.command_line import run_program
 
 PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'frequency_evidence.md'
 

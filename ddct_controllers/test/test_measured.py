@@ -9,9 +9,9 @@ from ddct_controllers.interface import Measurement
 from ddct_controllers.measured import MOST, measured_speeds
 from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 CONTROLLERS = (*PREDICTIVE, 'pedal_mpc', 'decoupled_pid', 'torque_estimator')

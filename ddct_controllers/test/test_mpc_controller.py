@@ -8,15 +8,15 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import InputTerms
+from ddct_controllers.mpc.program.settings import InputTerms
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc, thesis_settings
-from ddct_controllers.mpc.transmission_model import transmission_model
-from ddct_plant.errors import ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)

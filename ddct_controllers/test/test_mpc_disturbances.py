@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext
-from ddct_controllers.mpc.disturbances import (
+from ddct_controllers.mpc.estimate.disturbances import (
     offset_free_model,
     offset_free_noise,
     require_detectable,
 )
-from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
-from ddct_controllers.mpc.offset_free_mpc import make_offset_free_mpc, make_torsion_mpc
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     SLIP_SPEED,
@@ -22,9 +21,10 @@ from ddct_controllers.mpc.transmission_model import (
     transmission_model,
     with_disturbances,
 )
-from ddct_plant.errors import ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_controllers.mpc.offset_free_mpc import make_offset_free_mpc, make_torsion_mpc
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = SETTINGS.scenario.driveline

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.horizon import condense, predict
-from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     SLIP_ACCELERATION,
     SLIP_SPEED,
     TORSION_SPEED,
     transmission_model,
 )
-from ddct_plant.errors import ParameterError
-from ddct_plant.parameters import DrivelineParameters
+from ddct_controllers.mpc.program.horizon import condense, predict
+from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.parameters import DrivelineParameters
 
 MODEL = transmission_model(DrivelineParameters())
 ONE = MpcSettings(

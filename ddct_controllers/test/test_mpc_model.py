@@ -4,8 +4,9 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.estimate.unit_noise import unit_noise_gain
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     REQUEST,
@@ -16,17 +17,16 @@ from ddct_controllers.mpc.transmission_model import (
     transmission_model,
     with_disturbances,
 )
-from ddct_controllers.mpc.unit_noise import unit_noise_gain
-from ddct_plant.actuator import Actuator
-from ddct_plant.clutch import LinearClutch
-from ddct_plant.driveline import Driveline
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import InitialState
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.units import rpm_from_rad_s
-from ddct_plant.vehicle import VehicleParameters
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.vehicle import VehicleParameters
 
 DRIVELINE = DrivelineParameters()
 MODEL = transmission_model(DRIVELINE)

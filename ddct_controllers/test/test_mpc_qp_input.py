@@ -9,7 +9,7 @@ import pytest
 
 from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 INF = math.inf
 ONE = QpStructure(np.eye(1), np.eye(1))

@@ -8,25 +8,25 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.engine_model import with_engine
-from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
-from ddct_controllers.mpc.settings import InputTerms, OutputTerms
-from ddct_controllers.mpc.thesis_mpc4 import make_mpc4, mpc4_settings
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.model.engine_model import with_engine
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     SLIP_ACCELERATION,
     SLIP_SPEED,
     STATES,
     transmission_model,
 )
+from ddct_controllers.mpc.program.settings import InputTerms, OutputTerms
+from ddct_controllers.mpc.thesis_mpc4 import make_mpc4, mpc4_settings
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
-from ddct_plant.engine import Engine, EngineAuthority, EngineResponse
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse
+from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)

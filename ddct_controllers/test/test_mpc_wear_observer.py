@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.disturbances import offset_free_model
-from ddct_controllers.mpc.observer import NoiseLevels
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.estimate.disturbances import offset_free_model
+from ddct_controllers.mpc.estimate.observer import NoiseLevels
+from ddct_controllers.mpc.estimate.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
+from ddct_controllers.mpc.estimate.wear_noise import GAIN, SIZE, WearNoise
+from ddct_controllers.mpc.estimate.wear_observer import LEAST_TORQUE_N_M, WearObserver
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     MEASURED,
     STATES,
     transmission_model,
 )
-from ddct_controllers.mpc.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
-from ddct_controllers.mpc.wear_noise import GAIN, SIZE, WearNoise
-from ddct_controllers.mpc.wear_observer import LEAST_TORQUE_N_M, WearObserver
-from ddct_plant.actuator import Actuator
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = SETTINGS.scenario.driveline

@@ -5,10 +5,10 @@ import pytest
 from ddct_controllers.interface import Measurement
 from ddct_controllers.pi import PiController
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 
 def measurement(error_rpm: float) -> Measurement:

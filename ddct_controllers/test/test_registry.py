@@ -7,9 +7,9 @@ import pytest
 from ddct_controllers import registry
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_names, make_controller
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 

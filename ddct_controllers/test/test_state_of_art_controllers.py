@@ -10,9 +10,9 @@ from ddct_controllers.mpc.qp.solution import QpSolution
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
-from ddct_plant.errors import ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 TWO_INPUTS = ('torque_estimator', 'decoupled_pid')

@@ -11,14 +11,14 @@ from ddct_controllers.design.analysis.worst_corner import worst_corner
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi
-from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.slip_model import slip_model
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.errors import ParameterError
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.slip_model import slip_model
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = DrivelineParameters()
@@ -96,7 +96,7 @@ def test_the_predictor_is_exact():
 
 
 def test_on_a_rigid_driveline_the_weights_give_the_double_pole(monkeypatch):
-    from ddct_plant.lti import StateSpace, discretise_zoh
+    from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
     slip_gain = RigidTransmission(DRIVELINE).slip_gain
     rigid = StateSpace(np.zeros((1, 1)), [[-slip_gain]], np.eye(1), np.zeros((1, 1)))

@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.transmission_model import REQUEST, SLIP_SPEED, transmission_model
-from ddct_controllers.state_of_art.clutch_torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
-from ddct_controllers.state_of_art.engine_share import EngineShare
-from ddct_controllers.state_of_art.lag import ACTUATION_LAG_S
-from ddct_controllers.state_of_art.pid import Pid, placed_gains
-from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.slow_clutch import SlowClutch
-from ddct_controllers.state_of_art.speed_plan import SpeedPlan
-from ddct_plant.engine import EngineAuthority
-from ddct_plant.engine_speed_reference import EngineSpeedReference
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import constant_slip_torque
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.state_of_art.parts.clutch_torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.parts.engine_share import EngineShare
+from ddct_controllers.state_of_art.parts.lag import ACTUATION_LAG_S
+from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.engine import EngineAuthority
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = SETTINGS.scenario.driveline

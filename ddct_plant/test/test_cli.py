@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ddct_plant.cli import ProgramParser, run_program
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.command_line import ProgramParser, run_program
 
 
 def raising(error):
@@ -60,8 +60,8 @@ def test_what_the_system_refuses_is_one_line_without_a_traceback(work, says, unb
     program = (
         'import sys\n'
         'from pathlib import Path\n'
-        'from ddct_plant.cli import ProgramParser, run_program\n'
-        'from ddct_plant.errors import DdctError\n'
+        'from ddct_plant.program.command_line import ProgramParser, run_program\n'
+        'from ddct_plant.base.errors import DdctError\n'
         f'def work(_):\n    {work}\n    return 0\n'
         "sys.exit(run_program('x', work, []))"
     )
@@ -94,7 +94,7 @@ def test_control_characters_on_the_command_line_do_not_reach_the_terminal(capsys
 
 def test_a_reader_that_has_gone_ends_the_program_quietly():
     program = (
-        'import sys; from ddct_plant.cli import run_program\n'
+        'import sys; from ddct_plant.program.command_line import run_program\n'
         "def work(_): sys.stdin.readline(); print('x' * 100_000); return 0\n"
         "sys.exit(run_program('x', work, []))"
     )

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ddct_plant.driveline import Driveline
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import constant_slip_torque
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'), wear_gain=0.8)
 SCENARIO = SETTINGS.scenario

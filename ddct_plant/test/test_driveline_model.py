@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_plant.driveline_model import (
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline_model import (
     clutch_to_slip,
     driveline_matrices,
     engine_to_slip,
     load_to_slip,
 )
-from ddct_plant.errors import ParameterError
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR, ENGINE_TO_SLIP, LOAD_TO_SLIP, PrintedNumber
-from ddct_plant.vehicle import VehicleParameters
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR, ENGINE_TO_SLIP, LOAD_TO_SLIP, PrintedNumber
+from ddct_plant.models.vehicle import VehicleParameters
 
 DEFAULT = DrivelineParameters()
 VARIANTS = {

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from ddct_plant.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
-from ddct_plant.errors import ParameterError
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
+from ddct_plant.scenario.file import load_scenario
 
 DEMAND = 100.0
 PROFILE = TorqueProfile((0.0, 1.0), (0.0, 200.0))

@@ -2,9 +2,9 @@
 
 import pytest
 
-from ddct_plant.engine_speed_reference import EngineSpeedReference
-from ddct_plant.errors import ParameterError
-from ddct_plant.scenario_file import load_scenario, scenario_to_yaml
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 
 def test_it_is_linear_between_its_points_and_constant_outside():

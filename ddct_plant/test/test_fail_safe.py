@@ -4,7 +4,12 @@ from fractions import Fraction
 
 import pytest
 
-from ddct_plant.fail_safe import FailSafe, FailSafeSettings, RequestWatch, steps_to_make_up
+from ddct_plant.fail_safe.request_watch import (
+    FailSafe,
+    FailSafeSettings,
+    RequestWatch,
+    steps_to_make_up,
+)
 
 
 def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():

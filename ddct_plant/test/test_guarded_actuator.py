@@ -2,9 +2,9 @@
 
 import pytest
 
-from ddct_plant.actuator import Actuator
-from ddct_plant.fail_safe import FailSafeSettings
-from ddct_plant.guarded_actuator import GuardedActuator
+from ddct_plant.fail_safe.guarded_actuator import GuardedActuator
+from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.models.actuator import Actuator
 
 TIMEOUT_STEPS = 5
 RAMP_PER_STEP = 10.0

@@ -2,8 +2,8 @@
 
 import pytest
 
-from ddct_plant.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
-from ddct_plant.guarded_engine import GuardedEngine
+from ddct_plant.fail_safe.guarded_engine import GuardedEngine
+from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
 
 DEMAND = 308.0
 SLOW = EngineAuthority(slew_n_m_s=500.0, lag_s=0.03)

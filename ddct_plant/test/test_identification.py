@@ -6,24 +6,24 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from ddct_plant.coefficients import (
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.identification.checks import check_identification
+from ddct_plant.identification.coefficients import (
     FITTED,
     PrintedCoefficients,
     computed_coefficients,
     with_fitted,
 )
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.identification import identify_driveline, predict_left_out, round_significant
-from ddct_plant.identification_checks import check_identification
-from ddct_plant.parameters import DEFAULT_DIGITS, DrivelineParameters
-from ddct_plant.printed import (
+from ddct_plant.identification.fit import identify_driveline, predict_left_out, round_significant
+from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
+from ddct_plant.models.parameters import DEFAULT_DIGITS, DrivelineParameters
+from ddct_plant.models.printed import (
     CLUTCH_TO_SLIP,
     CLUTCH_TO_SLIP_AS_PRINTED,
     ENGINE_TO_SLIP,
     LOAD_TO_SLIP,
     PrintedTransferFunction,
 )
-from ddct_plant.rounding_set import parameter_ranges, smallest_worst_residual
 
 FIT = identify_driveline()
 COEFFICIENTS = PrintedCoefficients(CLUTCH_TO_SLIP, LOAD_TO_SLIP)

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from ddct_plant.identify import main
+from ddct_plant.identification.identify import main
 
 
 def run_json(capsys, *options):

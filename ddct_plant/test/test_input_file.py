@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ddct_plant.errors import DdctError
-from ddct_plant.input_file import read_file, read_text_file
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_file, read_text_file
+from ddct_plant.scenario.file import load_scenario
 
 
 def test_a_file_is_read_whole_through_links_too(tmp_path):

@@ -2,9 +2,9 @@
 
 import pytest
 
-from ddct_plant.errors import DdctError
-from ddct_plant.graph.join import MOST_WAITING, StampJoin, Verdict
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.ticks.join import MOST_WAITING, StampJoin, Verdict
 
 
 def offer(join: StampJoin, topic: str, step: int) -> Verdict:

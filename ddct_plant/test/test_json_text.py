@@ -2,8 +2,8 @@
 
 import pytest
 
-from ddct_plant.errors import DdctError
-from ddct_plant.json_text import parse_json
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_text import parse_json
 
 
 def test_values_come_back():

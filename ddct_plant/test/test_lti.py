@@ -6,17 +6,17 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete
 
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import (
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import (
     FactoredTransferFunction,
     StateSpace,
     discretise_zoh,
     lift_piecewise_linear,
     lift_zoh_dense,
 )
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP, PrintedNumber
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP, PrintedNumber
 
 LS7 = FactoredTransferFunction(-0.012057, (0.8361, (74.29, 2393.0)), (0.0, (5.325, 339.3)))
 HINF1 = FactoredTransferFunction(

@@ -4,9 +4,9 @@ import pytest
 
 rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
 
+from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.graph import messages  # noqa: E402
 from ddct_plant.graph.message_values import JOINTS, NS_PER_S  # noqa: E402
-from ddct_plant.timebase import stamp_of_step  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from ddct_plant.errors import DdctError
-from ddct_plant.output_file import write_json
-from ddct_plant.table import print_table
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_json
+from ddct_plant.program.table import Table, print_table
 
 
 def test_columns_of_a_plain_table_line_up(capsys):
-    print_table('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')])
+    print_table(Table('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')]))
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == 'Title'
     starts = [line.index(cell) for line, cell in zip(lines[1:4], ('long', '1', '22'), strict=True)]
@@ -20,7 +20,7 @@ def test_columns_of_a_plain_table_line_up(capsys):
 
 def test_table_on_a_terminal_shows_every_cell_with_its_brackets(capsys, monkeypatch):
     monkeypatch.setattr('sys.stdout.isatty', lambda: True)
-    print_table('Title', ('unit [1]',), [('[bold]',)])
+    print_table(Table('Title', ('unit [1]',), [('[bold]',)]))
     output = capsys.readouterr().out
     assert 'unit [1]' in output and '[bold]' in output
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 THESIS = load_scenario('thesis')
 EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])

@@ -4,14 +4,14 @@ import json
 
 import pytest
 
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import (
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import (
     load_scenario,
     scenario_digest,
     scenario_names,
     scenario_to_yaml,
 )
+from ddct_plant.scenario.settings import RunSettings
 
 MINIMAL = """\
 duration_s: 1.0

@@ -4,7 +4,7 @@ from itertools import chain
 
 import pytest
 
-from ddct_plant.graph.sequence import SequenceWatch
+from ddct_plant.ticks.sequence import SequenceWatch
 
 
 def two_alive(numbers):

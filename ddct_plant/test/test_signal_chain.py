@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ddct_plant.actuator import Actuator
-from ddct_plant.clutch import LinearClutch
-from ddct_plant.engine import Engine, TorqueProfile
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import initial_state
-from ddct_plant.load import LoadParameters, RoadLoad
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import constant_slip_torque
-from ddct_plant.vehicle import VehicleParameters
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.engine import Engine, TorqueProfile
+from ddct_plant.models.load import LoadParameters, RoadLoad
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.models.vehicle import VehicleParameters
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 
 VEHICLE = VehicleParameters()
 

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ddct_plant.block_diagram import BlockDiagram, Gain, Integrator, Sum
-from ddct_plant.driveline import Driveline
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.elementary import ElementaryBlockPlant
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import InitialState
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.simplified import StateSpacePlant, lti_plant, printed_lti_plant
-from ddct_plant.vehicle import VehicleParameters
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.vehicle import VehicleParameters
+from ddct_plant.simplified.block_diagram import BlockDiagram, Gain, Integrator, Sum
+from ddct_plant.simplified.elementary import ElementaryBlockPlant
+from ddct_plant.simplified.plants import StateSpacePlant, lti_plant, printed_lti_plant
 
 PARAMETERS = DrivelineParameters()
 PERIODS = 110

@@ -2,8 +2,8 @@
 
 import pytest
 
-from ddct_plant.graph.stamp_limit import TICK_LEAD_NS, StampLimit
-from ddct_plant.timebase import PERIOD_NS, START_NS, stamp_of_step
+from ddct_plant.base.timebase import PERIOD_NS, START_NS, stamp_of_step
+from ddct_plant.ticks.stamp_limit import TICK_LEAD_NS, StampLimit
 
 TICK, REPLY = '/clock', 'clutch/torque_request'
 LATEST_NS = 2_147_483_640 * 10**9

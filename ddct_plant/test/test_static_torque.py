@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.errors import ParameterError
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario import Scenario
-from ddct_plant.scenario_file import load_scenario
-from ddct_plant.static_torque import StaticTorque, constant_slip_torque
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.static_torque import StaticTorque, constant_slip_torque
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 THESIS = load_scenario('thesis')
 LOADED = load_scenario(

@@ -2,9 +2,10 @@
 
 import pytest
 
-from ddct_plant.errors import DdctError
-from ddct_plant.graph.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
-from ddct_plant.graph.tick_owner import (
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.ticks.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
+from ddct_plant.ticks.tick_owner import (
     CLUTCH,
     ENGINE,
     LOAD,
@@ -12,7 +13,6 @@ from ddct_plant.graph.tick_owner import (
     LockstepOwner,
     TickPlan,
 )
-from ddct_plant.timebase import stamp_of_step
 
 POINTS = [float(i) for i in range(11)]
 

@@ -8,9 +8,9 @@ import time
 import pytest
 import yaml
 
-from ddct_plant import yaml_text
-from ddct_plant.errors import DdctError
-from ddct_plant.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files import yaml_text
+from ddct_plant.files.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml
 
 MOST_VALUES = 1000
 """Less than the limit itself, for which the parser in Python takes five seconds."""
@@ -111,7 +111,7 @@ def test_no_other_module_of_the_product_reads_yaml_or_json():
     """`parse_yaml` and `parse_json` bound what they read."""
     from pathlib import Path
 
-    root = Path(yaml_text.__file__).parents[2]
+    root = Path(yaml_text.__file__).parents[3]
     own = {'yaml_text.py', 'json_text.py', 'message_definitions.py'}
     words = ('import yaml', 'yaml.load', 'safe_load', 'json.load')
     for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup'):
@@ -123,8 +123,8 @@ def test_no_other_module_of_the_product_reads_yaml_or_json():
 def test_refusing_takes_no_memory_either():
     program = (
         'import resource, sys\n'
-        'from ddct_plant.yaml_text import parse_yaml\n'
-        'from ddct_plant.errors import DdctError\n'
+        'from ddct_plant.files.yaml_text import parse_yaml\n'
+        'from ddct_plant.base.errors import DdctError\n'
         'resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30))\n'
         'for text in (sys.stdin.read(), "[" * 900_000):\n'
         '    try: parse_yaml(text)\n'

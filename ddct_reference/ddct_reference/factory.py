@@ -1,7 +1,7 @@
 """The slip reference that a run's scenario and architecture ask for."""
 
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.timebase import PERIOD_S, steps_in
+from ddct_plant.base.timebase import PERIOD_S, steps_in
+from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.descent import CrfRamp, Descent, PolynomialDescent, TanhDescent
 from ddct_reference.nominal_slip import nominal_slip
 from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference

@@ -1,14 +1,14 @@
 """Slip speed before control starts of the nominal detailed run: a clutch without wear."""
 
-from ddct_plant.actuator import Actuator
-from ddct_plant.clutch import LinearClutch
-from ddct_plant.driveline import Driveline
-from ddct_plant.engine import Engine
-from ddct_plant.initial import initial_state
-from ddct_plant.load import RoadLoad
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario import Scenario
-from ddct_plant.static_torque import StaticTorque
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.engine import Engine
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
 
 
 def nominal_slip(scenario: Scenario) -> list[float]:

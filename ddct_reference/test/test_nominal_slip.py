@@ -2,7 +2,7 @@
 
 import pytest
 
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
 from ddct_reference.nominal_slip import nominal_slip
 
 CONSTANT = (

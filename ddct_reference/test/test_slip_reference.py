@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario import REFERENCE_SHAPES
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import REFERENCE_SHAPES
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 from ddct_reference.descent import CrfRamp
 from ddct_reference.factory import make_reference
 from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.bag.records import read_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.topics import TOPICS
 from ddct_bringup.bag.trajectory import Trajectory

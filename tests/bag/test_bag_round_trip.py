@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_bringup.bag.records import read_records
 from ddct_bringup.bag.topics import TopicSpec, recorded_topics
 from ddct_bringup.bag.writer import BagWriter
-from ddct_plant.errors import DdctError
-from ddct_plant.timebase import START_NS, stamp_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import START_NS, stamp_of_step
 
 
 def test_trajectory_comes_back_to_the_last_bit(bags, trajectory):

@@ -7,8 +7,8 @@ import yaml
 from mcap.writer import Writer
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_plant.errors import DdctError
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
 
 
 def test_a_missing_bag_is_an_error(tmp_path):

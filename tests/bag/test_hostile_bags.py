@@ -12,13 +12,13 @@ from mcap.writer import CompressionType, Writer
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup.bag import records
-from ddct_bringup.bag.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.file import records
+from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.file.records import MAGIC, read_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_bringup.bag.records import MAGIC, read_records
 from ddct_bringup.bag.repair import repair_bag
-from ddct_bringup.score import main as score
-from ddct_plant.errors import DdctError
+from ddct_bringup.programs.score import main as score
+from ddct_plant.base.errors import DdctError
 
 RED = '\x1b[31m'
 
@@ -30,7 +30,7 @@ def test_a_pipe_is_not_waited_for(programs: Programs, tmp_path: Path, program: s
     os.mkfifo(pipe)
     for path in (pipe, pipe.parent):
         arguments = [str(path), *(['--out', '-'] if program == 'report' else [])]
-        run = programs.start_module(f'ddct_bringup.{program}', *arguments)
+        run = programs.start_module(f'ddct_bringup.programs.{program}', *arguments)
         assert run.wait() == 1
         assert_one_line(run.errors(), program, 'it is a pipe: give a regular file')
 

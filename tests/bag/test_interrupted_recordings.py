@@ -13,7 +13,7 @@ import pytest
 from ddct_bringup.bag import repair
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
 """A tick takes at least 2000 bytes, so a chunk holds at most this many."""
@@ -21,10 +21,10 @@ TICKS_PER_CHUNK = 64 * 1024 // 2000
 COPY_BAG = """
     import resource, sys
     from pathlib import Path
-    from ddct_bringup.bag.records import read_records
+    from ddct_bringup.bag.file.records import read_records
     from ddct_bringup.bag.writer import BagWriter
     from ddct_bringup.bag.topics import TOPICS
-    from ddct_plant.errors import DdctError
+    from ddct_plant.base.errors import DdctError
 
     source, folder = map(Path, sys.argv[1:3])
     last_step, limit = map(int, sys.argv[3:])

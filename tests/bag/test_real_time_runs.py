@@ -4,13 +4,13 @@ import json
 
 import pytest
 
-from ddct_bringup import bringup, compare, score
+from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.bag.records import read_records
 from ddct_bringup.bag.topics import recorded_topics
 from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.timebase import stamp_of_step
 
 STEPS = 60
 COUNTS = {'steps': STEPS, 'resends': 0, 'late_messages': 0, 'worst_tick_lateness_us': 1234}

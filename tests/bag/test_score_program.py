@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.reader import mcap_of
+from ddct_bringup.programs.score import main
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_bringup.score import main
 
 ENTRY_KEYS = [
     'bag',
@@ -205,7 +205,7 @@ def test_help_has_examples(capsys):
 def test_scoring_needs_no_ros(bags, trajectory):
     bag = bags.write(trajectory)
     program = (
-        'import sys; from ddct_bringup.score import main; '
+        'import sys; from ddct_bringup.programs.score import main; '
         f'code = main([{str(bag)!r}]); '
         "sys.exit(code or ('rclpy' in sys.modules) or ('sensor_msgs' in sys.modules))"
     )

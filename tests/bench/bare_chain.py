@@ -18,10 +18,10 @@ from rclpy.node import Node
 from rclpy.task import Future
 from std_msgs.msg import Header
 
+from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph import messages
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.spin import SLICE_S, make_executor
-from ddct_plant.timebase import START_NS
 
 TICK = ('/clock', 'clutch/slip', 'driveline/joint_states', 'vehicle/twist', 'vehicle/accel')
 STATUS = tuple((f'a_key_of_the_status_{i}', '123.4567890123456') for i in range(4))

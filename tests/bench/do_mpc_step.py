@@ -4,10 +4,10 @@ import do_mpc
 import numpy as np
 
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.mpc.observer import Observer
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import SLIP_SPEED, TransmissionModel
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
+from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_plant.base.timebase import PERIOD_S
 
 _SILENT = {'ipopt.print_level': 0, 'ipopt.sb': 'yes', 'print_time': 0}
 

@@ -14,8 +14,8 @@ from ddct_controllers.interface import Measurement
 from ddct_controllers.mpc.export.c_text import constants, macros
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 CASES = {
     'mpc3': ('mpc3', ()),

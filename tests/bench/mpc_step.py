@@ -12,13 +12,13 @@ from replay import measurements_of, times_of
 
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.solution import QpSolution
-from ddct_controllers.mpc.settings import MpcSettings
 from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
-from ddct_controllers.mpc.transmission_model import transmission_model
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)

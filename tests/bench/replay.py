@@ -2,9 +2,9 @@
 
 import time
 
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 Heard = tuple[list[Measurement], list[Measurement]]
 """Those while feedback was held off, and those that were answered."""

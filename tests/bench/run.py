@@ -25,15 +25,15 @@ from qp import measure as measure_qp
 from qp import print_table as print_qp
 from synthesis import measure as measure_synthesis
 
-from ddct_bringup.headless import run_headless
+from ddct_bringup.processes.ros_domain import own_domain
 from ddct_bringup.run.execution import execute
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.ros_domain import own_domain
 from ddct_bringup.run.run_timing import TIMING_FILE, RunTiming
 from ddct_controllers.registry import controller_names
-from ddct_plant.output_file import write_json
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.files.output_file import write_json
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 PERIOD_US = 10_000.0
 WORST_RATIO = 1.5

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ddct_controllers.design.h_infinity.design import generalised_plant
-from ddct_controllers.design.h_infinity.plant import GeneralisedPlant
 from ddct_controllers.design.h_infinity.recipes import make_weights
-from ddct_controllers.design.h_infinity.synthesis import synthesise, verified_norm
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import StateSpace
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise, verified_norm
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import StateSpace
 
 _ROUNDS = 5
 _TOLERANCE = 1e-4

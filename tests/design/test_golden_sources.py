@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, least_squares
 
-from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters
 
 DT = 0.01
 RPM = 30.0 / math.pi

@@ -11,7 +11,7 @@ from support.documented import ROOT, blocks
 from ddct_bringup.run import progress
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.registry import controller_names
-from ddct_plant.scenario_file import scenario_to_yaml
+from ddct_plant.scenario.file import scenario_to_yaml
 
 
 def install_example(site: Path) -> None:
@@ -47,8 +47,8 @@ def workplace(install: Path, tmp_path: Path) -> Path:
     """Return a folder with what commands read and write, and the example in `site`."""
     shutil.copytree(ROOT / 'docs', tmp_path / 'docs')
     for scenarios in (
-        'ddct_plant/ddct_plant/scenarios',
-        'ddct_bringup/ddct_bringup/calibration/admissible_scenarios',
+        'ddct_plant/ddct_plant/scenario/packaged',
+        'ddct_bringup/ddct_bringup/thesis/admissible_scenarios',
     ):
         shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
     (tmp_path / 'install').symlink_to(install)

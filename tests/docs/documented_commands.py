@@ -18,7 +18,7 @@ NOT_RUN_HERE = {
         'waits for a viewer; tests/live gives it one'
     ),
     'ros2 run ddct_bringup live': 'serves until Ctrl-C; tests/live stops it',
-    'ros2 run ddct_bringup calibrate': 'takes minutes; ddct_bringup/test runs it with --quick',
+    'ros2 run ddct_bringup reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell]

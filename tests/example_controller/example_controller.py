@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
-from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rpm_from_rad_s
 
 
 class DeadZoneController(Controller):

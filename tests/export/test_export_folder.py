@@ -5,7 +5,7 @@ from support.exported_mpc import NOT_IN_C, compile_c, run_settings
 
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 
 @pytest.mark.parametrize('name', ['pi', 'hinf1', *sorted(NOT_IN_C)])

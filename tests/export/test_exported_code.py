@@ -15,10 +15,10 @@ from support.exported_mpc import (
     run_settings,
 )
 
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 
 class Recorded(Controller):

@@ -7,13 +7,13 @@ import pytest
 from support.exported_mpc import NOT_IN_C, exported, run_settings
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.headless import run_headless
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
-from ddct_controllers.mpc.settings import MpcSettings
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.registry import make_controller
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 TOLERANCE_N_M = 1e-6
 """Both solvers leave about 1e-9, DAQP by its tolerance."""

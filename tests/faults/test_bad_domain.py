@@ -7,14 +7,14 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup import bringup, compare
-from ddct_bringup.run.ros_domain import own_domain
+from ddct_bringup.programs import bringup, compare
+from ddct_bringup.processes.ros_domain import own_domain
 
 
 @pytest.mark.parametrize('domain', ['abc', '-1', '233'])
 def test_a_node_names_it(programs: Programs, monkeypatch: pytest.MonkeyPatch, domain: str) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', domain)
-    program = programs.start_node('ddct_plant.engine_node', {})
+    program = programs.start_node('ddct_plant.nodes.engine_node', {})
     assert program.wait() == 1
     assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID', repr(domain), '0 to 232')
 

@@ -7,7 +7,7 @@ from support.in_process_graph import GraphOf
 from support.processes import Program, Programs
 from support.runs import plan
 
-ENGINE, CONTROLLER = 'ddct_plant.engine_node', 'ddct_controllers.controller_node'
+ENGINE, CONTROLLER = 'ddct_plant.nodes.engine_node', 'ddct_controllers.controller_node'
 CASES: dict[str, tuple[str, list[str], list[str]]] = {
     'out of range': (ENGINE, ['-p', 'wear_gain:=-1.0'], ['wear_gain', '-1.0']),
     'not a number': (ENGINE, ['-p', 'wear_gain:=abc'], ['wear_gain', 'abc']),
@@ -26,17 +26,17 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
         ['preview_steps', '-1'],
     ),
     'timeout': (
-        'ddct_plant.driveline_node',
+        'ddct_plant.nodes.driveline_node',
         ['-p', 'answer_timeout_s:=0.0'],
         ['answer_timeout_s', '0.0'],
     ),
     'duration off the grid': (
-        'ddct_plant.driveline_node',
+        'ddct_plant.nodes.driveline_node',
         ['-p', 'duration:=0.705'],
         ['duration is 0.705', 'multiple of 0.01'],
     ),
     'fail-safe': (
-        'ddct_plant.actuator_node',
+        'ddct_plant.nodes.actuator_node',
         ['-p', 'fail_safe_ramp_n_m_s:=0.0'],
         ['fail_safe_ramp_n_m_s is 0'],
     ),
@@ -64,7 +64,7 @@ def test_every_wrong_parameter_is_named(programs: Programs) -> None:
     }
     for case, program in started.items():
         module, _, words = CASES[case]
-        node = module.split('.')[1].removesuffix('_node')
+        node = module.rpartition('.')[2].removesuffix('_node')
         assert program.wait() == 1, case
         assert_one_line(program.errors(), node, *words)
 

@@ -6,7 +6,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup import bringup, compare
+from ddct_bringup.programs import bringup, compare
 
 BAD_OPTIONS = {
     'controller': (['--controller', 'pid'], ["'pid'", 'choose from', 'hinf1']),
@@ -153,7 +153,7 @@ def test_the_program_exits_with_the_code_that_main_returns(
 ) -> None:
     out = tmp_path / 'runs'
     arguments = ('--controller', 'pid', '--out', str(out))
-    program = programs.start_module('ddct_bringup.bringup', *arguments)
+    program = programs.start_module('ddct_bringup.programs.bringup', *arguments)
     assert program.wait() == 1
     assert_one_line(program.errors(), 'bringup', "'pid'")
     assert not program.output()

@@ -4,8 +4,8 @@ import pytest
 from support.in_process_graph import GraphOf, node_class
 from support.runs import plan
 
-from ddct_bringup import recorder_node
-from ddct_bringup.run.graph_nodes import NODE_NAMES
+from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.record import recorder_node
 from ddct_plant.graph.node import GraphNode
 
 

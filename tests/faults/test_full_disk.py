@@ -11,7 +11,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
-from ddct_bringup import score
+from ddct_bringup.programs import score
 
 ROOM_KB = 200
 RUN = ('--controller', 'ls8', '--duration', '20')
@@ -40,7 +40,9 @@ def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     layout: list[str],
 ) -> None:
     out = small_disk / 'runs'
-    bringup = programs.start_module('ddct_bringup.bringup', *RUN, *layout, '--out', str(out))
+    bringup = programs.start_module(
+        'ddct_bringup.programs.bringup', *RUN, *layout, '--out', str(out)
+    )
     assert bringup.wait() == 1
     assert not processes_left()
     assert_one_line(bringup.errors(), 'bringup', 'No space left on device', 'ls8_0.mcap')
@@ -58,7 +60,7 @@ def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
 
     out = tmp_path / 'runs'
     bringup = programs.start_module(
-        'ddct_bringup.bringup', *RUN, '--headless', '--out', str(out), preexec_fn=limit
+        'ddct_bringup.programs.bringup', *RUN, '--headless', '--out', str(out), preexec_fn=limit
     )
     assert bringup.wait() == 1
     assert_one_line(bringup.errors(), 'bringup', 'File too large', 'ls8_0.mcap')

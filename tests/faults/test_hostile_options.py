@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import Program, Programs
+from support.processes import Program, Programs, package_of
 
-from ddct_bringup import bringup
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
-from ddct_plant.scenario_file import load_scenario, scenario_to_yaml
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.programs import bringup
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 TOO_LONG = 'x' * 300
@@ -67,7 +67,11 @@ def test_a_name_of_300_characters_is_one_line(
 
 @pytest.mark.parametrize(
     'module',
-    ['ddct_bringup.score', 'ddct_bringup.recorder_node', 'ddct_controllers.design_program'],
+    [
+        'ddct_bringup.programs.score',
+        'ddct_bringup.record.recorder_node',
+        'ddct_controllers.workflows.design_program',
+    ],
 )
 def test_help_into_a_full_disk_is_one_line(module: str) -> None:
     with Path('/dev/full').open('w') as full:
@@ -83,7 +87,7 @@ def test_help_into_a_full_disk_is_one_line(module: str) -> None:
     assert_one_line(done.stderr, program, 'No space left on device')
 
 
-@pytest.mark.parametrize('package', sorted({spec.package for spec in GRAPH_NODES}))
+@pytest.mark.parametrize('package', sorted({package_of(spec) for spec in GRAPH_NODES}))
 def test_every_program_ends_through_the_one_wrapper(package: str) -> None:
     setup = (ROOT / package / 'setup.py').read_text(encoding='utf-8')
     programs = re.findall(r"'[a-z-]+ = ([a-z_.]+):main'", setup)
@@ -113,4 +117,4 @@ def test_without_a_home_the_advice_is_to_name_a_folder_for_the_logs(
 
 def bring_up(programs: Programs, out: Path) -> Program:
     arguments = ['--single-process', '--duration=1', f'--out={out}']
-    return programs.start_module('ddct_bringup.bringup', *arguments)
+    return programs.start_module('ddct_bringup.programs.bringup', *arguments)

@@ -10,16 +10,18 @@ from support.processes import START_S, Program, Programs, node_of, processes_lef
 from support.runs import expected, plan
 from support.waiting import wait_until
 
-from ddct_bringup import score
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.run.shared_memory import SHARED_MEMORY, remove_segments, segments_of
+from ddct_bringup.processes.shared_memory import SHARED_MEMORY, remove_segments, segments_of
+from ddct_bringup.programs import score
 
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')
 
 
 def _running(programs: Programs, out: Path, *options: str) -> Program:
     """Start an endless bringup and wait until its recorder has written some steps."""
-    bringup = programs.start_module('ddct_bringup.bringup', *ENDLESS, *options, '--out', str(out))
+    bringup = programs.start_module(
+        'ddct_bringup.programs.bringup', *ENDLESS, *options, '--out', str(out)
+    )
     bag = out / 'ls8.partial' / 'ls8_0.mcap'
 
     def under_way() -> bool:
@@ -121,10 +123,10 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     programs: Programs, tmp_path: Path
 ) -> None:
     live = programs.start_node(
-        'ddct_plant.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
     dead = programs.start_node(
-        'ddct_plant.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
     left = _segments(programs, dead)
     # The middleware itself takes over the port of a dead node.

@@ -7,8 +7,8 @@ from support.in_process_graph import GraphOf
 from support.runs import expected, plan, record
 
 from ddct_bringup.run.execution import execute
-from ddct_plant.errors import DdctError
-from ddct_plant.load_node import LoadNode
+from ddct_plant.base.errors import DdctError
+from ddct_plant.nodes.load_node import LoadNode
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.third_party import install
 
-from ddct_bringup import bringup
+from ddct_bringup.programs import bringup
 
 SHORT = ['--headless', '--duration', '0.7']
 

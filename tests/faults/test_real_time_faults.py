@@ -17,7 +17,8 @@ from support.tampering import Tamperer, tampered_remap
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.timing_file import read_timing
 from ddct_bringup.scores.scoring import score_recording
-from ddct_plant.fail_safe import CLUTCH_TIMEOUT_S, FailSafeSettings
+from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
+from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.messages import (
     clock_message,
     joint_states_message,
@@ -25,8 +26,7 @@ from ddct_plant.graph.messages import (
     torque_points_message,
     twist_message,
 )
-from ddct_plant.graph.tick_owner import CLUTCH, LOAD
-from ddct_plant.timebase import PERIOD_S, stamp_of_step
+from ddct_plant.ticks.tick_owner import CLUTCH, LOAD
 
 FROM_STEP = 20
 FAIL_SAFE = FailSafeSettings()
@@ -157,7 +157,7 @@ def test_a_node_that_was_stopped_answers_again_when_it_goes_on(
     graph_of: GraphOf, programs: Programs, name: str, topic: str
 ) -> None:
     graph = graph_of(plan(mode='realtime', duration_s=600.0))
-    node = programs.start_node(f'ddct_plant.{name}_node', graph.parameters['*'])
+    node = programs.start_node(f'ddct_plant.nodes.{name}_node', graph.parameters['*'])
     graph.wait_for_publisher(topic, START_S)
     graph.add_all(without=[name])
     owner = realtime_owner(graph)

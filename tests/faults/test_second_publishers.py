@@ -12,11 +12,11 @@ from support.runs import expected, plan
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.topics import TOPICS, TopicSpec
 from ddct_bringup.bag.wire import message_type
-from ddct_bringup.run.graph_nodes import NODE_NAMES
-from ddct_plant.driveline_node import DrivelineNode
+from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.graph.realtime_owner import RealtimeOwner
 from ddct_plant.graph.sole_publishers import LOOP_TOPICS
+from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 LOOP = [topic for topic in TOPICS if topic.every_tick]
 
@@ -114,7 +114,7 @@ def test_a_killed_node_that_the_graph_still_shows_is_no_second_publisher(
 ) -> None:
     run = plan(duration_s=0.3)
     graph = graph_of(run)
-    load = programs.start_node('ddct_plant.load_node', graph.parameters['*'])
+    load = programs.start_node('ddct_plant.nodes.load_node', graph.parameters['*'])
     graph.wait_for_publisher('load/torque', START_S)
     load.process.kill()
     load.wait()

@@ -9,10 +9,10 @@ from support.complaints import assert_one_line
 from support.processes import START_S, Programs
 from support.waiting import wait_until
 
-from ddct_bringup import bringup, compare, report, score
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.programs import bringup, compare, report, score
 from ddct_bringup.run.folder_lock import SUFFIX, held
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 SHORT = ['--headless', '--duration', '0.7']
 PI = ['--controllers', 'pi', *SHORT]
@@ -35,7 +35,7 @@ def test_a_second_compare_is_refused_while_the_first_one_lives(
     compared: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
 ) -> None:
     again = ['--controllers', 'pi', '--headless', '--overwrite', '--out', str(compared)]
-    first = programs.start_module('ddct_bringup.compare', *again, '--duration', '3600')
+    first = programs.start_module('ddct_bringup.programs.compare', *again, '--duration', '3600')
     under_way = compared.with_name('runs.partial') / 'pi'
     wait_until(under_way.exists, 'a compare under way', START_S)
     before = _files(compared.parent)

@@ -8,9 +8,9 @@ from support.patient_clock import PatientClock, realtime_owner
 from support.processes import START_S, Programs
 from support.runs import plan
 
-from ddct_plant.driveline_node import DrivelineNode
-from ddct_plant.graph.tick_owner import LOAD, TickOwner
-from ddct_plant.timebase import stamp_of_step
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.ticks.tick_owner import LOAD, TickOwner
 
 
 def _graph(graph: InProcessGraph, timeout_s: float = 1.0) -> InProcessGraph:
@@ -65,7 +65,7 @@ def test_a_process_that_hangs_ends_the_run_at_its_step(
     graph_of: GraphOf, programs: Programs
 ) -> None:
     graph = _graph(graph_of(plan(duration_s=600.0)))
-    clutch = programs.start_node('ddct_plant.clutch_node', graph.parameters['*'])
+    clutch = programs.start_node('ddct_plant.nodes.clutch_node', graph.parameters['*'])
     graph.wait_for_publisher('clutch/torque', START_S)
     graph.add('driveline', {'require_recorder': False})
     graph.add_all(without=['clutch', 'recorder'])

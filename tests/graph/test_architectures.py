@@ -6,8 +6,8 @@ import pytest
 from support.runs import bag_bytes, expected, record
 
 from ddct_bringup.run.plan import LAYOUTS, RunPlan
-from ddct_plant.run_settings import ARCHITECTURES, RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
 

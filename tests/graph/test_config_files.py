@@ -11,7 +11,7 @@ import yaml
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
-from ddct_bringup.run.graph_nodes import GRAPH_NODES, NodeSpec
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES, NodeSpec
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted(ROOT.glob('ddct_*/config/*.yaml'))

@@ -15,7 +15,7 @@ def test_two_bringups_at_once_do_not_hear_each_other(programs: Programs, tmp_pat
     out = tmp_path / 'runs'
     started = [
         programs.start_module(
-            'ddct_bringup.bringup',
+            'ddct_bringup.programs.bringup',
             *('--controller', controller, '--duration', '5.0', '--single-process'),
             *('--out', str(out)),
             env=environment,

@@ -16,7 +16,7 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.topics import TOPICS
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
 INPUTS = {
     'engine': ['driveline/joint_states'],

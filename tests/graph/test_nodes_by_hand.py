@@ -10,7 +10,7 @@ from support.runs import bag_bytes, expected, plan, record
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
 RUN = plan(layout='headless', duration_s=3.0)
 """What nodes run that are only told to use `ls8`."""

@@ -15,13 +15,13 @@ from support.silent_controller import run_until_silent
 from trajectory_msgs.msg import JointTrajectory
 
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.driveline_node import DrivelineNode
-from ddct_plant.fail_safe import FailSafeSettings
+from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
+from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
 from ddct_plant.graph.messages import clock_message, torque_message
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
-from ddct_plant.graph.realtime_owner import RealtimeOwner
-from ddct_plant.timebase import PERIOD_S, stamp_of_step, step_of_stamp
+from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 FAIL_SAFE = FailSafeSettings()
 HELD_STEPS = round(FAIL_SAFE.request_timeout_s / PERIOD_S)

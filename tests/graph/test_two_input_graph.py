@@ -17,11 +17,11 @@ from support.runs import bag_bytes, expected, plan, record
 from support.silent_controller import run_until_silent
 
 from ddct_bringup.run.plan import LAYOUTS
-from ddct_plant.fail_safe import REQUEST_TIMEOUT_S
+from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
+from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.message_values import stamp_ns, torque_of
 from ddct_plant.graph.messages import joint_states_message, torque_message
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
-from ddct_plant.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 
 SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'

@@ -20,7 +20,7 @@ def live(extras: None, programs: Programs) -> Callable[..., tuple[Program, str]]
     """Return a function that starts `live` and returns it with its address."""
 
     def start(*arguments: str) -> tuple[Program, str]:
-        program = programs.start_module('ddct_bringup.live', '--port', '0', *arguments)
+        program = programs.start_module('ddct_bringup.programs.live', '--port', '0', *arguments)
         wait_until(
             lambda: 'ws://' in program.output() or program.process.poll() is not None,
             'the address of live',

@@ -9,7 +9,7 @@ from support.complaints import assert_one_line
 from support.processes import START_S, Programs
 from support.waiting import wait_until
 
-from ddct_bringup import bringup
+from ddct_bringup.programs import bringup
 
 
 @pytest.mark.parametrize('layout', ['--headless', '--single-process'])
@@ -34,7 +34,7 @@ def test_a_taken_port_ends_it_before_the_run(
 @pytest.mark.usefixtures('extras')
 def test_ctrl_c_ends_the_wait_for_a_viewer(programs: Programs, tmp_path: Path) -> None:
     program = programs.start_module(
-        'ddct_bringup.bringup', '--live', '0', '--out', str(tmp_path / 'runs')
+        'ddct_bringup.programs.bringup', '--live', '0', '--out', str(tmp_path / 'runs')
     )
     wait_until(
         lambda: 'ws://' in program.errors(), 'the address of the live view', within_s=START_S

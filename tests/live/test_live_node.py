@@ -15,12 +15,12 @@ from rosgraph_msgs.msg import Clock
 from support.waiting import wait_until
 from viewer import Viewer
 
-from ddct_bringup.live_view import live_node
+from ddct_bringup.live import live_node
+from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.message_values import status_name_of
 from ddct_plant.graph.messages import clock_message, status_message
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.timebase import START_NS, stamp_of_step
 
 pytestmark = pytest.mark.usefixtures('extras')
 

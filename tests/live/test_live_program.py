@@ -9,7 +9,7 @@ from support.complaints import assert_one_line
 from support.processes import Program, Programs
 
 Start = Callable[..., tuple[Program, str]]
-LIVE = 'ddct_bringup.live'
+LIVE = 'ddct_bringup.programs.live'
 
 
 def test_a_taken_port_is_named(extras: None, programs: Programs) -> None:

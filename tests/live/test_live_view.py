@@ -11,10 +11,10 @@ from support.runs import SHORT_S, bag_bytes, plan, record
 from support.waiting import wait_until
 from viewer import Viewer, address_in
 
-from ddct_bringup.bag.message_definitions import load_definition
+from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.topics import TOPICS, recorded_topics
+from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.message_values import stamp_ns
-from ddct_plant.timebase import START_NS
 
 Start = Callable[..., tuple[Program, str]]
 TICK_TOPICS = [topic.resolved_name for topic in recorded_topics(lockstep=True) if topic.every_tick]
@@ -36,7 +36,7 @@ def test_a_viewer_of_bringup_sees_the_run_from_its_first_tick_and_the_bag_stays_
     programs: Programs, tmp_path: Path
 ) -> None:
     options = ['--controller', 'ls8', '--duration', str(SHORT_S), '--out', str(tmp_path / 'runs')]
-    program = programs.start_module('ddct_bringup.bringup', '--live', '0', *options)
+    program = programs.start_module('ddct_bringup.programs.bringup', '--live', '0', *options)
     wait_until(lambda: 'ws://' in program.errors(), 'the address of the live view')
     with Viewer(address_in(program.errors())) as viewer:
         assert program.wait() == 0, program.errors()

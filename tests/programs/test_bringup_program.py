@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from support.processes import Programs
 
-from ddct_bringup import bringup
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.programs import bringup
 
 
 def test_a_run_leaves_one_bag_with_its_timing_and_nothing_else(
@@ -76,7 +76,7 @@ def test_list_names_what_can_be_chosen(capfd: pytest.CaptureFixture[str]) -> Non
 
 @pytest.mark.parametrize('option', ['--help', '--version'])
 def test_help_and_version_end_with_code_0(programs: Programs, option: str) -> None:
-    program = programs.start_module('ddct_bringup.bringup', option)
+    program = programs.start_module('ddct_bringup.programs.bringup', option)
     assert program.wait() == 0, program.errors()
     assert program.output().strip()
     assert not program.errors()

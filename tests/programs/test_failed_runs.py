@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from support.runs import SHORT_S, plan
 
-from ddct_bringup import bringup, compare
+from ddct_bringup.programs import bringup, compare
 from ddct_bringup.run import progress
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 Spoil = Callable[[RunPlan, Path], None]
 REAL = progress.execute
@@ -21,8 +21,8 @@ def ended_early(run: RunPlan, folder: Path) -> None:
     """Leave a whole bag of half the length that the run should have."""
     pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from ddct_bringup.bag.trajectory_bag import write_trajectory
-    from ddct_bringup.headless import run_headless
-    from ddct_bringup.run.record import custom_data
+    from ddct_bringup.run.description import custom_data
+    from ddct_bringup.run.headless import run_headless
 
     half = plan(run.controller, 'headless', duration_s=SHORT_S / 2.0)
     trajectory = run_headless(half.settings, half.controller)

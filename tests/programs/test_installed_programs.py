@@ -4,14 +4,18 @@ import shutil
 from pathlib import Path
 
 import pytest
-from support.processes import Program, Programs, ros_arguments
+from support.processes import Program, Programs, package_of, ros_arguments
 from support.runs import bag_bytes, plan, record
 
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
 PROGRAMS = [
-    *((spec.package, spec.name) for spec in GRAPH_NODES),
-    *(('ddct_bringup', name) for name in ('bringup', 'compare', 'live', 'report', 'score')),
+    *((package_of(spec), spec.name) for spec in GRAPH_NODES),
+    *(
+        ('ddct_bringup', name)
+        for name in ('bringup', 'compare', 'live', 'report', 'reproduce', 'score')
+    ),
+    ('ddct_controllers', 'design'),
     ('ddct_plant', 'identify'),
 ]
 RUN = plan('ls8', 'headless', duration_s=3.0)
@@ -52,7 +56,7 @@ def test_every_program_is_installed_where_ros2_run_looks(package: str, program: 
 def test_installed_nodes_leave_the_bag_of_the_headless_run(
     programs: Programs, tmp_path: Path
 ) -> None:
-    commands = {spec.name: [installed(spec.package, spec.name)] for spec in GRAPH_NODES}
+    commands = {spec.name: [installed(package_of(spec), spec.name)] for spec in GRAPH_NODES}
     _run_graph(programs, commands, tmp_path / 'graph')
     record(RUN, tmp_path / 'headless')
     assert bag_bytes(tmp_path / 'graph') == bag_bytes(tmp_path / 'headless')
@@ -63,8 +67,8 @@ def test_ros2_run_leaves_the_bag_of_the_headless_run(programs: Programs, tmp_pat
     if ros2 is None:
         pytest.skip('no ros2 on PATH: ros2cli comes with apt, not with the wheels')
     for spec in GRAPH_NODES:
-        installed(spec.package, spec.name)
-    commands = {spec.name: [ros2, 'run', spec.package, spec.name] for spec in GRAPH_NODES}
+        installed(package_of(spec), spec.name)
+    commands = {spec.name: [ros2, 'run', package_of(spec), spec.name] for spec in GRAPH_NODES}
     _run_graph(programs, commands, tmp_path / 'graph')
     record(RUN, tmp_path / 'headless')
     assert bag_bytes(tmp_path / 'graph') == bag_bytes(tmp_path / 'headless')

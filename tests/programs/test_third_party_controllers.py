@@ -8,11 +8,11 @@ from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install
 
-from ddct_bringup import bringup, compare
+from ddct_bringup.programs import bringup, compare
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SUPPORT = Path(__file__).parent.parent
 
@@ -47,9 +47,9 @@ def test_the_example_controller_runs_in_every_layout_with_the_same_bytes(tmp_pat
 
 @pytest.mark.usefixtures('example')
 def test_bringup_lists_and_runs_the_example_controller(programs: Programs, tmp_path: Path) -> None:
-    listing = programs.start_module('ddct_bringup.bringup', '--list')
+    listing = programs.start_module('ddct_bringup.programs.bringup', '--list')
     run = programs.start_module(
-        'ddct_bringup.bringup',
+        'ddct_bringup.programs.bringup',
         *('--controller', 'dead_zone', '--headless', '--out', str(tmp_path / 'runs')),
     )
     assert listing.wait() == 0, listing.errors()
@@ -113,7 +113,8 @@ def test_a_graph_names_the_controller_whose_status_is_no_text(
     programs: Programs, tmp_path: Path
 ) -> None:
     run = programs.start_module(
-        'ddct_bringup.bringup', *('--controller', 'bad_status', '--out', str(tmp_path / 'runs'))
+        'ddct_bringup.programs.bringup',
+        *('--controller', 'bad_status', '--out', str(tmp_path / 'runs')),
     )
     assert run.wait() == 1
     words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
@@ -137,7 +138,7 @@ def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_l
 ) -> None:
     out = tmp_path / 'runs'
     run = programs.start_module(
-        'ddct_bringup.bringup', *('--controller', 'raising', '--out', str(out))
+        'ddct_bringup.programs.bringup', *('--controller', 'raising', '--out', str(out))
     )
     assert run.wait() == 1
     words = "controller 'raising': it failed at step 60 (ZeroDivisionError: float division by zero"

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from support.runs import plan, record
 
-from ddct_bringup.report import main
+from ddct_bringup.programs.report import main
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_controllers.design.analysis.evidence import frequency_evidence
-from ddct_plant.scenario_file import scenario_digest
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.scenario.file import scenario_digest
 
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.compare import main
+from ddct_bringup.programs.compare import main
 
 
 def test_compare_ends_with_the_report(tmp_path: Path) -> None:

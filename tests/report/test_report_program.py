@@ -11,13 +11,13 @@ from page_reader import PageReader
 from support.processes import Programs
 from support.runs import plan, record
 
-from ddct_bringup import compare
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.report import main
-from ddct_bringup.score import main as score
+from ddct_bringup.programs import compare
+from ddct_bringup.programs.report import main
+from ddct_bringup.programs.score import main as score
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
-from ddct_bringup.scores.thesis_conditions import predicted_range
-from ddct_plant.run_settings import RunSettings
+from ddct_bringup.thesis.conditions import predicted_range
+from ddct_plant.scenario.settings import RunSettings
 
 
 def scores_of(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict]:
@@ -83,7 +83,7 @@ def test_the_page_of_the_same_runs_is_the_same_file(
     pages = []
     for name in ('first.html', 'second.html'):
         arguments = [str(demo / 'pi'), '--out', str(tmp_path / name)]
-        program = programs.start_module('ddct_bringup.report', *arguments)
+        program = programs.start_module('ddct_bringup.programs.report', *arguments)
         assert program.wait() == 0, program.errors()
         pages.append((tmp_path / name).read_bytes())
     assert pages[0] == pages[1]
@@ -110,8 +110,8 @@ def test_a_damaged_bag_is_marked_and_the_others_stay(
 
 def test_a_run_that_ended_early_is_marked(demo: Path, tmp_path: Path) -> None:
     from ddct_bringup.bag.trajectory_bag import write_trajectory
-    from ddct_bringup.headless import run_headless
-    from ddct_bringup.run.record import custom_data
+    from ddct_bringup.run.description import custom_data
+    from ddct_bringup.run.headless import run_headless
 
     whole, short = plan('pi', 'headless', duration_s=3.0), plan('pi', 'headless', duration_s=1.0)
     write_trajectory(

@@ -11,9 +11,9 @@ import pytest
 
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.export.export_controller import export_controller
-from ddct_plant.errors import DdctError
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 STRICT = ('-std=c99', '-Wall', '-Wextra', '-Wpedantic', '-Werror', '-Wconversion', '-Wshadow')
 STRICT += ('-Wdouble-promotion', '-Wstrict-prototypes')

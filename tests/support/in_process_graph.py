@@ -14,9 +14,9 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
 

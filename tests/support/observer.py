@@ -12,10 +12,10 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.message_values import stamp_ns, torque_points_of
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.timebase import step_of_stamp
 
 
 class Observer(Node):

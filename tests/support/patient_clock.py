@@ -2,9 +2,9 @@
 
 import time
 
-from ddct_plant.driveline_node import DrivelineNode
-from ddct_plant.graph.realtime_owner import RealtimeOwner
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from support.in_process_graph import InProcessGraph
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.processes.graph_nodes import NodeSpec
 from support.waiting import wait_until
 
 TEST_ID = 'DDCT_TEST_ID'
@@ -90,6 +91,11 @@ class Programs:
             if program.process.poll() is None:
                 program.send(signal.SIGKILL)
             program.wait()
+
+
+def package_of(node: NodeSpec) -> str:
+    """Return the package whose program the node is."""
+    return node.module.partition('.')[0]
 
 
 def ros_arguments(parameters: Mapping[str, object]) -> list[str]:

@@ -4,11 +4,11 @@ from pathlib import Path
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.headless import run_headless
 from ddct_bringup.run.execution import execute
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SHORT_S = 1.0
 """Long enough for 40 steps under control, which starts at 0.6 s."""

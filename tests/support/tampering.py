@@ -5,9 +5,9 @@ from typing import Any
 
 from rclpy.node import Node
 
+from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.message_values import stamp_ns
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.timebase import step_of_stamp
 
 
 def tampered_remap(topic: str) -> list[str]:

@@ -3,39 +3,36 @@
 import json
 import re
 from collections import defaultdict
-from importlib.metadata import EntryPoint
 from itertools import zip_longest
 from pathlib import Path
 
 import pytest
 import yaml
-from support.third_party import install
 
-from ddct_bringup.scores.thesis_table import THESIS_TABLE
-from ddct_bringup.thesis.values import closed_loop_values
-from ddct_controllers import design_program
-from ddct_controllers.design.thesis.gate import GateRow, judge
-from ddct_controllers.design.thesis.gate_tables import count_facts, page_tables
-from ddct_controllers.design.thesis.number_file import thesis_numbers
-from ddct_controllers.design.thesis.sources import ENTRY_POINT_GROUP, OWN_SOURCES, compute
-from ddct_controllers.design.thesis.thesis_number import VERDICTS, is_number
+from ddct_bringup.programs import reproduce
+from ddct_bringup.reproduction.numbers import command
+from ddct_bringup.reproduction.numbers.gate import GateRow, judge
+from ddct_bringup.reproduction.numbers.gate_tables import count_facts, page_tables
+from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
+from ddct_bringup.reproduction.numbers.sources import SOURCES, compute
+from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS, is_number
+from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.thesis_mpc import TABLE_4_1
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.page_tables import fill_tables
-from ddct_plant.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP
+from ddct_plant.program.page_tables import fill_tables
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / 'docs' / 'thesis_gate.md'
 NUMBERS = thesis_numbers()
-SETUP = (REPOSITORY / 'ddct_bringup' / 'setup.py').read_text(encoding='utf-8')
 
 
 @pytest.fixture(scope='module')
 def rows() -> tuple[GateRow, ...]:
-    return judge(NUMBERS, compute({**OWN_SOURCES, 'closed loop': closed_loop_values}))
+    return judge(NUMBERS, compute(SOURCES))
 
 
 def test_every_claim_about_a_printed_number_holds(rows: tuple[GateRow, ...]) -> None:
@@ -45,7 +42,7 @@ def test_every_claim_about_a_printed_number_holds(rows: tuple[GateRow, ...]) -> 
 
 def test_page_of_the_documentation_has_what_is_computed(rows: tuple[GateRow, ...]) -> None:
     page = PAGE.read_text(encoding='utf-8')
-    computed = fill_tables(page, 'thesis', page_tables(rows))
+    computed = fill_tables(page, 'numbers', page_tables(rows))
     assert len(page.splitlines()) == len(computed.splitlines())
     for kept_line, line in zip(page.splitlines(), computed.splitlines(), strict=True):
         for kept_cell, cell in zip(kept_line.split(' | '), line.split(' | '), strict=True):
@@ -180,32 +177,10 @@ def test_list_has_table_5_1_as_the_calibration_uses_it() -> None:
     }
 
 
-@pytest.fixture
-def closed_loop_entry_point() -> str:
-    (value,) = re.findall(rf"'{re.escape(ENTRY_POINT_GROUP)}': \[\s+'closed_loop = (.+)'", SETUP)
-    return value
-
-
-def test_closed_loop_is_declared_where_the_program_looks_for_it(
-    closed_loop_entry_point: str,
-) -> None:
-    point = EntryPoint('closed_loop', closed_loop_entry_point, ENTRY_POINT_GROUP)
-    assert point.load() is closed_loop_values
-
-
-@pytest.fixture
-def installed(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, closed_loop_entry_point: str
-) -> None:
-    points = {'closed_loop': closed_loop_entry_point}
-    install(monkeypatch, tmp_path / 'site', REPOSITORY / 'ddct_bringup', points, ENTRY_POINT_GROUP)
-
-
-@pytest.mark.usefixtures('installed')
 def test_program_writes_every_number_as_json_alone(
     capsys: pytest.CaptureFixture[str], rows: tuple[GateRow, ...]
 ) -> None:
-    assert design_program.main(['thesis', '--json', '-']) == 0
+    assert reproduce.main(['numbers', '--json', '-']) == 0
     content = json.loads(capsys.readouterr().out)
     assert content == {'numbers': [row.as_dict() for row in rows]}
     keys = [
@@ -216,56 +191,46 @@ def test_program_writes_every_number_as_json_alone(
     assert {number['verdict'] for number in content['numbers']} <= {*VERDICTS}
 
 
-@pytest.mark.usefixtures('installed')
 def test_program_prints_the_tables_and_fills_the_page(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, rows: tuple[GateRow, ...]
 ) -> None:
     kept = PAGE.read_text(encoding='utf-8')
     page = tmp_path / 'page.md'
     page.write_text(kept.replace('0.8656', '0.1234'), encoding='utf-8')
-    assert design_program.main(['thesis', '--write-doc', str(page)]) == 0
-    assert page.read_text(encoding='utf-8') == fill_tables(kept, 'thesis', page_tables(rows))
+    assert reproduce.main(['numbers', '--write-doc', str(page)]) == 0
+    assert page.read_text(encoding='utf-8') == fill_tables(kept, 'numbers', page_tables(rows))
     printed = capsys.readouterr().out
     assert 'Errata of the thesis' in printed and 'distinct facts' in printed
 
 
-def test_program_without_the_closed_loop_says_that_nothing_was_computed_for_it(
+def test_program_without_one_of_its_sources_says_that_nothing_was_computed_for_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(design_program.thesis_command, 'all_sources', dict(OWN_SOURCES).copy)
-    assert design_program.main(['thesis']) == 1
+    without = {name: source for name, source in SOURCES.items() if name != 'closed loop'}
+    monkeypatch.setattr(command, 'SOURCES', without)
+    assert reproduce.main(['numbers']) == 1
     *_, error = capsys.readouterr().err.splitlines()
     assert error.startswith(
-        'design: the gate does not hold: 1.5.1, w_d of the three simplified models'
+        'reproduce: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
+        'the detailed model: nothing was computed for it; '
     )
-    assert 'ddct_bringup' in error
-
-
-def test_source_that_cannot_be_loaded_is_named(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    points = {'absent': 'no_such_package:values'}
-    install(monkeypatch, tmp_path / 'site', tmp_path, points, ENTRY_POINT_GROUP)
-    assert design_program.main(['thesis']) == 1
-    (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith("design: thesis numbers 'absent': the entry point no_such_package")
 
 
 def test_page_that_is_not_there_is_refused_before_the_work(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert design_program.main(['thesis', '--write-doc', str(tmp_path / 'none.md')]) == 1
+    assert reproduce.main(['numbers', '--write-doc', str(tmp_path / 'none.md')]) == 1
     (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith('design: --write-doc ') and 'none.md' in error
+    assert error.startswith('reproduce: --write-doc ') and 'none.md' in error
 
 
 def test_page_without_a_table_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     page = tmp_path / 'page.md'
-    page.write_text('<!-- thesis: errata -->\n<!-- end -->\n', encoding='utf-8')
-    monkeypatch.setattr(design_program.thesis_command, 'compute', lambda *arguments: {})
-    monkeypatch.setattr(design_program.thesis_command, 'thesis_numbers', tuple)
-    assert design_program.main(['thesis', '--write-doc', str(page)]) == 1
+    page.write_text('<!-- numbers: errata -->\n<!-- end -->\n', encoding='utf-8')
+    monkeypatch.setattr(command, 'compute', lambda *arguments: {})
+    monkeypatch.setattr(command, 'thesis_numbers', tuple)
+    assert reproduce.main(['numbers', '--write-doc', str(page)]) == 1
     assert 'the page must have these tables' in capsys.readouterr().err
-    assert page.read_text(encoding='utf-8') == '<!-- thesis: errata -->\n<!-- end -->\n'
+    assert page.read_text(encoding='utf-8') == '<!-- numbers: errata -->\n<!-- end -->\n'

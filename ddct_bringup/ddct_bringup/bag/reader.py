@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 from mcap_ros2.decoder import DecoderFactory
 
+from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info_of_nodes import RunInfoOfNodes, note_run_info
 from ddct_bringup.bag.signals import ENGINE_REQUEST, SIGNALS, Signal
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.topics import TOPICS, resolved_name
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.message_values import stamp_ns, status_name_of, status_pairs_of
-from ddct_plant.timebase import stamp_of_step
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,14 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.bag.mcap_file import METADATA_FILE, Channel, McapFile, write_metadata
-from ddct_bringup.bag.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.file.mcap_file import METADATA_FILE, Channel, McapFile, write_metadata
+from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records, salvage_records
 from ddct_bringup.bag.reader import recording_of
-from ddct_bringup.bag.records import BagRecords, mcap_of, read_records, salvage_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.ticks import complete_ticks, tick_topics
-from ddct_plant.errors import DdctError
-from ddct_plant.timebase import stamp_of_step, time_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step, time_of_step
 
 REPAIRED_KEY = 'repaired'
 """Custom data of a repaired bag has this key, with 'true'."""

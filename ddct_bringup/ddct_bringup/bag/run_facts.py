@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.json_text import parse_json
-from ddct_plant.names import require_name
-from ddct_plant.timebase import steps_in
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.names import require_name
+from ddct_plant.base.timebase import steps_in
+from ddct_plant.files.json_text import parse_json
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names: they go into tables, labels and names of files."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 RunInfoOfNodes = dict[str, Mapping[str, str]]
 """Per node name what it says of itself."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.message_values import (
     JOINTS,
     slip_of,

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 from ddct_bringup.bag.topics import TOPICS, resolved_name
-from ddct_plant.errors import DdctError
-from ddct_plant.graph.stamp_limit import PLANT_TOPICS
-from ddct_plant.timebase import stamp_of_step, step_of_stamp, time_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step, step_of_stamp, time_of_step
+from ddct_plant.ticks.stamp_limit import PLANT_TOPICS
 
 Stamps = Mapping[str, Sequence[int]]
 """Per resolved topic name the stamps in ns of its messages."""

@@ -10,8 +10,8 @@ from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_bringup.bag.topics import recorded_topics
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph import messages
-from ddct_plant.timebase import START_NS, stamp_of_step
 
 RunInfo = Mapping[str, Sequence[tuple[str, str]]]
 """Per node name the (key, value) pairs that it latches on `run_info`."""

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
-from ddct_bringup.bag.cdr import CdrNormaliser
-from ddct_bringup.bag.mcap_file import Channel, McapFile
-from ddct_bringup.bag.message_definitions import load_definition
-from ddct_bringup.bag.metadata import offered_qos
+from ddct_bringup.bag.file.cdr import CdrNormaliser
+from ddct_bringup.bag.file.mcap_file import Channel, McapFile
+from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_bringup.bag.file.metadata import offered_qos
 from ddct_bringup.bag.topics import TopicSpec
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 
 def bag_file(folder: Path, name: str) -> Path:

@@ -5,13 +5,13 @@ from typing import Any, Protocol
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
-from ddct_plant.actuator import Actuator
-from ddct_plant.clutch import LinearClutch
-from ddct_plant.driveline import Driveline, DrivelineOutputs
-from ddct_plant.engine import Engine
-from ddct_plant.initial import initial_state
-from ddct_plant.load import RoadLoad
-from ddct_plant.run_settings import RunSettings
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import Driveline, DrivelineOutputs
+from ddct_plant.models.engine import Engine
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_reference
 
 

@@ -4,16 +4,16 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from ddct_bringup.headless import run_headless
-from ddct_bringup.run.graph_nodes import GRAPH_NODES
-from ddct_bringup.run.live_process import LiveView
-from ddct_bringup.run.node_processes import NodeProcesses
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.live_process import LiveView
+from ddct_bringup.processes.node_processes import NodeProcesses
+from ddct_bringup.processes.ros_domain import own_domain
+from ddct_bringup.run.description import custom_data, run_info_of
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.record import custom_data, run_info_of
-from ddct_bringup.run.ros_domain import own_domain
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.registry import make_controller
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 WORK_FOLDER = 'work'
 """Scenario, parameters and logs of a run; of a run that ends well only logs with warnings stay."""
@@ -89,7 +89,7 @@ def _execute_single_process(
     plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
 ) -> None:
     # The graph needs ROS installed and sourced; a headless run does not.
-    from ddct_bringup.run.single_process import run_single_process
+    from ddct_bringup.processes.single_process import run_single_process
 
     parameters = plan.node_parameters(folder, work)
     run_single_process(parameters, stopped)

@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ddct_bringup.run.output_folder import MARKER, PARTIAL
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 SUFFIX = '.ddct-lock'
 """The lock of DIR is the file .DIR.ddct-lock beside it, which is there only while it is held."""

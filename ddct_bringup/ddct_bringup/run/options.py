@@ -4,13 +4,13 @@ import argparse
 from collections.abc import Sequence
 
 from ddct_controllers.registry import controller_names
-from ddct_plant.clutch import CLUTCHES
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.printable import printable
 from ddct_plant.graph.run_info import package_version
-from ddct_plant.printable import printable
-from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
-from ddct_plant.scenario_file import load_scenario, scenario_names
-from ddct_plant.scenario_options import add_scenario_options
+from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:

@@ -4,7 +4,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 MARKER = '.ddct-output'
 """Marks a folder as written by these programs, so that `--overwrite` may replace it."""

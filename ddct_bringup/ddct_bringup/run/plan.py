@@ -4,18 +4,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import controller_label, make_controller
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import scenario_to_yaml
-from ddct_plant.yaml_text import dump_yaml
+from ddct_plant.scenario.file import scenario_to_yaml
+from ddct_plant.scenario.settings import RunSettings
 
 LAYOUTS = ('processes', 'single-process', 'headless')
 """One process per node, all nodes in one process, or no ROS graph at all."""
-ANSWER_TIMEOUT_S = 20.0
-"""Wall time that a node of a supervised graph may take to answer."""
 
 
 @dataclass(frozen=True)

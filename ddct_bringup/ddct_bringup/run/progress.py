@@ -6,10 +6,10 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.run.execution import execute
-from ddct_bringup.run.live_process import LiveView
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.stop_signals import stop_signals
+from ddct_plant.program.stop_signals import stop_signals
 
 
 def run_with_progress(

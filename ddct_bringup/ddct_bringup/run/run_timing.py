@@ -5,7 +5,7 @@ import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 TIMING_FILE = 'timing.json'
 

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from ddct_bringup.run.run_timing import TIMING_FILE, RunTiming
-from ddct_plant.checks import require_number
-from ddct_plant.errors import DdctError
-from ddct_plant.input_file import read_text_file
-from ddct_plant.json_text import parse_json
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_text import parse_json
 
 MOST_BYTES = 50_000_000
 """An hour's run has an eighth of that."""

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import signal
 from scipy.integrate import trapezoid
 
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
 
 JERK_CUTOFF_HZ = 20.0
 _JERK_FILTER_ORDER = 2

@@ -17,9 +17,9 @@ from ddct_bringup.scores.tables import (
     Column,
     print_runs,
 )
-from ddct_bringup.scores.thesis_conditions import is_thesis_run, predicted_range, verdict
-from ddct_bringup.scores.thesis_table import FIGURES, PREDICTED, PREDICTION_TOLERANCE, thesis_row
-from ddct_plant.run_settings import RunSettings
+from ddct_bringup.thesis.conditions import is_thesis_run, predicted_range, verdict
+from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED, PREDICTION_TOLERANCE, thesis_row
+from ddct_plant.scenario.settings import RunSettings
 
 _NOTE = (
     'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from ddct_controllers.design.analysis.evidence import frequency_evidence
-from ddct_plant.output_file import write_json
-from ddct_plant.run_settings import RunSettings
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.files.output_file import write_json
+from ddct_plant.scenario.settings import RunSettings
 
 FREQUENCY_FILE = 'frequency.json'
 

@@ -3,8 +3,8 @@
 import math
 
 from ddct_bringup.bag.reader import Recording
-from ddct_plant.graph.tick_owner import TORQUE_TOPICS
-from ddct_plant.timebase import START_NS
+from ddct_plant.base.timebase import START_NS
+from ddct_plant.ticks.tick_owner import TORQUE_TOPICS
 
 MISS_TOLERANCE = 0.01
 """

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.bag.file.records import mcap_of, salvage_records
 from ddct_bringup.bag.reader import Recording
-from ddct_bringup.bag.records import mcap_of, salvage_records
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.timing_file import read_timing
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
-from ddct_plant.errors import DdctError
-from ddct_plant.timebase import time_of_step
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import time_of_step
 
 Entry = dict[str, Any]
 """One run of `scores.json`: bag, ..., valid, reason, metrics, fallbacks, safe_state."""

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ddct_bringup.scores.scoring import Entry
-from ddct_plant.printable import printable
+from ddct_plant.base.printable import printable
 
 UNDEFINED = '-'
 _PIPED_WIDTH = 200

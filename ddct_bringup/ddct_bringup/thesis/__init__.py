@@ -1,1 +1,1 @@
-"""Numbers and figures of the thesis that need a closed loop."""
+"""What is kept of the thesis: Table 5.1 as printed, and what the admissible scenarios predict."""

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.linalg import eigvals
 
-from ddct_plant.cascade import Factor
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 _REAL = 1e-9
 """Imaginary part, relative to the magnitude, below which a root counts as real."""

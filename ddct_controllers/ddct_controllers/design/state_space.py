@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import StateSpace
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import StateSpace
 
 
 def series(*systems: StateSpace) -> StateSpace:

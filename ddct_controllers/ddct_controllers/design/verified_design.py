@@ -9,9 +9,9 @@ from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 WEAR_GAINS = (0.7, 1.3)
 """Ends of the range of K_usura, inequality (3.2)."""

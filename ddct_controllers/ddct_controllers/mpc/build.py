@@ -3,12 +3,12 @@
 import math
 from dataclasses import replace
 
-from ddct_controllers.mpc.observer import AtRest, NoiseLevels, Observer, kalman_gain
-from ddct_controllers.mpc.transmission_model import TransmissionModel
-from ddct_controllers.mpc.wear_noise import WearNoise
-from ddct_controllers.mpc.wear_observer import WearObserver
-from ddct_plant.initial import initial_state
-from ddct_plant.run_settings import RunSettings
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.estimate.wear_noise import WearNoise
+from ddct_controllers.mpc.estimate.wear_observer import WearObserver
+from ddct_controllers.mpc.model.transmission_model import TransmissionModel
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
 
 
 def make_observer(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ddct_controllers.mpc.options import switch_option
-from ddct_plant.checks import require_choice
+from ddct_plant.base.checks import require_choice
 
 MEASURED_SIGNALS = ('slip', 'speeds')
 

@@ -4,18 +4,18 @@ import dataclasses
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.disturbances import (
+from ddct_controllers.mpc.estimate.disturbances import (
     CLUTCH_DRIFT_N_M,
     LOAD_DRIFT_N_M,
     offset_free_model,
     offset_free_noise,
 )
+from ddct_controllers.mpc.model.transmission_model import TORSION_SPEED
 from ddct_controllers.mpc.options import number_option, with_options
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import MpcSettings, OutputTerms
+from ddct_controllers.mpc.program.settings import MpcSettings, OutputTerms
 from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
-from ddct_controllers.mpc.transmission_model import TORSION_SPEED
-from ddct_plant.units import rpm_from_rad_s
+from ddct_plant.base.units import rpm_from_rad_s
 
 _DRIFTS = {'clutch_drift_n_m': CLUTCH_DRIFT_N_M, 'load_drift_n_m': LOAD_DRIFT_N_M}
 _TORSION_WEIGHT = 'torsion_weight'

@@ -4,13 +4,13 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
+from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_controllers.mpc.qp.factory import BACKENDS
-from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.transmission_model import SLIP_SPEED
 from ddct_controllers.option_keys import require_known_keys
-from ddct_plant.checks import require_choice, require_number
-from ddct_plant.errors import ParameterError
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.base.checks import require_choice, require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rad_s_from_rpm
 
 OPTIONS = {
     'prediction_steps': 'periods over which outputs are weighted',

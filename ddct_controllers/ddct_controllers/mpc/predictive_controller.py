@@ -6,14 +6,14 @@ import numpy as np
 
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.mpc.horizon import condense
-from ddct_controllers.mpc.limits import CLUTCH, Limits
-from ddct_controllers.mpc.observer import StateEstimator
+from ddct_controllers.mpc.estimate.observer import StateEstimator
+from ddct_controllers.mpc.model.transmission_model import TransmissionModel
+from ddct_controllers.mpc.program.horizon import condense
+from ddct_controllers.mpc.program.limits import CLUTCH, Limits
+from ddct_controllers.mpc.program.references import references
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.factory import make_backend
-from ddct_controllers.mpc.references import references
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import TransmissionModel
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
 
 Estimator = TypeVar('Estimator', bound=StateEstimator)
 

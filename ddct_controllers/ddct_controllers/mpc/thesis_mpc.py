@@ -5,19 +5,19 @@ from typing import Any
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.estimate.unit_noise import unit_noise_gain
 from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL, KEYS, Knowledge, with_knowledge
-from ddct_controllers.mpc.observer import Observer
-from ddct_controllers.mpc.options import number_option, with_options
-from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     TransmissionModel,
     transmission_model,
 )
-from ddct_controllers.mpc.unit_noise import unit_noise_gain
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.units import rpm_from_rad_s
+from ddct_controllers.mpc.options import number_option, with_options
+from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.settings import RunSettings
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ from typing import Any
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.options import number_option, with_options
-from ddct_controllers.mpc.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.model.transmission_model import (
     SLIP_ACCELERATION,
     SLIP_SPEED,
     transmission_model,
 )
+from ddct_controllers.mpc.options import number_option, with_options
+from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
 
 NAME = 'mpc4'

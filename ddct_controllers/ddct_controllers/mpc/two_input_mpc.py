@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_controllers.interface import Command, Measurement, Status
-from ddct_controllers.mpc.engine_model import with_engine
-from ddct_controllers.mpc.limits import CLUTCH
+from ddct_controllers.mpc.model.engine_model import with_engine
+from ddct_controllers.mpc.model.transmission_model import TransmissionModel
 from ddct_controllers.mpc.predictive_controller import Estimator, PredictiveController
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import TransmissionModel
-from ddct_plant.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
+from ddct_controllers.mpc.program.limits import CLUTCH
+from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_plant.models.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
 
 ENGINE = 1
 """Place of the engine among the inputs."""

@@ -6,11 +6,11 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext, Measurement, Status
 from ddct_controllers.mpc.build import make_wear_observer
-from ddct_controllers.mpc.disturbances import offset_free_model
+from ddct_controllers.mpc.estimate.disturbances import offset_free_model
+from ddct_controllers.mpc.estimate.wear_noise import WearNoise
+from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.thesis_mpc4 import mpc4_options, mpc4_settings
 from ddct_controllers.mpc.two_input_mpc import TwoInputController
-from ddct_controllers.mpc.wear_noise import WearNoise
-from ddct_controllers.mpc.wear_observer import WearObserver
 from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
 
 NAME = 'mpc4_wear'

@@ -4,12 +4,12 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext, Measurement, Status
 from ddct_controllers.mpc.build import make_wear_observer
-from ddct_controllers.mpc.disturbances import offset_free_model
+from ddct_controllers.mpc.estimate.disturbances import offset_free_model
+from ddct_controllers.mpc.estimate.wear_noise import WearNoise
+from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.options import with_options
 from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
-from ddct_controllers.mpc.wear_noise import WearNoise
-from ddct_controllers.mpc.wear_observer import WearObserver
 from ddct_controllers.mpc.wear_prediction import WEAR_OPTIONS, divided, wear_noise, wear_status
 
 _NAME = 'mpc_wear'

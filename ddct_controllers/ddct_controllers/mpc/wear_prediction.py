@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from ddct_controllers.interface import Measurement, Status
+from ddct_controllers.mpc.estimate.wear_noise import WearNoise
+from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.options import MOST, number_option
-from ddct_controllers.mpc.wear_noise import WearNoise
-from ddct_controllers.mpc.wear_observer import WearObserver
 
 WEAR_OPTIONS = ('gain_drift', 'clutch_drift_n_m', 'load_drift_n_m')
 """Fields of `WearNoise` that `controllers.<name>` may give."""

@@ -4,17 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.mpc.qp.backend import QpBackend
-from ddct_controllers.mpc.qp.factory import DEFAULT_BACKEND, make_backend
-from ddct_controllers.mpc.qp.problem import QpStructure
-from ddct_controllers.mpc.transmission_model import (
+from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     REQUEST,
     SLIP_SPEED,
     TransmissionModel,
 )
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.mpc.qp.backend import QpBackend
+from ddct_controllers.mpc.qp.factory import DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_plant.base.timebase import PERIOD_S
 
 MOVES = 10
 """Spread evenly over the horizon, with a constant request between them."""

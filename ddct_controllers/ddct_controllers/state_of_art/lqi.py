@@ -6,16 +6,16 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.linear import LinearController
-from ddct_controllers.mpc.observer import NoiseLevels
+from ddct_controllers.mpc.estimate.observer import NoiseLevels
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
-from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.slip_model import CLUTCH, ENGINE, LOAD, slip_model
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import RAD_S_PER_RPM
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.slip_model import CLUTCH, ENGINE, LOAD, slip_model
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RAD_S_PER_RPM
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
 
 NAME = 'lqi'
 OPTIONS = {'natural_frequency_rad_s': NumberOption(4.0, 1.0, 8.0)}

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.option_keys import require_known_keys
-from ddct_plant.checks import require_number
+from ddct_plant.base.checks import require_number
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ import numpy as np
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.measured import measured_speeds
 from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.disturbances import offset_free_model, offset_free_noise
+from ddct_controllers.mpc.estimate.disturbances import offset_free_model, offset_free_noise
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
-from ddct_plant.errors import ParameterError
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'pedal_mpc'
 OPTIONS = {

@@ -2,13 +2,13 @@
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.state_of_art.clutch_torque_estimator import ClutchTorqueEstimator
-from ddct_controllers.state_of_art.engine_share import EngineShare
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
-from ddct_controllers.state_of_art.pid import Pid, placed_gains
-from ddct_controllers.state_of_art.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.slow_clutch import SlowClutch
-from ddct_controllers.state_of_art.speed_plan import SpeedPlan
+from ddct_controllers.state_of_art.parts.clutch_torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.parts.engine_share import EngineShare
+from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
 
 NAME = 'torque_estimator'
 OPTIONS = {

@@ -7,7 +7,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
-from ddct_plant.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.graph.node import GraphNode
 

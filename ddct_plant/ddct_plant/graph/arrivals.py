@@ -4,8 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ddct_plant.checks import require_finite
-from ddct_plant.errors import DdctError
+from ddct_plant.base.checks import require_finite
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import SUBSTEPS
 from ddct_plant.graph.message_values import (
     JOINTS,
     slip_of,
@@ -14,7 +15,6 @@ from ddct_plant.graph.message_values import (
     torque_points_of,
     vehicle_speed_of,
 )
-from ddct_plant.timebase import SUBSTEPS
 
 
 def read_stamp_only(_topic: str, _message: Any) -> None:

@@ -2,7 +2,7 @@
 
 import os
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 LAST_DOMAIN = 232
 """Beyond it DDS has no ports, and its middleware ends the process without a word."""

@@ -7,15 +7,15 @@ from typing import Any
 from rclpy.publisher import Publisher
 from rosgraph_msgs.msg import Clock
 
-from ddct_plant.errors import DdctError
-from ddct_plant.graph.join import StampJoin, Verdict
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.messages import stamp_ns
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.refusals import Refusals
 from ddct_plant.graph.sole_publishers import publishers_of
-from ddct_plant.graph.stamp_limit import PLANT_TOPICS, StampLimit
-from ddct_plant.timebase import step_of_stamp
+from ddct_plant.ticks.join import StampJoin, Verdict
+from ddct_plant.ticks.stamp_limit import PLANT_TOPICS, StampLimit
 
 Reply = Sequence[tuple[Publisher, Any]]
 """Messages in the order in which they are published."""

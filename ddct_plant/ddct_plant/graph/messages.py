@@ -17,6 +17,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.graph.message_values import (
     CLUTCH_JOINT,
     JOINTS,
@@ -32,7 +33,6 @@ from ddct_plant.graph.message_values import (
     vehicle_accel_of,
     vehicle_speed_of,
 )
-from ddct_plant.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 
 __all__ = [
     'JOINTS',

@@ -7,12 +7,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 from rclpy.task import Future
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.messages import status_message
 from ddct_plant.graph.qos import LATCHED_QOS
 from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
 from ddct_plant.graph.settings import declare_settings
-from ddct_plant.timebase import stamp_of_step
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """Parameters that rclpy declares itself begin with one of these."""

@@ -2,8 +2,8 @@
 
 import inspect
 import os
+import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import rclpy
 
@@ -25,7 +25,9 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
         node.destroy_node()
     finally:
         rclpy.try_shutdown()
-    package = Path(inspect.getfile(type(node))).parent.name
+    # Run by `python -m`, the module calls itself __main__; its spec keeps the real name.
+    spec = sys.modules[type(node).__module__].__spec__
+    package = spec.name.partition('.')[0] if spec else type(node).__module__
     program = f'ros2 run {package} {name}'
     return '\n'.join(
         [

@@ -3,8 +3,8 @@
 import importlib.metadata
 from collections.abc import Mapping
 
-from ddct_plant.run_settings import RunSettings
-from ddct_plant.scenario_file import scenario_digest
+from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.settings import RunSettings
 
 RUN_INFO_TOPIC = 'run_info'
 

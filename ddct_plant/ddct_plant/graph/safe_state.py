@@ -3,10 +3,10 @@
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.node import Node
 
+from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.graph.message_values import SAFE_STATE, SINCE
 from ddct_plant.graph.messages import status_message
 from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.timebase import STEPS_PER_S
 
 
 class SafeStateReport:

@@ -6,16 +6,16 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 
-from ddct_plant.clutch import CLUTCHES
-from ddct_plant.errors import ParameterError
-from ddct_plant.fail_safe import (
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.fail_safe.request_watch import (
     LEAST_REQUEST_TIMEOUT_S,
     MOST_REQUEST_TIMEOUT_S,
     REQUEST_TIMEOUT_S,
     FailSafeSettings,
 )
-from ddct_plant.run_settings import ARCHITECTURES, MODES, RunSettings
-from ddct_plant.scenario_file import load_scenario
+from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 
 def declare_settings(node: Node) -> RunSettings:

@@ -8,10 +8,10 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.graph.sequence import SequenceWatch
+from ddct_plant.ticks.sequence import SequenceWatch
 
 LOOP_TOPICS = (
     '/clock',

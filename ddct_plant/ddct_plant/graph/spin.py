@@ -12,8 +12,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.task import Future
 
-from ddct_plant.cli import run_program
-from ddct_plant.errors import DdctError, ForeignError
+from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.graph.arguments import (
     help_asked,
     init_ros,
@@ -22,8 +21,9 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_help import node_help
-from ddct_plant.graph.pulse import pulse
-from ddct_plant.stop_signals import stop_signals
+from ddct_plant.program.command_line import run_program
+from ddct_plant.program.pulse import pulse
+from ddct_plant.program.stop_signals import stop_signals
 
 SLICE_S = 0.1
 """How often signals are looked at, and the longest time the executor is left alone."""

@@ -8,10 +8,10 @@ from scipy.linalg import eig
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE
 from ddct_controllers.design.state_space import close_loop, to_s_plane
-from ddct_plant.driveline_model import clutch_to_slip, driveline_matrices
-from ddct_plant.lti import StateSpace
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.units import RPM_PER_RAD_S
+from ddct_plant.base.units import RPM_PER_RAD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 @dataclass(frozen=True)

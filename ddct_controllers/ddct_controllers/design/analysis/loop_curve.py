@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s
-from ddct_plant.lti import StateSpace
+from ddct_plant.linear.lti import StateSpace
 
 Measure = Callable[[np.ndarray], np.ndarray]
 """A real function of L(j omega), elementwise."""

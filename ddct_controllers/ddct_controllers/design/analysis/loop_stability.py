@@ -7,7 +7,7 @@ import numpy as np
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop
-from ddct_plant.lti import StateSpace
+from ddct_plant.linear.lti import StateSpace
 
 
 def closed_loop_stable(loop: ContinuousLoop | StateSpace) -> bool:

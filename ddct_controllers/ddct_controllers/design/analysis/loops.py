@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_controllers.design.state_space import series
-from ddct_plant.checks import require_number
-from ddct_plant.driveline_model import clutch_to_slip, driveline_matrices
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import RPM_PER_RAD_S
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RPM_PER_RAD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
 
 IDENTIFIED_DRIVELINE = DrivelineParameters()
 

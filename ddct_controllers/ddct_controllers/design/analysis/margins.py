@@ -8,7 +8,7 @@ import numpy as np
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import ContinuousLoop
-from ddct_plant.lti import StateSpace
+from ddct_plant.linear.lti import StateSpace
 
 
 @dataclass(frozen=True)

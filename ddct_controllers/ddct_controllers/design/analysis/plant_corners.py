@@ -7,8 +7,8 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_plant
 from ddct_controllers.design.state_space import frequency_response
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
 

@@ -1,8 +1,8 @@
 """G_c(z), what the control unit computes every 10 ms for a continuous G_c(s)."""
 
 from ddct_controllers.design.factored_form import factored_form
-from ddct_plant.lti import FactoredTransferFunction, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 
 
 def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTransferFunction:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
 def poles_at_zero(transfer_function: FactoredTransferFunction) -> int:

@@ -4,8 +4,8 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop
-from ddct_plant.checks import require_number
-from ddct_plant.lti import StateSpace, discretise_zoh
+from ddct_plant.base.checks import require_number
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
 TIME_STEP_S = 0.001
 """Between the points at which a continuous loop is evaluated, each of them exact."""

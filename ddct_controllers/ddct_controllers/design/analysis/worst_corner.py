@@ -18,8 +18,8 @@ from ddct_controllers.design.state_space import (
     series,
     to_s_plane,
 )
-from ddct_plant.lti import StateSpace
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
 
 WEAR_GAINS = (0.7, 1.0, 1.3)
 """K_usura from one end of Table 5.2 to the other."""

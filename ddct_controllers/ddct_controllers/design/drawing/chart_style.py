@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 BLACK = '#000000'
 GREY = '#7f7f7f'

@@ -21,8 +21,8 @@ from ddct_controllers.design.drawing.chart_style import (
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.parameters import DrivelineParameters
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
 
 CHARTS = ('nyquist', 'nichols', 'step')
 """Each is written as NAME_<chart>.png."""

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ddct_controllers.design.state_space import series
-from ddct_plant.driveline_model import driveline_matrices
-from ddct_plant.errors import DdctError
-from ddct_plant.lti import StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.static_torque import constant_slip_torque
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.static_torque import constant_slip_torque
 
 TORQUE_RATE_WEIGHT = 0.03
 """rho in rad/s per N m/s: the price of torque beyond the static law; docs/feedforward.md tells."""

@@ -4,11 +4,11 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_controllers.design.state_space import frequency_response
-from ddct_plant.driveline_model import engine_to_slip, load_to_slip
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
-from ddct_plant.units import rad_s_from_rpm
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 def engine_residual(

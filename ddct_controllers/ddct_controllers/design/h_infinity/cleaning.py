@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_controllers.design.h_infinity.synthesis import SynthesisError
-from ddct_plant.cascade import Factor
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import SynthesisError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 FAST_RAD_S = 10.0 * math.pi / PERIOD_S
 """Real poles and zeros beyond ten times half the sampling rate do nothing at 10 ms."""

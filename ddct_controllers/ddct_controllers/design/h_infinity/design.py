@@ -13,18 +13,22 @@ from ddct_controllers.design.analysis.loops import (
     sampled_plant,
 )
 from ddct_controllers.design.factored_form import factored_form
-from ddct_controllers.design.h_infinity.bilinear import from_w_plane, to_w_plane
 from ddct_controllers.design.h_infinity.cleaning import CleaningStep, clean
-from ddct_controllers.design.h_infinity.lmi import synthesise_by_lmi
-from ddct_controllers.design.h_infinity.plant import GeneralisedPlant
 from ddct_controllers.design.h_infinity.problem import mixed_sensitivity, sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
-from ddct_controllers.design.h_infinity.synthesis import Synthesis, SynthesisError, synthesise
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
+    Synthesis,
+    SynthesisError,
+    synthesise,
+)
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
-from ddct_plant.checks import require_choice
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.checks import require_choice
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 METHODS = ('riccati', 'lmi')
 _ROLL_OFF = 10.0

@@ -3,10 +3,13 @@
 import numpy as np
 from scipy.linalg import block_diag
 
-from ddct_controllers.design.h_infinity.plant import GeneralisedPlant, GeneralisedPlantError
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
+    GeneralisedPlant,
+    GeneralisedPlantError,
+)
 from ddct_controllers.design.h_infinity.weights import WeightError, stable_weight
 from ddct_controllers.design.state_space import series
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 AXIS_SHIFT_RAD_S = 1e-4
 """

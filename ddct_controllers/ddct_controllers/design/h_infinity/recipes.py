@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ddct_controllers.design.h_infinity.synthesis import BACK_OFF
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import BACK_OFF
 from ddct_controllers.design.h_infinity.weights import (
     BUTTERWORTH,
     ComplementaryWeight,
@@ -11,7 +11,7 @@ from ddct_controllers.design.h_infinity.weights import (
     WeightError,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.checks import require_choice
+from ddct_plant.base.checks import require_choice
 
 THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
 """Section 3.2."""

@@ -28,8 +28,8 @@ from ddct_controllers.design.h_infinity.uncertainty import (
 )
 from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 Record = dict[str, Any]
 _STEP_RISE_TIMES = 20.0

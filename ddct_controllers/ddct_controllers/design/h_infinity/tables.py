@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from ddct_controllers.design.h_infinity.cleaning import factor_text
 from ddct_controllers.design.h_infinity.report import Record
-from ddct_controllers.design.thesis.gate_tables import GateTable
-from ddct_plant.cascade import Factor
-from ddct_plant.table import text_or_dash
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.program.table import Table, text_or_dash
 
 _LOOP_HEADERS = (
     *('controller', 'loop', 'W_s S', 'W_t T', 'W_u T', 't_r s', 's^ %', 'met'),
@@ -14,14 +13,14 @@ _LOOP_HEADERS = (
 )
 
 
-def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, GateTable]:
+def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, Table]:
     """Return the tables of designs for one specification, by the names that the page has."""
     return {
         'specifications': _specification_table(records[0]['specifications']),
         'weights': _weight_table(records),
         'uncertainty': _uncertainty_table(uncertainty),
         'synthesis': _synthesis_table(records),
-        'cleaning': GateTable(
+        'cleaning': Table(
             'Cleaning, in the order of the rules',
             ('controller', 'rule', 'taken out'),
             [
@@ -36,9 +35,9 @@ def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, G
     }
 
 
-def loop_table(loops: Mapping[str, Record]) -> GateTable:
+def loop_table(loops: Mapping[str, Record]) -> Table:
     """Return norms, step figures and margins of the loops of named controllers."""
-    return GateTable(
+    return Table(
         'Loops: norms by the weights, step response and whether it meets both, margins',
         _LOOP_HEADERS,
         [
@@ -53,8 +52,8 @@ def loop_table(loops: Mapping[str, Record]) -> GateTable:
     )
 
 
-def _specification_table(wanted: Record) -> GateTable:
-    return GateTable(
+def _specification_table(wanted: Record) -> Table:
+    return Table(
         'Specifications, translated by the second-order prototype',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
         [
@@ -70,7 +69,7 @@ def _specification_table(wanted: Record) -> GateTable:
     )
 
 
-def _weight_table(records: Sequence[Record]) -> GateTable:
+def _weight_table(records: Sequence[Record]) -> Table:
     columns = (
         ('K', 'low_frequency_gain', '.4g'),
         ('w_1 rad/s', 'sensitivity_corner_rad_s', '.3f'),
@@ -80,7 +79,7 @@ def _weight_table(records: Sequence[Record]) -> GateTable:
         ('effort N m/rpm', 'effort_n_m_per_rpm', '.4g'),
         ('from rad/s', 'effort_corner_rad_s', '.4g'),
     )
-    return GateTable(
+    return Table(
         'Weights',
         ('controller', 'recipe', *(heading for heading, _, _ in columns), 'hold, delay in plant'),
         [
@@ -95,10 +94,10 @@ def _weight_table(records: Sequence[Record]) -> GateTable:
     )
 
 
-def _uncertainty_table(found: Record) -> GateTable:
+def _uncertainty_table(found: Record) -> Table:
     above = found['printed_falls_short_above_rad_s']
     short = f'by {100.0 * found["printed_falls_short_by"]:.2f} % above {above:.3g} rad/s'
-    return GateTable(
+    return Table(
         f'W_u; the relative error of K_usura is {found["largest_error"]:.3f} at most',
         ('W_u', 'gain', 'zero rad/s', 'pole rad/s', 'falls short'),
         [
@@ -114,8 +113,8 @@ def _uncertainty_table(found: Record) -> GateTable:
     )
 
 
-def _synthesis_table(records: Sequence[Record]) -> GateTable:
-    return GateTable(
+def _synthesis_table(records: Sequence[Record]) -> Table:
+    return Table(
         'Synthesis: norms of the closed loop with the weights',
         ('controller', 'method', 'optimum', 'lower bound', 'taken'),
         [
@@ -131,8 +130,8 @@ def _synthesis_table(records: Sequence[Record]) -> GateTable:
     )
 
 
-def _controller_table(records: Sequence[Record]) -> GateTable:
-    return GateTable(
+def _controller_table(records: Sequence[Record]) -> Table:
+    return Table(
         'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
         [
@@ -152,8 +151,8 @@ def _controller_table(records: Sequence[Record]) -> GateTable:
     )
 
 
-def _corner_table(records: Sequence[Record]) -> GateTable:
-    return GateTable(
+def _corner_table(records: Sequence[Record]) -> Table:
+    return Table(
         'Worst of wear 0.7 to 1.3 and all driveline parameters +-20 %, sampled loop',
         ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),
         [

@@ -8,7 +8,7 @@ from scipy.optimize import brentq, linprog
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, plant_in_rpm
 from ddct_controllers.design.verified_design import WEAR_GAINS
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 PRINTED_W_U = FactoredTransferFunction(0.2987, (3913.0 / 0.2987,), (13030.0,))
 """W_u as printed, made with `ginput`; it falls from 0.3003 to 0.2987, short of the error 0.3."""

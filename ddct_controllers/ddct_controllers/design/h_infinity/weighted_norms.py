@@ -7,7 +7,7 @@ import numpy as np
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, SensitivityWeight
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 
 @dataclass(frozen=True)

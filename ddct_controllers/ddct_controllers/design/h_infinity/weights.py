@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
-from ddct_plant.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 BUTTERWORTH = math.sqrt(0.5)
 """Damping of a second-order Butterworth polynomial; the thesis rounds 2 x this to 1.414."""

@@ -11,8 +11,8 @@ from ddct_controllers.design.loop_shaping.specifications import (
     prototype_phase_margin,
     rise_time_crossover_product,
 )
-from ddct_plant.printed import ACTUATOR
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.printed import ACTUATOR
 
 _FASTEST_RAD_S = math.pi / PERIOD_S
 

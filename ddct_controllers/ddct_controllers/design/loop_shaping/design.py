@@ -8,10 +8,10 @@ from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.step_response import overshoot, step_response
 from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork, with_crossover
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.driveline_model import clutch_to_slip
-from ddct_plant.lti import FactoredTransferFunction
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.printed import ACTUATOR
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.driveline_model import clutch_to_slip
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
 
 NETWORK_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.25, overshoot=0.14)
 """What G_c1 is designed for."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.checks import require_number
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.base.checks import require_number
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
 @dataclass(frozen=True)

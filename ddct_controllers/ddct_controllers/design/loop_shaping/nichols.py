@@ -7,7 +7,7 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve, Measure
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.checks import require_number
+from ddct_plant.base.checks import require_number
 
 _CURVE_POINTS = 720
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
-from ddct_plant.errors import DdctError, ParameterError
-from ddct_plant.lti import FactoredTransferFunction
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 _INDENTATION = 1e-7
 """

@@ -27,9 +27,9 @@ from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
 from ddct_controllers.design.verified_design import WEAR_GAINS
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 Record = dict[str, Any]
 G_C1, G_C2 = LOOP_SHAPING_CONTROLLERS['ls2'], LOOP_SHAPING_CONTROLLERS['ls7']

@@ -23,9 +23,9 @@ from ddct_controllers.design.verified_design import (
     step_figures,
     verify,
 )
-from ddct_plant.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.parameters import DrivelineParameters
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
 
 STRUCTURES = ('networks', 'placement')
 """Integrators with lead networks, as G_c1 begins, and placed poles and zeros, as in G_c2."""

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
 
 LONGEST_RISE_TIME_S = 5.0
 """An engagement takes about a second."""

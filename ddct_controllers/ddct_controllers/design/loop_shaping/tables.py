@@ -7,8 +7,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     rise_time_crossover_product,
 )
-from ddct_controllers.design.thesis.gate_tables import GateTable
-from ddct_plant.table import text_or_dash
+from ddct_plant.program.table import Table, text_or_dash
 
 _LOOP_HEADERS = (
     *('unstable poles', 'w_c rad/s', 'PM deg', 'GM dB', 'M_s', 'M_t'),
@@ -21,17 +20,17 @@ _TRANSLATED = (
 )
 
 
-def thesis_tables(record: Record) -> dict[str, GateTable]:
+def thesis_tables(record: Record) -> dict[str, Table]:
     """Return the tables of `thesis_record` by the names that docs/loop_shaping.md has."""
     return {
         'specifications': _specification_table(),
-        'network_steps': GateTable(
+        'network_steps': Table(
             'From K_c/s to G_c1, continuous and without delay',
             ('controller', *_LOOP_HEADERS),
             [(row['step'], *_loop_cells(row)) for row in record['network_steps']],
         ),
         'placement': _placement_table(record['placement']),
-        'loops': GateTable(
+        'loops': Table(
             'Both controllers, and the curves of 14 % overshoot',
             ('controller', 'loop', *_LOOP_HEADERS),
             [(row['controller'], row['loop'], *_loop_cells(row)) for row in record['loops']],
@@ -39,11 +38,11 @@ def thesis_tables(record: Record) -> dict[str, GateTable]:
     }
 
 
-def design_tables(record: Record) -> tuple[GateTable, GateTable]:
+def design_tables(record: Record) -> tuple[Table, Table]:
     """Return the tables of `design_record`: what was asked for and found, and G_c(s)."""
     wanted, found = record['specifications'], record['sampled_loop']
     peaks = {contour['name']: contour for contour in record['contours']}
-    figures = GateTable(
+    figures = Table(
         f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
         ('figure', 'asked for', 'sampled loop', 'unit'),
         [
@@ -58,7 +57,7 @@ def design_tables(record: Record) -> tuple[GateTable, GateTable]:
         ],
     )
     controller = record['controller']
-    parts = GateTable(
+    parts = Table(
         'G_c(s) in N m/rpm; a is (s + a), (b, c) is (s^2 + b s + c)',
         ('part', 'value'),
         [
@@ -70,8 +69,8 @@ def design_tables(record: Record) -> tuple[GateTable, GateTable]:
     return figures, parts
 
 
-def _specification_table() -> GateTable:
-    return GateTable(
+def _specification_table() -> Table:
+    return Table(
         'Specifications translated by the second-order prototype',
         ('section', 't_r s', 's^ %', 'zeta', 'S_p', 'T_p', 't_r w_c', 'w_c rad/s', 'w_n rad/s'),
         [
@@ -91,7 +90,7 @@ def _specification_table() -> GateTable:
     )
 
 
-def _placement_table(placements: Sequence[Record]) -> GateTable:
+def _placement_table(placements: Sequence[Record]) -> Table:
     lines = {
         'gain N m/rpm': [f'{one["gain"]:.6f}' for one in placements],
         'zero rad/s': [f'{one["numerator"][0]:.4f}' for one in placements],
@@ -102,7 +101,7 @@ def _placement_table(placements: Sequence[Record]) -> GateTable:
         's^ %': [f'{100.0 * one["overshoot"]:.1f}' for one in placements],
         'M_t': [f'{one["complementary_peak"]:.3f}' for one in placements],
     }
-    return GateTable(
+    return Table(
         'G_c2 as printed, and as the rule gives it',
         ('figure', *(one['version'] for one in placements)),
         [(name, *cells) for name, cells in lines.items()],

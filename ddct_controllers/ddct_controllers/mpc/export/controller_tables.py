@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.export.dual_form import DualForm, dual_form
 from ddct_controllers.mpc.export.known_columns import known_columns
-from ddct_controllers.mpc.horizon import CondensedProgram
-from ddct_controllers.mpc.limits import CLUTCH, ROOM
-from ddct_controllers.mpc.observer import Observer
+from ddct_controllers.mpc.model.transmission_model import MEASURED
 from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import MEASURED
+from ddct_controllers.mpc.program.horizon import CondensedProgram
+from ddct_controllers.mpc.program.limits import CLUTCH, ROOM
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.two_input_mpc import ENGINE, TwoInputController
-from ddct_plant.errors import ParameterError
-from ddct_plant.timebase import PERIOD_S
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 
 CHANGES_PER_ROW = 10
 """Changes of the active set allowed for each row that can be active, if no limit is given."""

@@ -10,13 +10,13 @@ from ddct_controllers.mpc.export.controller_tables import (
     controller_tables,
     exportable,
 )
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import SLIP_SPEED
-from ddct_plant.errors import DdctError
+from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
+from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_file
+from ddct_plant.files.output_file import write_text
 from ddct_plant.graph.run_info import package_version
-from ddct_plant.input_file import MOST_TEXT_BYTES, read_file
-from ddct_plant.output_file import write_text
-from ddct_plant.run_settings import RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
 _PREFIX = 'DDCT_MPC_'

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.mpc.horizon import CondensedProgram
-from ddct_controllers.mpc.settings import MpcSettings
-from ddct_controllers.mpc.transmission_model import SLIP_ACCELERATION, SLIP_SPEED
-from ddct_plant.timebase import PERIOD_S
+from ddct_controllers.mpc.model.transmission_model import SLIP_ACCELERATION, SLIP_SPEED
+from ddct_controllers.mpc.program.horizon import CondensedProgram
+from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_plant.base.timebase import PERIOD_S
 
 
 @dataclass(frozen=True, eq=False)

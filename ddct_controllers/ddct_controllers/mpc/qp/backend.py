@@ -10,7 +10,7 @@ import numpy as np
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_controllers.mpc.qp.scaling import scale
 from ddct_controllers.mpc.qp.solution import QpSolution, QpStatus
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.errors import ParameterError
 
 Vector = np.ndarray | Sequence[float]
 

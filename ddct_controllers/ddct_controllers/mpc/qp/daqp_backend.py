@@ -6,7 +6,7 @@ import numpy as np
 
 from ddct_controllers.mpc.qp.backend import QpBackend
 from ddct_controllers.mpc.qp.solution import QpStatus
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 _SOFT = 8
 """DAQP's mark of a soft row."""

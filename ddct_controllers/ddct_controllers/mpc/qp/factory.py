@@ -4,7 +4,7 @@ from importlib import import_module
 
 from ddct_controllers.mpc.qp.backend import QpBackend
 from ddct_controllers.mpc.qp.problem import QpStructure
-from ddct_plant.checks import require_choice
+from ddct_plant.base.checks import require_choice
 
 _CLASSES = {'daqp': 'DaqpBackend', 'osqp': 'OsqpBackend'}
 

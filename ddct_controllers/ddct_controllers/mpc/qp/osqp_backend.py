@@ -7,7 +7,7 @@ from scipy import sparse
 
 from ddct_controllers.mpc.qp.backend import QpBackend
 from ddct_controllers.mpc.qp.solution import QpStatus
-from ddct_plant.errors import DdctError
+from ddct_plant.base.errors import DdctError
 
 _SETTINGS = {
     'eps_abs': 1e-6,

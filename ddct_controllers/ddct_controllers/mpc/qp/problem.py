@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.checks import require_number
-from ddct_plant.errors import ParameterError
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
 
 WORST_CONDITION = 1e10
 """Of the Hessian scaled to a unit diagonal; above, a solution has less than six digits."""

@@ -1,0 +1,172 @@
+"""Read the records of a bag's MCAP file, strictly or as far as it is readable."""
+
+import contextlib
+import io
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mcap.exceptions import McapError
+from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
+from zstandard import ZstdError, frame_content_size
+
+from ddct_bringup.bag.file.metadata import RECORD_NAME, information_of
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_file
+
+MAGIC = b'\x89MCAP0\r\n'
+MOST_BYTES = 1_000_000_000
+"""Of a bag's file; an hour's run has a quarter of that."""
+MOST_CHUNK_BYTES = 64_000_000
+"""Of one chunk unpacked; recorders make chunks of about 1 MB."""
+
+_READ_ERRORS = (
+    McapError,
+    ZstdError,
+    struct.error,
+    ValueError,
+    LookupError,
+    RuntimeError,
+    OverflowError,
+    MemoryError,
+)
+"""What the MCAP library raises on damaged bytes; checksum errors are ValueErrors."""
+
+_FOOTER = struct.Struct('<BQQQI8s')
+
+
+@dataclass
+class BagRecords:
+    """Everything of an MCAP file that counts here, still serialised."""
+
+    path: Path
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    messages: list[tuple[str, int, bytes]] = field(default_factory=list)
+    """(topic, log time in ns, data) in the order of the file."""
+    information: dict[str, Any] = field(default_factory=dict)
+    """What the last readable `rosbag2` metadata record says."""
+
+    @property
+    def custom_data(self) -> dict[str, str]:
+        """What the recorder said about the run."""
+        custom = self.information.get('custom_data')
+        if not isinstance(custom, dict):
+            return {}
+        return {str(key): str(value) for key, value in custom.items()}
+
+    def add(self, records: Iterator[McapRecord]) -> None:
+        """Take over records; a schema or channel that is said again does not replace the first."""
+        for record in records:
+            if isinstance(record, Message):
+                topic = self.channels[record.channel_id].topic
+                self.messages.append((topic, record.log_time, record.data))
+            elif isinstance(record, Schema):
+                self.schemas.setdefault(record.id, record)
+            elif isinstance(record, Channel):
+                self.channels.setdefault(record.id, record)
+            elif isinstance(record, Metadata) and record.name == RECORD_NAME:
+                self.information = information_of(record.metadata) or self.information
+
+
+def mcap_of(path: Path) -> Path:
+    """Return the MCAP file of a bag folder, or the file itself; raise DdctError without one."""
+    if path.is_dir():
+        files = sorted(path.glob('*.mcap'))
+        if not files:
+            raise DdctError(f'{path}: no .mcap file in this folder: give a bag')
+        if len(files) > 1:
+            raise DdctError(f'{path}: {len(files)} .mcap files in this folder: give one of them')
+        return files[0]
+    if not path.exists():
+        raise DdctError(f'{path}: no such file or folder')
+    return path
+
+
+def read_records(path: Path) -> BagRecords:
+    """
+    Read a whole MCAP file and verify every checksum.
+
+    Raise DdctError when the file cannot be read, is no MCAP file, is unfinished or is damaged.
+    """
+    data = _bytes_of(path)
+    if not data.endswith(MAGIC) or len(data) == len(MAGIC):
+        raise DdctError(
+            f'{path}: the recording is unfinished, its writer was interrupted or the file cut '
+            'short: rescue what it holds with score --repair'
+        )
+    bag = BagRecords(path)
+    try:
+        _verify_summary(data)
+        bag.add(_unpacked(data, validate_crcs=True))
+    except _READ_ERRORS as error:
+        raise DdctError(
+            f'{path}: the recording is damaged ({_one_line(error)}): '
+            'rescue what is readable with score --repair'
+        ) from error
+    return bag
+
+
+def salvage_records(path: Path) -> BagRecords:
+    """
+    Read an MCAP file up to the first damage.
+
+    Raise DdctError when the file cannot be read or is no MCAP file.
+    """
+    data = _bytes_of(path)
+    bag = BagRecords(path)
+    with contextlib.suppress(*_READ_ERRORS):  # what was read before the damage is kept
+        bag.add(_unpacked(data, validate_crcs=False))
+    return bag
+
+
+def _unpacked(data: bytes, *, validate_crcs: bool) -> Iterator[McapRecord]:
+    """Yield the records, those in chunks too; the checksums of chunks always count."""
+    reader = StreamReader(
+        io.BytesIO(data),
+        emit_chunks=True,
+        validate_crcs=validate_crcs,
+        record_size_limit=len(data),
+    )
+    for record in reader.records:
+        if isinstance(record, Chunk):
+            _require_bounded(record)
+            yield from breakup_chunk(record, validate_crc=True)
+        else:
+            yield record
+
+
+def _require_bounded(chunk: Chunk) -> None:
+    """Raise ValueError for a small chunk that would fill the memory when it is unpacked."""
+    size = chunk.uncompressed_size
+    if chunk.compression == 'zstd':
+        size = max(size, frame_content_size(chunk.data))
+    if size > MOST_CHUNK_BYTES:
+        raise ValueError(f'a chunk has {size} bytes unpacked, more than {MOST_CHUNK_BYTES}')
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        data = read_file(path, MOST_BYTES)
+    except OSError as error:
+        raise DdctError(f'{path}: cannot read the bag: {error.strerror}') from error
+    if not data.startswith(MAGIC):
+        what = 'the file is empty' if not data else 'not an MCAP file'
+        raise DdctError(f'{path}: {what}: give a bag that this project recorded')
+    return data
+
+
+def _verify_summary(data: bytes) -> None:
+    """Raise ValueError unless the footer's checksum over the summary holds, or is absent."""
+    opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
+    covered = data[start : -len(MAGIC) - 4]
+    if opcode != 2 or (checksum and zlib.crc32(covered) != checksum):
+        raise ValueError('the checksum of the summary is wrong')
+
+
+def _one_line(error: BaseException) -> str:
+    return ' '.join(str(error).split()) or type(error).__name__

@@ -1,0 +1,94 @@
+"""Serve serialised ROS messages to Foxglove over WebSocket, on the simulated time axis."""
+
+from collections.abc import Callable
+from typing import Any
+
+from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_bringup.bag.file.metadata import SERIALIZATION
+from ddct_bringup.bag.topics import TOPICS
+from ddct_plant.base.errors import DdctError
+
+_BACKLOG = 65_536
+"""Messages kept for a viewer that reads slowly, about 40 s of a run; then the oldest go."""
+
+
+class LiveServer:
+    """
+    A Foxglove WebSocket server with one channel per topic of the graph.
+
+    It sends what it is given, as it is: CDR with the schema of the type, as in a bag. Its clock
+    is the simulated one. `on_view(topic)` is called, in a thread of the server's own, when a
+    viewer begins to show a topic.
+    """
+
+    def __init__(self, host: str, port: int, on_view: Callable[[str], None]) -> None:
+        """Begin to serve; port 0 takes a free one. Raise DdctError where that is impossible."""
+        foxglove = _foxglove()
+        # Kept: its channels close when it goes.
+        self._context = foxglove.Context()
+        self._channels = {
+            topic.name: foxglove.Channel(
+                topic.resolved_name,
+                message_encoding=SERIALIZATION,
+                schema=foxglove.Schema(
+                    name=topic.type,
+                    encoding='ros2msg',
+                    data=load_definition(topic.type).schema_text.encode(),
+                ),
+                context=self._context,
+            )
+            for topic in TOPICS
+        }
+        try:
+            self._server = foxglove.start_server(
+                name='DDCT',
+                host=host,
+                port=port,
+                capabilities=[foxglove.websocket.Capability.Time],
+                server_listener=_Listener(on_view),
+                context=self._context,
+                message_backlog_size=_BACKLOG,
+            )
+        except (RuntimeError, OverflowError) as error:
+            reason = str(error).removeprefix('FoxgloveError: ')
+            raise DdctError(
+                f'cannot serve on port {port} of {host} ({reason}): '
+                'choose another --port or --host, or stop the program that has it'
+            ) from error
+        self.url = f'ws://{f"[{host}]" if ":" in host else host}:{self._server.port}'
+
+    def send(self, topic: str, stamp_ns: int, cdr: bytes) -> None:
+        """Send one message to every viewer that shows its topic; never waits."""
+        self._channels[topic].log(cdr, log_time=stamp_ns)
+
+    def set_time(self, stamp_ns: int) -> None:
+        """Tell every viewer the simulated time; going back makes them start afresh."""
+        self._server.broadcast_time(stamp_ns)
+
+    def stop(self) -> None:
+        """Close every connection."""
+        self._server.stop()
+
+
+class _Listener:
+    """What the server calls; it needs every method that `ServerListener` has and we use."""
+
+    def __init__(self, on_view: Callable[[str], None]) -> None:
+        self._on_view = on_view
+
+    def on_subscribe(self, client: Any, channel: Any) -> None:
+        self._on_view(channel.topic)
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        pass
+
+
+def _foxglove() -> Any:
+    try:
+        import foxglove.websocket
+    except ImportError as error:
+        raise DdctError(
+            f'the live view needs the package foxglove-sdk ({error}): install it with '
+            'python -m pip install foxglove-sdk, in the environment that runs the nodes'
+        ) from error
+    return foxglove

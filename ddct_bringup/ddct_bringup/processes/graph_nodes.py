@@ -1,0 +1,36 @@
+"""The nodes of the graph: where their programs are and which extra parameters they take."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class NodeSpec:
+    """One node of the graph."""
+
+    name: str
+    module: str
+    """Whose `main` runs it."""
+
+    @property
+    def class_name(self) -> str:
+        """The node's class in that module."""
+        return f'{self.name.capitalize()}Node'
+
+
+GRAPH_NODES: Sequence[NodeSpec] = (
+    NodeSpec('recorder', 'ddct_bringup.record.recorder_node'),
+    NodeSpec('engine', 'ddct_plant.nodes.engine_node'),
+    NodeSpec('load', 'ddct_plant.nodes.load_node'),
+    NodeSpec('clutch', 'ddct_plant.nodes.clutch_node'),
+    NodeSpec('actuator', 'ddct_plant.nodes.actuator_node'),
+    NodeSpec('reference', 'ddct_reference.reference_node'),
+    NodeSpec('controller', 'ddct_controllers.controller_node'),
+    NodeSpec('driveline', 'ddct_plant.nodes.driveline_node'),
+)
+"""In starting order; `driveline` owns time and ends the run."""
+
+NODE_NAMES = tuple(node.name for node in GRAPH_NODES)
+
+ANSWER_TIMEOUT_S = 20.0
+"""Wall time that a node of a supervised graph may take to answer."""

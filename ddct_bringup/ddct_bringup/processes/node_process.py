@@ -1,0 +1,108 @@
+"""One node of a graph as a process: how it is started, what it prints, whether it still runs."""
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
+from ddct_bringup.processes.shared_memory import remove_segments, segments_of
+from ddct_plant.program.pulse import PULSE_FD
+
+START_S = 60.0
+"""How long a node may take to start before it counts as hung."""
+MOST_ELAPSED_S = 1.0
+"""Time between two looks counts up to this: when we were stopped, nobody's silence shows."""
+_SET_PARENT_DEATH_SIGNAL = 1
+
+
+class NodeProcess:
+    """A running node and what it prints."""
+
+    def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
+        """Start it with its parameters; `keep_log` writes what it prints into `log`."""
+        self.name = spec.name
+        self.log = log
+        self.hung = False
+        """Whether it had to be killed because it did not stop when asked."""
+        # In memory: a full disk must not swallow the reason of a failure.
+        self._printed = os.memfd_create(spec.name)
+        self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        self._limit_s = START_S
+        self._silent_s = 0.0
+        self._segments: set[str] = set()
+        command = [sys.executable, '-m', spec.module]
+        command += ['--ros-args', '--params-file', str(parameter_file)]
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=self._printed,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            preexec_fn=end_with_parent,
+            pass_fds=[pulse],
+            env={**os.environ, PULSE_FD: str(pulse)},
+        )
+        os.close(pulse)
+
+    @property
+    def running(self) -> bool:
+        """Whether it has not ended."""
+        return self.process.poll() is None
+
+    def look(self, elapsed_s: float) -> None:
+        """Note its pulse and its shared memory, `elapsed_s` after the last look."""
+        self._segments |= segments_of(self.process.pid)
+        self._silent_s += min(elapsed_s, MOST_ELAPSED_S)
+        with contextlib.suppress(BlockingIOError):
+            if os.read(self._pulse, 4096):
+                self._silent_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
+
+    def silence(self) -> str:
+        """Say in one line that it shows no sign of life for too long, '' while it does."""
+        if self._silent_s <= self._limit_s:
+            return ''
+        return f'node {self.name} has shown no sign of life for {self._limit_s:g} s'
+
+    def send(self, number: signal.Signals) -> None:
+        """Ask a node that has not ended to stop, waking it if need be; SIGKILL says it hung."""
+        if self.running:
+            self.look(0.0)
+            self.hung = number == signal.SIGKILL
+            self.process.send_signal(number)
+            self.process.send_signal(signal.SIGCONT)
+
+    def close(self) -> None:
+        """Keep the log of a node that has ended, and remove what it could not remove itself."""
+        with contextlib.suppress(OSError):
+            self.log.write_bytes(self._all_words())
+        os.close(self._printed)
+        os.close(self._pulse)
+        if self.process.returncode is not None and self.process.returncode < 0:
+            remove_segments(self._segments)
+
+    def obituary(self) -> str:
+        """Say in one line how the node ended."""
+        code = self.process.returncode
+        if self.hung or code is None:
+            return f'node {self.name} did not stop when asked and was killed'
+        if code < 0:
+            return f'node {self.name} was killed by {signal.Signals(-code).name}'
+        words = self._last_words().removeprefix(f'{self.name}: ')
+        return f'node {self.name} ended with code {code}{f": {words}" if words else ""}'
+
+    def _last_words(self) -> str:
+        lines = self._all_words().decode(errors='replace').strip().splitlines()
+        return lines[-1].strip() if lines else ''
+
+    def _all_words(self) -> bytes:
+        # Not by seek and read: the node writes at the file position that we share with it.
+        return os.pread(self._printed, os.fstat(self._printed).st_size, 0)
+
+
+def end_with_parent() -> None:
+    """Let the kernel end this node should the supervisor itself be killed (Linux)."""
+    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGTERM)

@@ -1,0 +1,81 @@
+"""All nodes of the graph in this process, on one executor."""
+
+import importlib
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES, NodeSpec
+from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.arguments import init_ros
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
+
+
+def run_single_process(
+    parameters: Mapping[str, Mapping[str, Any]], stopped: Callable[[], bool]
+) -> None:
+    """
+    Run the same node classes as the separate processes until the driveline has done its work.
+
+    `parameters` is by node name, those of '*' for all. Raise DdctError when a node fails and
+    KeyboardInterrupt when `stopped()` becomes true.
+    """
+    context = Context()
+    init_ros([], context)
+    nodes: list[GraphNode] = []
+    try:
+        for spec in GRAPH_NODES:
+            nodes.append(_build(spec, parameters, context))
+        _spin(nodes, context, stopped)
+    finally:
+        for node in nodes:
+            node.destroy_node()
+        context.try_shutdown()
+
+
+def _build(
+    spec: NodeSpec, parameters: Mapping[str, Mapping[str, Any]], context: Context
+) -> GraphNode:
+    node_class = getattr(importlib.import_module(spec.module), spec.class_name)
+    values = {**parameters['*'], **parameters.get(spec.name, {})}
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    try:
+        return node_class(context=context, parameter_overrides=overrides)
+    except DdctError as error:
+        raise DdctError(f'node {spec.name}: {error}') from error
+
+
+def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool]) -> None:
+    executor = make_executor(context)
+    try:
+        for node in nodes:
+            executor.add_node(node)
+        spin_until(executor, end_of(nodes, stopped))
+        interrupted = not any(node.done.done() for node in nodes)
+        # The last one, driveline, owns time: without it the others have nothing more to do.
+        nodes[-1].finish()
+        failed = [node for node in nodes if failure(node)]
+        # The recorder comes first in the list and must hear what the others flush.
+        for node in reversed(nodes):
+            if failed:
+                node.close()
+            else:
+                finish_node(executor, node)
+    finally:
+        # Otherwise it keeps the nodes, and what they latched, in the domain of the next run.
+        executor.shutdown()
+    # What failed first made others fail when they were closed.
+    for node in [*failed, *nodes]:
+        error = failure(node)
+        if error is not None:
+            raise DdctError(f'node {node.get_name()}: {error}')
+    if interrupted:
+        raise KeyboardInterrupt
+
+
+def failure(node: GraphNode) -> DdctError | None:
+    """Return the error that ended the node, or None while it runs or when it ended well."""
+    return node.done.result() if node.done.done() else None

@@ -1,0 +1,110 @@
+"""Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
+
+import argparse
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
+from ddct_bringup.run.execution import kept_logs
+from ddct_bringup.run.folder_lock import held
+from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.progress import run_with_progress
+from ddct_bringup.scores.realtime_run import realtime_summary
+from ddct_bringup.scores.scoring import why_invalid
+from ddct_controllers.registry import controller_label
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.command_line import ProgramParser, run_program
+
+PROGRAM = 'bringup'
+
+_EPILOG = """\
+examples:
+  bringup --out runs/first                          the PI of the thesis
+  bringup --controller ls8 --out runs/first         another one into the same folder
+  bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
+  bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
+  bringup --headless --out runs/quick               the same numbers without a graph
+  bringup --mode realtime --live --out runs/live    watch it in Foxglove
+
+The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
+in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _bringup, argv)
+
+
+def _bringup(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.list:
+        print_choices()
+        return 0
+    if options.out is None:
+        raise ParameterError('--out is missing: name the folder for the bag')
+    settings = settings_of(options, [controller_label(options.controller)])
+    plan = RunPlan(settings, options.controller, options.layout)
+    if options.live is not None and plan.layout != 'processes':
+        raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
+    with held(options.out, shared=True):
+        mark_folder(options.out)
+        with held(options.out / plan.name):
+            _run(plan, options)
+    return 0
+
+
+def _run(plan: RunPlan, options: argparse.Namespace) -> None:
+    folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
+    with nullcontext() if options.live is None else live_view(options.live) as live:
+        run_with_progress(plan, folder.path, live=live)
+    recording = read_bag(folder.path)
+    if reason := why_invalid(recording):
+        _tell(recording, folder.path)
+        raise DdctError(f'{folder.path}: not valid: {reason}')
+    folder.commit()
+    print(folder.final, flush=True)
+    _tell(recording, folder.final)
+
+
+def _tell(recording: Recording, folder: Path) -> None:
+    """Say on standard error what a real-time run was like, and which logs hold warnings."""
+    if logs := kept_logs(folder):
+        print(f'{PROGRAM}: warnings are in {", ".join(map(str, logs))}', file=sys.stderr)
+    if not recording.facts.lockstep:
+        print(f'{PROGRAM}: {realtime_summary(recording)}', file=sys.stderr)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Run one controller in the closed loop and record it as a bag.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        '--controller',
+        default='pi',
+        metavar='NAME|FILE',
+        help='one of --list, or a file that `design` wrote; default: %(default)s',
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='the bag goes to DIR/<controller>/'
+    )
+    parser.add_argument(
+        '--live',
+        nargs='?',
+        type=int,
+        const=DEFAULT_PORT,
+        metavar='PORT',
+        help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
+    )
+    add_run_options(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,148 @@
+"""Program `compare`: run several controllers, score them, and set them beside the thesis."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ddct_bringup.programs.report import REPORT_FILE, write_report
+from ddct_bringup.report.output import require_chart_library
+from ddct_bringup.report.runs import ReportRun, in_order, read_run
+from ddct_bringup.run.execution import kept_logs
+from ddct_bringup.run.folder_lock import held
+from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.progress import run_with_progress
+from ddct_bringup.scores.comparison_table import print_comparison
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
+from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
+from ddct_controllers.registry import controller_label, controller_names
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.output_file import STDOUT, require_place, write_json
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.scenario.settings import RunSettings
+
+PROGRAM = 'compare'
+SCORES_FILE = 'scores.json'
+
+_EPILOG = """\
+examples:
+  compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
+  compare --controllers all --wear-gain 0.7 --out runs/worn
+  compare --controllers pi,mine --headless --json - --out runs/mine
+
+Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
+linear ones, and DIR/report.html, a page that shows all of it. Either every run is valid, or DIR
+is not touched, what was recorded stays in DIR.partial, and the exit code is 1.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _compare, argv)
+
+
+def _compare(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.list:
+        print_choices()
+        return 0
+    if options.out is None:
+        raise ParameterError('--out is missing: name the folder for the bags')
+    require_chart_library()
+    if options.json:
+        require_place('--json', options.json)
+    names = _controllers(options.controllers)
+    settings = settings_of(options, [controller_label(name) for name in names])
+    plans = [RunPlan(settings, name, options.layout) for name in names]
+    with held(options.out):
+        _run_all(plans, settings, options)
+    return 0
+
+
+def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace) -> None:
+    folder = StagedFolder(options.out, overwrite=options.overwrite)
+    runs = [
+        _run(plan, folder.path, f'{index} of {len(plans)}, ')
+        for index, plan in enumerate(plans, start=1)
+    ]
+    entries = [run.entry for run in runs]
+    write_json(str(folder.path / SCORES_FILE), scores_document(entries))
+    _report(entries, settings, options)
+    failed = [entry['controller'] for entry in entries if not entry['valid']]
+    if failed:
+        _tell_of_logs(folder.path, plans)
+        raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
+    write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
+    write_report(in_order(runs), str(folder.path / REPORT_FILE))
+    folder.commit()
+    _tell_of_logs(folder.final, plans)
+    print(
+        f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
+        f'{folder.final}',
+        file=sys.stderr,
+    )
+
+
+def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
+    """Carry out, read and score one run; without a bag the entry is invalid and says why."""
+    bag = out / plan.name
+    try:
+        mark_folder(bag)
+        run_with_progress(plan, bag, label)
+        run = read_run(bag, out)
+    except DdctError as error:
+        run = ReportRun(unreadable_entry(bag, error, relative_to=out))
+    if run.recording is not None:
+        return run
+    complain(PROGRAM, f'{plan.name}: {run.entry["reason"]}')
+    return ReportRun({**run.entry, 'controller': plan.name})
+
+
+def _tell_of_logs(folder: Path, plans: Sequence[RunPlan]) -> None:
+    logs = [str(log) for plan in plans for log in kept_logs(folder / plan.name)]
+    if logs:
+        print(f'{PROGRAM}: warnings are in {", ".join(logs)}', file=sys.stderr)
+
+
+def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:
+    if options.json:
+        write_json(options.json, scores_document(entries))
+    stream = sys.stderr if options.json == STDOUT else sys.stdout
+    print_comparison(entries, settings, options.overrides, stream)
+
+
+def _controllers(text: str) -> list[str]:
+    if text == 'all':
+        return controller_names()
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    if not names:
+        raise ParameterError('--controllers is empty: name at least one, or all')
+    labels = [controller_label(name) for name in names]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ParameterError(f'--controllers names {label} twice: name each once')
+    return names
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Run controllers in the same closed loop and compare their scores.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        '--controllers',
+        default='all',
+        metavar='A,B,...|all',
+        help='names of --list, or files that `design` wrote; default: %(default)s',
+    )
+    parser.add_argument('--out', type=Path, metavar='DIR', help='folder for all of it')
+    parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
+    add_run_options(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,64 @@
+"""Program `live`: serve the running graph to Foxglove."""
+
+import argparse
+import os
+from functools import partial
+
+from rclpy.utilities import remove_ros_args
+
+from ddct_bringup.live.live_node import LiveNode
+from ddct_bringup.processes.live_process import DEFAULT_PORT
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.graph.run_info import package_version
+from ddct_plant.graph.spin import run_node
+from ddct_plant.program.command_line import ProgramParser, run_program
+
+PROGRAM = 'live'
+_LAST_PORT = 65_535
+_NICENESS = 10
+
+_EPILOG = """\
+examples:
+  live                        serve ROS domain 0, or that of ROS_DOMAIN_ID
+  live --port 9000            another port; 0 takes a free one
+  live --host 0.0.0.0         let other machines connect, with no password
+  bringup --live --out DIR    a run with its own live view, in a domain of its own
+
+Open the printed address in Foxglove: Open connection, Foxglove WebSocket. The graph may start
+before or after; Ctrl-C ends the server. Arguments behind --ros-args go to the node.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _live, argv)
+
+
+def _live(argv: list[str]) -> int:
+    options = _parser().parse_args(remove_ros_args(argv))
+    if not 0 <= options.port <= _LAST_PORT:
+        raise ParameterError(f'--port is {options.port}: give a number from 0 to {_LAST_PORT}')
+    # On a busy machine the nodes of the loop come first; what waits here is buffered.
+    os.nice(_NICENESS)
+    factory = partial(LiveNode, options.host, options.port, _say)
+    return run_node(PROGRAM, factory, [PROGRAM, *argv])
+
+
+def _say(text: str) -> None:
+    print(f'{PROGRAM}: {text}', flush=True)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Serve the running graph to Foxglove over WebSocket, on the simulated time.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument('--host', default='127.0.0.1', help='default: %(default)s')
+    parser.add_argument('--port', type=int, default=DEFAULT_PORT, help='default: %(default)s')
+    parser.add_argument('--version', action='version', version=package_version())
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

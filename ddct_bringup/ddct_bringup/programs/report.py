@@ -1,0 +1,103 @@
+"""Program `report`: one page that shows recorded runs side by side."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from ddct_bringup.report.evidence import evidence_of
+from ddct_bringup.report.output import require_chart_library, require_writable
+from ddct_bringup.report.runs import (
+    ReportRun,
+    in_order,
+    read_run,
+    require_one_scenario,
+)
+from ddct_bringup.run.folder_lock import held, is_ours
+from ddct_bringup.scores.bag_progress import with_progress
+from ddct_bringup.scores.scoring import bags_in
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import STDOUT, write_text
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
+
+PROGRAM = 'report'
+REPORT_FILE = 'report.html'
+
+_EPILOG = """\
+examples:
+  report runs/demo                                 every bag in the folder and below it
+  report runs/new/ls8 runs/worn/ls8 --out ls8.html one controller in two conditions
+  report runs/demo --out -                         the page on standard output
+
+The page needs no network and no other file. Bags are scored anew; frequency.json and
+timing.json are taken from beside them. All runs must be of one scenario. The exit code is 0
+only if every run is valid; the page is written all the same, and says why one is not.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _report, argv)
+
+
+def _report(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    require_chart_library()
+    require_writable(options.out)
+    places = [] if options.out == STDOUT else [Path(options.out).parent]
+    with held(*filter(is_ours, places)):
+        bags = with_progress(bags_in(options.runs), 'reading')
+        runs = in_order([read_run(*bag) for bag in bags])
+        write_report(runs, options.out)
+    for run in runs:
+        if not run.entry['valid']:
+            complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')
+    return 0 if all(run.entry['valid'] for run in runs) else 1
+
+
+def write_report(runs: Sequence[ReportRun], out: str) -> None:
+    """
+    Write the page over the runs, in their order.
+
+    `require_chart_library` must hold. A bag that could not be read is on the page with its reason.
+    Raise DdctError when none can be read, when they are of several scenarios, and when the page
+    cannot be written.
+    """
+    # Some seconds to import, and absent where require_chart_library raises.
+    from ddct_bringup.report.page import report_page
+
+    if all(run.recording is None for run in runs):
+        reasons = '; '.join(run.entry['reason'] for run in runs)
+        raise DdctError(f'none of the {len(runs)} bags can be read, so nothing to show: {reasons}')
+    require_one_scenario(runs)
+    with Console(file=sys.stderr).status('frequency evidence'):
+        evidence = evidence_of(runs)
+    write_text(out, report_page(runs, evidence))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Show recorded runs side by side on one page that needs no network.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        'runs',
+        metavar='RUN',
+        type=Path,
+        nargs='+',
+        help='a bag folder, an .mcap file, or a folder that is searched for bags',
+    )
+    parser.add_argument(
+        '--out',
+        default=REPORT_FILE,
+        metavar='FILE',
+        help=f"the page, {REPORT_FILE} if not given; '-' is standard output",
+    )
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,158 @@
+"""Program `score`: compute the metrics of recorded runs."""
+
+import argparse
+import csv
+import io
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.run.folder_lock import held, is_ours
+from ddct_bringup.scores.bag_progress import with_progress
+from ddct_bringup.scores.comfort import VDV_WEIGHTING
+from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
+from ddct_bringup.scores.scoring import (
+    Entry,
+    bag_name,
+    bags_in,
+    flat,
+    score_recording,
+    scores_document,
+    unreadable_entry,
+)
+from ddct_bringup.scores.signals_csv import signals_csv
+from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.printable import printable
+from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
+
+PROGRAM = 'score'
+
+_EPILOG = f"""\
+examples:
+  score runs/demo                        every bag in the folder and below it
+  score runs/demo/pi runs/demo/ls8       two bags
+  score runs/demo --json scores.json     also as JSON; '-' is standard output
+  score runs/demo --csv - | column -ts,  as CSV on standard output, table on standard error
+  score runs/demo --signals-csv signals  also every signal, one file per bag
+  score --repair runs/broken/pi          rescue an interrupted recording, then score it
+
+The exit code is 0 only if every bag was scored and valid: whole, of the length that the
+run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
+steps without a reply, and no node in its safe state.
+peak_jerk_m_s3: 20 Hz low-pass without delay.
+vdv_m_s1_75 is weighted by
+{VDV_WEIGHTING}.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _score, argv)
+
+
+def _score(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.json == STDOUT and options.csv == STDOUT:
+        raise DdctError('--json - and --csv - both want standard output: give one a file')
+    bags = bags_in(options.bags)
+    with held(*_run_folders(options, [bag for bag, _ in bags])):
+        runs = _scored(bags, options)
+        if options.json:
+            write_json(options.json, scores_document(runs))
+        if options.csv:
+            write_text(options.csv, _csv(runs))
+    table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
+    print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
+    return 0 if all(run['valid'] for run in runs) else 1
+
+
+def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
+    """Return the folders of runs that these options write into."""
+    files = [Path(file) for file in (options.json, options.csv) if file not in (None, STDOUT)]
+    folders = [file.parent for file in files]
+    if options.signals_csv is not None:
+        folders.append(options.signals_csv)
+    repaired = [bag if bag.is_dir() else bag.parent for bag in bags] if options.repair else []
+    return [*filter(is_ours, folders), *repaired]
+
+
+def _scored(bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace) -> list[Entry]:
+    runs = []
+    for bag, folder in with_progress(bags, 'scoring'):
+        try:
+            runs.append(_score_one(bag, folder, options))
+        except DdctError as error:
+            complain(PROGRAM, error)
+            runs.append(unreadable_entry(bag, error, relative_to=folder))
+    return runs
+
+
+def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> Entry:
+    if options.repair:
+        repair = repair_bag(bag)
+        if repair.original is not None:
+            complain(PROGRAM, repair)
+    recording = read_bag(bag)
+    name = bag_name(bag, folder)
+    if options.signals_csv is not None:
+        _write_signals(options.signals_csv, name, signals_csv(recording))
+    return score_recording(recording, name)
+
+
+def _write_signals(folder: Path, name: str, text: str) -> None:
+    """Write one bag's signals into a file that is named after the bag."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DdctError(f'{folder}: cannot make the folder: {error.strerror}') from error
+    file = name.strip('./').replace('/', '_').removesuffix('.mcap')
+    write_text(str(folder / f'{file}.csv'), text)
+
+
+def _csv(runs: Sequence[Entry]) -> str:
+    text = io.StringIO()
+    rows = [
+        {key: printable(value) if isinstance(value, str) else value for key, value in row.items()}
+        for row in flat(runs)
+    ]
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Compute the metrics of recorded runs from their bags.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        'bags',
+        metavar='BAG|FOLDER',
+        type=Path,
+        nargs='+',
+        help='a bag folder, an .mcap file, or a folder that is searched for bags',
+    )
+    parser.add_argument('--json', metavar='FILE', help="write scores.json to FILE; '-': stdout")
+    parser.add_argument('--csv', metavar='FILE', help="write a CSV table to FILE; '-': stdout")
+    parser.add_argument(
+        '--signals-csv',
+        metavar='DIR',
+        type=Path,
+        help='write the signals of each bag to a CSV file in DIR',
+    )
+    parser.add_argument(
+        '--repair',
+        action='store_true',
+        help='rescue unfinished and damaged bags first; the damaged file is kept beside',
+    )
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The recorder: the node that takes the topics off the wire into a bag."""

@@ -1,0 +1,266 @@
+"""Node `recorder`: writes every tick off the wire into a bag and acknowledges it."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, ClassVar
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.clock import Clock, ClockType
+from rclpy.serialization import deserialize_message, serialize_message
+from std_msgs.msg import Header
+
+from ddct_bringup.bag.file.cdr import CdrNormaliser
+from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
+from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
+from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.record.heard_nodes import HeardNodes
+from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
+from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.names import require_name
+from ddct_plant.base.timebase import START_NS, stamp_of_step
+from ddct_plant.graph.message_values import status_name_of, status_pairs_of
+from ddct_plant.graph.messages import ack_message
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
+from ddct_plant.graph.refusals import Refusals
+from ddct_plant.graph.run_info import RUN_INFO_TOPIC
+from ddct_plant.graph.settings import declare
+from ddct_plant.graph.sole_publishers import publishers_of
+from ddct_plant.graph.spin import run_node
+from ddct_plant.ticks.stamp_limit import StampLimit
+
+ACK = 'recorder/ack'
+ASKS_AGAIN = 'driveline/joint_states'
+"""A message of this topic that comes again after the acknowledgement says that it was lost."""
+TIMING = 'controller/timing'
+DIAGNOSTICS = '/diagnostics'
+PATIENCE_S = 5.0
+"""How long to wait for the other nodes before saying for whom."""
+_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
+
+
+class RecorderNode(GraphNode):
+    """
+    Write a rosbag2 bag and answer each whole tick with `recorder/ack`.
+
+    The bag is opened once every node has said its settings on `run_info` and t_0 is whole. In
+    lock-step it holds only what is deterministic; wall-clock figures go to `timing.json`.
+    """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p out:=runs/mine',)
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Subscribe to everything that is recorded."""
+        super().__init__('recorder', **kwargs)
+        self._folder = Path(
+            declare(self, 'out', 'recording', 'Folder of the bag, created if absent')
+        )
+        name = declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
+        if name:
+            require_name('parameter name', name)
+        self._bag_name = name or self._folder.name
+        self._two_input = declare(
+            self, 'two_input', False, 'Record engine/torque_request of a two-input controller'
+        )
+        nodes = declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
+        self._nodes = HeardNodes(self.settings, self._two_input, nodes)
+        topics = recorded_topics(lockstep=self.settings.lockstep, two_input=self._two_input)
+        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
+        self._topics = topics
+        self._buffer = TickBuffer(
+            [name for name in self._tick_topics if name != ACK],
+            self._same_message,
+            wait_for_all=self.settings.lockstep,
+        )
+        self._held: list[tuple[int, Tick]] = []
+        self._unordered: list[tuple[str, int, bytes]] = []
+        self._bag: BagWriter | None = None
+        self._limit = None if self.settings.lockstep else StampLimit(from_t0=True)
+        self._refusals = Refusals(self)
+        self._timing = RunTiming()
+        self._realtime = RealtimeFacts()
+        self._first_tick_at = 0.0
+        self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
+        # Acknowledgements differ in nothing but the stamp.
+        self._ack_cdr = bytearray(serialize_message(ack_message(START_NS)))
+        self._acknowledged = 0
+        self._second_node: DdctError | None = None
+        self._subscribe_all()
+        self.publish_run_info()
+        self._patience = self.create_timer(PATIENCE_S, self._say_who_is_silent, clock=_STEADY)
+
+    def close(self) -> None:
+        """
+        Finish the bag and write `timing.json`.
+
+        End with a DdctError when nothing was recorded, or two nodes where one belongs.
+        """
+        try:
+            self._write_ticks(self._buffer.drain())
+            if self._bag is None:
+                raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
+            self._bag.close()
+            self._timing.late_messages += self._buffer.dropped
+            self._timing.refused_messages = self._refusals.count
+            self._timing.write(self._folder)
+            if self._second_node is not None:
+                raise self._second_node
+        except DdctError as error:
+            self.finish(error)
+
+    def _subscribe_all(self) -> None:
+        for topic in TOPICS:
+            if topic.name == ACK or (topic.two_input_only and not self._two_input):
+                continue
+            qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
+            self.create_subscription(
+                message_type(topic), topic.name, self._receiver(topic), qos, raw=True
+            )
+
+    def _receiver(self, topic: TopicSpec) -> Callable[[bytes], None]:
+        if topic.every_tick:
+            return self.guarded(self._tick_receiver(topic.name))
+        receive = {
+            RUN_INFO_TOPIC: self._on_run_info,
+            TIMING: self._on_timing,
+            DIAGNOSTICS: self._on_diagnostics,
+        }[topic.name]
+        return self.guarded(receive)
+
+    def _tick_receiver(self, topic: str) -> Callable[[bytes], None]:
+        offer, limit = self._buffer.offer, self._limit
+        asks_again = topic == ASKS_AGAIN
+
+        def receive(cdr: bytes) -> None:
+            stamp = stamp_of_cdr(cdr)
+            reason = limit.why_refused(topic, stamp) if limit else ''
+            if reason:
+                self._refusals.add(reason)
+                return
+            try:
+                ready = offer(topic, stamp, cdr)
+            except TwoMessagesError as error:
+                names = publishers_of(self, topic)
+                self._on_second_node(DdctError(f'{error}; publishers: {names}'))
+                return
+            if ready:
+                self._write_ticks(ready)
+            elif asks_again and stamp == self._acknowledged:
+                self._ack.publish(bytes(self._ack_cdr))
+
+        return receive
+
+    def _on_run_info(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        try:
+            self._nodes.hear(status_name_of(message), dict(status_pairs_of(message)), cdr)
+        except DdctError as error:
+            self._on_second_node(error)
+        self._write_ticks([])
+
+    def _on_second_node(self, error: DdctError) -> None:
+        """Raise the error; once a real-time run is under way keep it until the clutch is open."""
+        if self.settings.lockstep or self._bag is None:
+            raise error
+        if self._second_node is None:
+            self._second_node = error
+            self.get_logger().error(str(error))
+
+    def _on_timing(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        times = dict(status_pairs_of(message)).get('update_times_us', '')
+        self._timing.update_times_us += [float(value) for value in times.split()]
+        self._record_unordered(TIMING, cdr)
+
+    def _on_diagnostics(self, cdr: bytes) -> None:
+        message = deserialize_message(cdr, DiagnosticArray)
+        facts = self._realtime
+        if not message.status:
+            return
+        if not facts.hear(status_name_of(message), dict(status_pairs_of(message))):
+            return
+        self._timing.resends = facts.resends
+        self._timing.missed_steps = facts.missed_steps
+        self._timing.late_messages = facts.late_messages
+        self._timing.worst_lateness_us = facts.worst_lateness_us
+        self._timing.safe_states = facts.safe_states
+        self._record_unordered(DIAGNOSTICS, cdr)
+
+    def _record_unordered(self, topic: str, cdr: bytes) -> None:
+        if self.settings.lockstep:
+            return
+        if self._bag is None:
+            self._unordered.append((topic, stamp_of_cdr(cdr), cdr))
+        else:
+            self._bag.write(topic, stamp_of_cdr(cdr), cdr)
+
+    def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
+        self._held += ticks
+        if not self._held or (self._bag is None and not self._open_bag()):
+            return
+        for step, tick in self._held:
+            self._write_tick(stamp_of_step(step), tick)
+            self._timing.steps = step
+        self._timing.wall_time_s = time.monotonic() - self._first_tick_at
+        self._held = []
+
+    def _write_tick(self, stamp: int, tick: Tick) -> None:
+        assert self._bag is not None
+        set_stamp_of_cdr(self._ack_cdr, stamp)
+        ack = bytes(self._ack_cdr)
+        # The tick is safe here now: the graph goes on while it is being written.
+        self._ack.publish(ack)
+        self._acknowledged = stamp
+        for topic in self._tick_topics:
+            cdr = ack if topic == ACK else tick.get(topic)
+            if cdr is not None:
+                self._bag.write(topic, stamp, cdr)
+
+    def _open_bag(self) -> bool:
+        if self._nodes.silent():
+            return False
+        facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
+        self._bag = BagWriter(self._folder, self._bag_name, self._topics, facts)
+        for cdr in self._nodes.messages():
+            self._bag.write(RUN_INFO_TOPIC, START_NS, cdr)
+        for topic, stamp, cdr in self._unordered:
+            self._bag.write(topic, stamp, cdr)
+        self._first_tick_at = time.monotonic()
+        return True
+
+    def _same_message(self, topic: str, first: bytes, second: bytes) -> bool:
+        type_name = next(spec.type for spec in self._topics if spec.name == topic)
+        normaliser = CdrNormaliser(load_definition(type_name))
+        return normaliser.normalise(first) == normaliser.normalise(second)
+
+    def _waiting_for(self) -> str:
+        silent = self._nodes.silent()
+        if silent:
+            return (
+                f'no run_info came from {", ".join(silent)}: start them, or leave them out of '
+                '--ros-args -p nodes:=[...]'
+            )
+        return (
+            'no whole tick came: start it first, or driveline with '
+            '--ros-args -p require_recorder:=true'
+        )
+
+    def _say_who_is_silent(self) -> None:
+        self._patience.cancel()
+        if self._nodes.silent():
+            self.get_logger().warning(self._waiting_for())
+
+
+def main() -> int:
+    """Record until stopped."""
+    return run_node('recorder', RecorderNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,106 @@
+"""Hold the messages of each tick until the tick is whole; knows nothing of ROS."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step, step_of_stamp
+
+GIVE_UP_AFTER_STEPS = 10
+"""In real time a tick is written with what it has once one this much later has begun."""
+
+LAG_LIMIT_STEPS = 100
+"""In lock-step a tick that is still not whole this much later has lost a message for good."""
+
+Tick = dict[str, bytes]
+"""Serialised messages of one stamp by topic."""
+
+
+class TwoMessagesError(DdctError):
+    """Two nodes publish one topic."""
+
+
+@dataclass
+class TickBuffer:
+    """
+    Gather serialised messages by stamp and give whole ticks back in order.
+
+    Repeated messages are dropped; two different ones for one topic and stamp mean that two nodes
+    publish it, which is an error.
+    """
+
+    topics: Sequence[str]
+    """What a whole tick has."""
+    same: Callable[[str, bytes, bytes], bool]
+    """Whether two serialised messages of a topic are equal."""
+    wait_for_all: bool = True
+    """Lock-step: never give a tick back that is not whole."""
+    dropped: int = 0
+    """Messages that came too late, real time only."""
+    _next_step: int = 0
+    _pending: dict[int, Tick] = field(default_factory=dict)
+    _last: Tick = field(default_factory=dict)
+
+    def offer(self, topic: str, stamp_ns: int, cdr: bytes) -> list[tuple[int, Tick]]:
+        """Take one message and return the (step, tick) pairs that can now be written, in order."""
+        try:
+            step = step_of_stamp(stamp_ns)
+        except DdctError as error:
+            raise DdctError(f'{topic}: {error}') from error
+        if step < self._next_step:
+            self._check_repeat(step, topic, cdr)
+            return []
+        if self.wait_for_all and step > self._next_step + LAG_LIMIT_STEPS:
+            raise DdctError(
+                f'{topic}: step {step} came where step {self._next_step} was due: this recorder '
+                'missed a part of the run, start it first or set require_recorder on driveline'
+            )
+        tick = self._pending.get(step)
+        if tick is None:
+            tick = self._pending[step] = {}
+        elif topic in tick:
+            self._require_same(topic, tick[topic], cdr, step)
+            return []
+        tick[topic] = cdr
+        if self.wait_for_all and len(tick) < len(self.topics):
+            return []
+        return self._ready(step - GIVE_UP_AFTER_STEPS)
+
+    def drain(self) -> list[tuple[int, Tick]]:
+        """Return what is left when recording ends; only real time keeps ticks with holes."""
+        if self.wait_for_all or not self._pending:
+            return []
+        return self._ready(max(self._pending))
+
+    def _ready(self, give_up_step: int) -> list[tuple[int, Tick]]:
+        ready = []
+        while self._pending:
+            step = min(self._pending)
+            if step > self._next_step and not self._skip_to(step, give_up_step):
+                break
+            tick = self._pending[step]
+            if len(tick) < len(self.topics) and (self.wait_for_all or step > give_up_step):
+                break
+            ready.append((step, self._pending.pop(step)))
+            self._last = tick
+            self._next_step = step + 1
+        return ready
+
+    def _skip_to(self, step: int, give_up_step: int) -> bool:
+        """Give up the steps before `step`, of which nothing came; say whether all of them."""
+        if not self.wait_for_all:
+            self._next_step = max(self._next_step, min(step, give_up_step + 1))
+        return self._next_step == step
+
+    def _check_repeat(self, step: int, topic: str, cdr: bytes) -> None:
+        if topic not in self._last or step < self._next_step - 1:
+            self.dropped += not self.wait_for_all
+            return
+        self._require_same(topic, self._last[topic], cdr, step)
+
+    def _require_same(self, topic: str, first: bytes, second: bytes, step: int) -> None:
+        if first != second and not self.same(topic, first, second):
+            raise TwoMessagesError(
+                f'{topic} carries two different messages for stamp {stamp_of_step(step)} ns: stop '
+                'the second node that publishes it, or use another ROS_DOMAIN_ID'
+            )

@@ -1,0 +1,96 @@
+"""Frequency-domain evidence of the runs: what `compare` left beside the bags, or computed now."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.report.loop_columns import is_whole
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_text import parse_json
+
+COMPUTED = 'computed for this page'
+
+
+@dataclass(frozen=True)
+class LoopEvidence:
+    """The sampled loop of one controller at one wear gain."""
+
+    controller: str
+    wear_gain: float
+    entry: Evidence | None
+    """Of `frequency_evidence`; None where there is none."""
+    remark: str = ''
+    """Why there is none, or `COMPUTED`."""
+
+    @property
+    def point(self) -> Evidence | None:
+        """The figures of the loop at this wear gain."""
+        points = (self.entry or {}).get('wear') or ()
+        return next((point for point in points if point['wear_gain'] == self.wear_gain), None)
+
+
+def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
+    """Return the evidence of every controller and wear gain of the readable runs, each once."""
+    found: dict[tuple[str, float], LoopEvidence | None] = {}
+    missing: dict[float, dict[str, ReportRun]] = {}
+    for run in runs:
+        if run.recording is None:
+            continue
+        facts = run.recording.facts
+        key = (facts.controller, facts.wear_gain)
+        if found.setdefault(key, _stored(run, *key)) is None:
+            missing.setdefault(facts.wear_gain, {}).setdefault(facts.controller, run)
+    computed = {
+        (each.controller, each.wear_gain): each
+        for wear_gain, by_controller in missing.items()
+        for each in _computed(by_controller, wear_gain)
+    }
+    return [each or computed[key] for key, each in found.items()]
+
+
+def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence | None:
+    """Return what the file beside the bag's folder holds of exactly this loop, if it does."""
+    assert run.recording is not None
+    content = _content(run.recording.path.parent.parent / FREQUENCY_FILE)
+    conditions, entries = content.get('conditions'), content.get('controllers')
+    if not isinstance(conditions, dict) or not isinstance(entries, list) or run.digest is None:
+        return None
+    if conditions.get('scenario_digest') != run.digest:
+        return None
+    for entry in entries:
+        if isinstance(entry, dict) and entry.get('controller') == controller:
+            whole = is_whole(entry, wear_gain)
+            return LoopEvidence(controller, wear_gain, entry) if whole else None
+    return None
+
+
+def _content(file: Path) -> dict[str, Any]:
+    """Return the JSON object of a file, empty where it is absent or something else."""
+    try:
+        content = parse_json(read_text_file(file))
+    except (OSError, DdctError):
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def _computed(runs: Mapping[str, ReportRun], wear_gain: float) -> list[LoopEvidence]:
+    """Return the evidence of the controllers in the loops of their runs, all of one wear gain."""
+    settings = next((run.settings for run in runs.values() if run.settings), None)
+    if settings is None:
+        remark = 'the bag does not tell its scenario in a form that this version reads'
+        return [LoopEvidence(name, wear_gain, None, remark) for name in runs]
+    try:
+        entries = frequency_evidence(list(runs), settings)['controllers']
+    except DdctError as error:
+        if len(runs) > 1:  # one at a time, so that only the one at fault goes without
+            return [each for name in runs for each in _computed({name: runs[name]}, wear_gain)]
+        return [LoopEvidence(name, wear_gain, None, str(error)) for name in runs]
+    return [
+        LoopEvidence(name, wear_gain, entry, COMPUTED)
+        for name, entry in zip(runs, entries, strict=True)
+    ]

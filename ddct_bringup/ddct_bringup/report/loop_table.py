@@ -1,0 +1,67 @@
+"""The table of frequency-domain evidence, one row per controller and wear gain."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ddct_bringup.report.evidence import LoopEvidence
+from ddct_bringup.report.loop_columns import LOOP_COLUMNS
+from ddct_controllers.workflows.evidence import Evidence
+
+NOT_LINEAR = 'not linear, so without a frequency response'
+
+
+@dataclass(frozen=True)
+class LoopRow:
+    """One row of the table."""
+
+    controller: str
+    wear_gain: str
+    stable: bool
+    cells: tuple[tuple[float | None, str], ...]
+    """(value, text) for each of `LOOP_COLUMNS`."""
+    stable_wear: str
+    """Between which wear gains the loop is stable."""
+    corner_peak: str
+    """Highest M_s over all corners."""
+    corners_unstable: str
+    remark: str
+
+
+def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
+    """Return one row for each loop that has evidence."""
+    rows = []
+    for each in evidence:
+        if each.entry is not None and each.point is not None:
+            rows.append(_row(each, each.entry, each.point))
+    return rows
+
+
+def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
+    """Return the controllers that have none, by the reason."""
+    reasons: dict[str, list[str]] = {}
+    for each in evidence:
+        if each.point is None:
+            linear = each.entry is None or each.entry['linear']
+            names = reasons.setdefault(each.remark if linear else NOT_LINEAR, [])
+            if each.controller not in names:
+                names.append(each.controller)
+    return reasons
+
+
+def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
+    interval = entry['stable_wear_gain'] or {}
+    return LoopRow(
+        controller=evidence.controller,
+        wear_gain=f'{evidence.wear_gain:g}',
+        stable=point['stable'],
+        cells=tuple((point[key], _text(point[key], form)) for key, _, _, form, _ in LOOP_COLUMNS),
+        stable_wear=f'{_text(interval.get("lowest"), ".2f")} to '
+        f'{_text(interval.get("highest"), ".2f")}',
+        corner_peak=_text(entry['corners']['sensitivity_peak'], '.2f'),
+        corners_unstable=str(entry['corners']['unstable']),
+        remark=evidence.remark,
+    )
+
+
+def _text(value: float | None, form: str) -> str:
+    return '–' if value is None else format(value, form)

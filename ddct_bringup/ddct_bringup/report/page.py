@@ -1,0 +1,148 @@
+"""Put the page together: one HTML file that needs nothing else."""
+
+import json
+import re
+from collections.abc import Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import bokeh
+from bokeh.resources import Resources
+from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
+from markupsafe import Markup, escape
+
+from ddct_bringup.report.charts import NEUTRAL, QUANTITIES, ChartRun, chart_document
+from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
+from ddct_bringup.report.labels import common_conditions, run_labels
+from ddct_bringup.report.line_looks import DARK_COLOURS, LIGHT_COLOURS, line_looks
+from ddct_bringup.report.loop_table import LOOP_COLUMNS, loop_rows, without_evidence
+from ddct_bringup.report.origin import run_origin, scenario_text
+from ddct_bringup.report.output import MARKER
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
+from ddct_bringup.report.update_times import TICKS, update_times
+from ddct_bringup.scores.tables import fallback_note
+from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
+from ddct_plant.graph.run_info import package_version
+
+SHOWN_AT_FIRST = 12
+"""Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
+_SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
+
+
+def report_page(runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence]) -> str:
+    """Return the HTML of a report over runs of one scenario, at least one of them readable."""
+    shown = _page_runs(runs)
+    thesis_rows = [run['thesis'] for run in shown]
+    document, roots = chart_document([_chart_run(run) for run in shown if run['charted']])
+    recordings = [run.recording for run in runs if run.recording is not None]
+    return _template().render(
+        marker=Markup(MARKER),
+        bokeh_js=_library(),
+        style=Markup(_part('page.css')),
+        script=Markup(_part('page.js')),
+        charts=_json({'document': document, 'roots': roots}),
+        quantities=QUANTITIES,
+        neutral=NEUTRAL,
+        light=LIGHT_COLOURS,
+        dark=DARK_COLOURS,
+        runs=shown,
+        columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
+        further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
+        prediction_tolerance=PREDICTION_TOLERANCE,
+        loop_columns=LOOP_COLUMNS,
+        loops=loop_rows(evidence),
+        no_loops=without_evidence(evidence),
+        computed=COMPUTED,
+        ticks=TICKS,
+        facts=recordings[0].facts,
+        conditions=common_conditions([run.entry for run in runs]),
+        scenario_text=scenario_text(recordings[0]),
+        digest=next((run.digest for run in runs if run.digest), None),
+        commits=sorted({run['origin'].commit for run in shown if run['charted']}),
+        versions=sorted({run['origin'].version for run in shown if run['charted']}),
+        made_with={'ddct_bringup': package_version(), 'Bokeh': bokeh.__version__},
+    )
+
+
+def symbols(text: str) -> Markup:
+    """Return text with w_sr and its like as letters with an index."""
+    return Markup(_SYMBOL.sub(r'\1<sub>\2</sub>', str(escape(text))))
+
+
+def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
+    """Return what the template needs of each run."""
+    entries = [run.entry for run in runs]
+    controllers = [entry['controller'] or entry['bag'] for entry in entries]
+    looks = line_looks(controllers, [row.controller for row in THESIS_TABLE])
+    of_each = zip(
+        runs, run_labels(entries), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
+    )
+    return [
+        {
+            'index': index,
+            'label': label,
+            'look': look,
+            'entry': run.entry,
+            'recording': run.recording,
+            'charted': run.recording is not None,
+            'on': on,
+            'thesis': row,
+            'fallback': fallback_note(run.entry) if run.entry['fallbacks'] else '',
+            'times': update_times(run),
+            'origin': run_origin(run),
+        }
+        for index, (run, label, look, on, row) in enumerate(of_each)
+    ]
+
+
+def _chart_run(run: dict[str, Any]) -> ChartRun:
+    return ChartRun(
+        index=run['index'],
+        label=run['label'],
+        look=run['look'],
+        trajectory=run['recording'].trajectory,
+        facts=run['recording'].facts,
+        shown=run['on'],
+        thesis_engagement_time_s=run['thesis'].engagement_time_s if run['thesis'] else None,
+    )
+
+
+def _shown_at_first(runs: Sequence[ReportRun]) -> list[bool]:
+    if len(runs) <= SHOWN_AT_FIRST:
+        return [True] * len(runs)
+    of_table = [row is not None for row in comparable_rows(runs)]
+    if 2 <= sum(of_table) <= SHOWN_AT_FIRST:
+        return of_table
+    return [index < SHOWN_AT_FIRST for index in range(len(runs))]
+
+
+@cache
+def _library() -> Markup:
+    """Return BokehJS as the installed package brings it along."""
+    # Without any line shown it would warn that a chart has no range.
+    return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))
+
+
+def _json(content: Any) -> Markup:
+    """Return JSON that may stand in a script element."""
+    text = json.dumps(content, separators=(',', ':'), allow_nan=False)
+    return Markup(text.replace('<', '\\u003c'))
+
+
+def _part(name: str) -> str:
+    return (files('ddct_bringup.report') / name).read_text(encoding='utf-8')
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=FunctionLoader(_part),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters['symbols'] = symbols
+    return environment.get_template('page.html.j2')

@@ -1,0 +1,102 @@
+"""The runs that a report shows, read from their bags; a bag that cannot be read stays in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.scores.scoring import (
+    Entry,
+    bag_name,
+    score_recording,
+    unreadable_entry,
+)
+from ddct_controllers.registry import controller_names
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.scenario.file import scenario_digest, scenario_from_mapping
+from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True)
+class ReportRun:
+    """One bag and what is known of it."""
+
+    entry: Entry
+    """As in `scores.json`."""
+    recording: Recording | None = None
+    """None where the bag cannot be read."""
+    timing: RunTiming | None = None
+    """None without a `timing.json` beside the bag."""
+    settings: RunSettings | None = None
+    """What was simulated; None where the bag does not tell, or this version cannot build it."""
+
+    @property
+    def controller(self) -> str | None:
+        """The controller's name."""
+        return self.entry['controller']
+
+    @cached_property
+    def digest(self) -> str | None:
+        """
+        What tells two scenarios of one name apart, None where the bag does not tell.
+
+        It is taken anew: the bag's own digest changes when a version adds a scenario key.
+        """
+        if self.settings:
+            return scenario_digest(self.settings.scenario)
+        nodes = self.recording.run_info.values() if self.recording else ()
+        return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
+
+
+def read_run(bag: Path, folder: Path | None) -> ReportRun:
+    """Read and score a bag, which is named relative to the folder; never raises DdctError."""
+    try:
+        recording = read_bag(bag)
+        entry = score_recording(recording, bag_name(bag, folder))
+        return ReportRun(
+            entry, recording, read_timing(recording.path.parent), settings_of(recording)
+        )
+    except DdctError as error:
+        return ReportRun(unreadable_entry(bag, error, relative_to=folder))
+
+
+def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
+    """Return the runs in the order in which the registry lists their controllers."""
+    places = {name: place for place, name in enumerate(controller_names())}
+    return sorted(runs, key=lambda run: places.get(run.entry['controller'], len(places)))
+
+
+def settings_of(recording: Recording) -> RunSettings | None:
+    """Return the settings that a bag tells; None where it does not, or they are unknown here."""
+    facts = recording.facts
+    try:
+        content = parse_yaml(recording.custom_data.get('scenario_yaml', ''))
+        return RunSettings(
+            scenario_from_mapping(content),
+            facts.architecture,
+            facts.clutch,
+            facts.wear_gain,
+            facts.mode,
+            facts.seed,
+        )
+    except (DdctError, TypeError, ValueError):
+        return None
+
+
+def require_one_scenario(runs: Sequence[ReportRun]) -> None:
+    """Raise DdctError that names the scenarios when the readable runs are not all of one."""
+    bags: dict[str, list[str]] = {}
+    for run in runs:
+        if run.recording is not None:
+            digest = f' (digest {run.digest})' if run.digest else ''
+            bags.setdefault(f'{run.entry["scenario"]}{digest}', []).append(run.entry['bag'])
+    if len(bags) > 1:
+        parts = '; '.join(f'{scenario}: {", ".join(names)}' for scenario, names in bags.items())
+        raise DdctError(
+            f'the runs are of {len(bags)} scenarios, which do not compare: {parts}: '
+            'make one report of each'
+        )

@@ -1,0 +1,1 @@
+"""The thesis reproduced: its numbers, figures, studies and calibration."""

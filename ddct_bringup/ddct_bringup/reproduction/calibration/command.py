@@ -1,0 +1,148 @@
+"""Subcommand `reproduce calibration`: the thesis scenario, fitted to rows of Table 5.1."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.reproduction.calibration.ensemble import find_members, members_in, write_members
+from ddct_bringup.reproduction.calibration.files import fill_page, scenario_text
+from ddct_bringup.reproduction.calibration.predicted_values import predict
+from ddct_bringup.reproduction.calibration.record import (
+    RETURN_TOLERANCE,
+    Record,
+    calibrate,
+    check_frozen,
+    outside_tolerance,
+)
+from ddct_bringup.reproduction.calibration.tables import all_tables, check_tables
+from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.program.page_tables import read_page
+from ddct_plant.program.table import Table, print_table
+from ddct_plant.scenario.file import load_scenario
+
+NAME = 'reproduce calibration'
+_DESCRIPTION = """\
+Fit engine torque, reference slope, PI gains and the end of the score window to the
+LS8, Hinf1 and PI rows of Table 5.1 of the thesis (nine numbers; the MPC rows take no
+part), and show bounds, result, identifiability and what each row left out gives."""
+_EPILOG = """\
+examples:
+  reproduce calibration                          the whole calibration, about a minute and a half
+  reproduce calibration --quick                  only check that the frozen scenario is the optimum
+  reproduce calibration --json -                 the result as JSON on standard output, alone
+  reproduce calibration --write my_thesis.yaml   write the calibrated scenario
+  reproduce calibration --ensemble DIR           search the admissible scenarios, two minutes
+  reproduce calibration --predict DIR            only predict in those of DIR, half a minute
+
+The exit code is 1 when a residual is outside its tolerance (5 % of t_a, 10 % of a
+sigma), or when --quick finds that the frozen scenario is not the optimum."""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `calibration` to the subcommands of `reproduce`."""
+    parser = subparsers.add_parser(
+        'calibration',
+        help='the thesis scenario, fitted to three rows of Table 5.1',
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+    )
+    parser.add_argument('--quick', action='store_true', help='check the frozen scenario only')
+    parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")
+    parser.add_argument('--write', metavar='FILE', help="write the scenario; '-' is stdout")
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    ensemble = parser.add_mutually_exclusive_group()
+    ensemble.add_argument(
+        '--ensemble',
+        metavar='DIR',
+        type=Path,
+        help='search the admissible scenarios that are kept, into DIR, and do as --predict',
+    )
+    ensemble.add_argument(
+        '--predict', metavar='DIR', type=Path, help='write what the scenarios in DIR predict'
+    )
+    parser.set_defaults(run=run, parser=parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Fit, print and write what is asked for; raise DdctError when no scenario fits."""
+    parser = options.parser
+    if options.quick and (options.write or options.write_doc):
+        parser.error('--quick finds nothing to write: leave out --write and --write-doc')
+    if options.ensemble is not None or options.predict is not None:
+        if options.quick or options.json or options.write or options.write_doc:
+            parser.error('--ensemble and --predict take no other option: leave it out')
+        _make_ensemble(options)
+        return 0
+    if options.json == options.write == STDOUT:
+        parser.error('--json - and --write - both want standard output: give one a file')
+    for output in (options.json, options.write, options.write_doc):
+        _require_writable(output)
+    page = read_page(options.write_doc) if options.write_doc else ''
+    quiet = STDOUT in (options.json, options.write)
+    if options.quick:
+        record = check_frozen(load_scenario('thesis'), _progress)
+        _print_tables(check_tables(record), quiet)
+    else:
+        record = calibrate(_progress)
+        _print_tables(list(all_tables(record).values()), quiet)
+    if options.json:
+        write_json(options.json, record)
+    _require_tolerances(record)
+    if options.quick:
+        _require_optimum(record)
+    if options.write:
+        write_text(options.write, scenario_text(record))
+    if options.write_doc:
+        write_text(options.write_doc, fill_page(page, record))
+    return 0
+
+
+def _make_ensemble(options: argparse.Namespace) -> None:
+    """Write the admissible scenarios, or keep those in the folder, and what they predict."""
+    folder: Path = options.ensemble or options.predict
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise DdctError(f'{folder} is no folder that can be written: make it first')
+    frozen = load_scenario('thesis')
+    if options.ensemble is not None:
+        write_members(find_members(frozen, _progress), folder)
+    members = members_in(folder)
+    write_json(str(folder / PREDICTIONS_FILE), predict(frozen, members, _progress).as_record())
+    _progress(f'{len(members)} admissible scenarios and {PREDICTIONS_FILE} are in {folder}')
+
+
+def _progress(text: str) -> None:
+    print(f'{NAME}: {text}', file=sys.stderr, flush=True)
+
+
+def _print_tables(tables: list[Table], quiet: bool) -> None:
+    if not quiet:
+        for table in tables:
+            print_table(table)
+
+
+def _require_tolerances(record: Record) -> None:
+    outside = outside_tolerance(record['residuals'])
+    if outside:
+        raise DdctError(f'no scenario fits: {", ".join(outside)} is outside the tolerance')
+
+
+def _require_optimum(record: Record) -> None:
+    moved = max(record['moved'].items(), key=lambda item: abs(item[1]))
+    if abs(moved[1]) > RETURN_TOLERANCE:
+        raise DdctError(
+            f'scenario thesis is not the optimum: a refit moves {moved[0]} by '
+            f'{100.0 * moved[1]:+.1f} % of its range; run it again without --quick'
+        )
+
+
+def _require_writable(output: str | None) -> None:
+    """Refuse a file that cannot be written before the long work, not after it."""
+    if output in (None, STDOUT):
+        return
+    path = Path(output)
+    if path.is_dir() or not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise DdctError(f'{path}: cannot be written: give a file in a folder that can be')

@@ -1,0 +1,133 @@
+"""
+The kept admissible scenarios: centres and rims of the region, with other assumptions too.
+
+They are chosen by the nine fitted figures; docs/predictions.md states the choice.
+"""
+
+import dataclasses
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+from ddct_bringup.reproduction.calibration.admissible import why_not_admissible
+from ddct_bringup.reproduction.calibration.analysis import changed_assumptions
+from ddct_bringup.reproduction.calibration.files import annotated_yaml
+from ddct_bringup.reproduction.calibration.parameters import RANGE
+from ddct_bringup.reproduction.calibration.problem import Problem, Values
+from ddct_bringup.reproduction.calibration.record import values_of
+from ddct_bringup.reproduction.calibration.region import Point, centre, rim
+from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress
+from ddct_bringup.thesis.predictions import folder_of_members
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_text
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+
+QUANTITIES = {
+    'level': ('torque level', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    'rise': ('rise of the torque', (-RANGE[0] / RANGE[1], 1.0, 0.0, 0.0, 0.0, 0.0)),
+    'rise_end': ('end of the rise', (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)),
+    'slope': ('slope of the reference', (0.0, 0.0, 0.0, 1.0, 0.0, 0.0)),
+}
+"""What is taken to its extremes, with its direction in shares of the parameters' ranges."""
+_DECIMALS = (2, 2, 4, 2, 5, 5)
+"""Of the values in the files, in the order of PARAMETERS."""
+
+
+@cache
+def members() -> tuple[Scenario, ...]:
+    """Return the kept scenarios in the order of their names."""
+    return members_in(folder_of_members())
+
+
+def members_in(folder: Path) -> tuple[Scenario, ...]:
+    """Return the scenarios that a folder has, in the order of their names."""
+    return tuple(load_scenario(str(file)) for file in sorted(folder.glob('*.yaml')))
+
+
+def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:
+    """
+    Search the ensemble from a calibrated scenario; every member is held against the rule.
+
+    Raise DdctError for one that the search found and the rule does not admit.
+    """
+    found: dict[tuple[float, ...], Scenario] = {}
+    for scenario in _search(frozen, progress):
+        against = why_not_admissible(scenario)
+        if against:
+            raise DdctError(f'{scenario.name} is not admissible: {", ".join(against)}')
+        found.setdefault(_content(scenario), scenario)
+    return list(found.values())
+
+
+def write_members(scenarios: list[Scenario], folder: Path) -> None:
+    """Write one file per scenario and remove those that the folder had before."""
+    for file in folder.glob('*.yaml'):
+        file.unlink()
+    for scenario in scenarios:
+        what = scenario.description
+        head = (
+            f'# An admissible scenario: {what[0].lower()}{what[1:]}.',
+            '# Written by `ros2 run ddct_bringup reproduce calibration --ensemble DIR`;'
+            ' docs/predictions.md tells how.',
+        )
+        write_text(str(folder / f'{scenario.name}.yaml'), annotated_yaml(scenario, head))
+
+
+def _search(frozen: Scenario, progress: Progress) -> Iterator[Scenario]:
+    centres = _centres(frozen, progress)
+    for end, at in centres.items():
+        yield _member(
+            Problem(end), at, f'window_{end:.1f}', f'Centre of the region, window to {end:.1f} s'
+        )
+    frozen_end = frozen.score_window_s[1]
+    for end in (min(centres), frozen_end, max(centres)):
+        for name, (quantity, direction) in QUANTITIES.items():
+            progress(f'rim: {quantity}, score window to {end:.1f} s')
+            for sign, which, extreme in ((-1.0, 'low', 'Lowest'), (1.0, 'high', 'Highest')):
+                along = [sign * share for share in direction]
+                yield _member(
+                    Problem(end),
+                    rim(Problem(end), centres[end].values, along),
+                    f'window_{end:.1f}_{name}_{which}',
+                    f'{extreme} {quantity}, window to {end:.1f} s',
+                )
+    for change, base in changed_assumptions().items():
+        progress(f'centre: {change}')
+        problem = Problem(frozen_end, base=base)
+        at = centre(problem, centres[frozen_end].values)
+        yield _member(
+            problem, at, change.replace(' ', '_').replace('/', '_per_'), f'With {change}'
+        )
+
+
+def _centres(frozen: Scenario, progress: Progress) -> dict[float, Point]:
+    """Return the centre for each end of the window that has an admissible one, from the frozen."""
+    start = frozen.score_window_s[1]
+    before = [end for end in reversed(WINDOW_ENDS_S) if end < start]
+    centres: dict[float, Point] = {}
+    for ends in ([start], before, [end for end in WINDOW_ENDS_S if end > start]):
+        values: Values = centres[start].values if centres else values_of(frozen)
+        for end in ends:
+            progress(f'centre: score window to {end:.1f} s')
+            at = centre(Problem(end), values)
+            values = at.values
+            if not why_not_admissible(_member(Problem(end), at, 'centre', '')):
+                centres[end] = at
+    return dict(sorted(centres.items()))
+
+
+def _member(problem: Problem, at: Point, name: str, what: str) -> Scenario:
+    values = [round(value, decimals) for value, decimals in zip(at.values, _DECIMALS, strict=True)]
+    return dataclasses.replace(problem.scenario(values), name=name, description=what)
+
+
+def _content(scenario: Scenario) -> tuple[float, ...]:
+    """Return what tells two members apart, whatever their names."""
+    initial, load = scenario.initial, scenario.load
+    return (
+        *values_of(scenario),
+        scenario.score_window_s[1],
+        initial.shaft_speed_rad_s,
+        load.rolling_coefficient,
+    )

@@ -1,0 +1,90 @@
+"""
+What a scenario predicts of the thesis's other results, by the ids that the thesis gate gives them.
+
+These took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2, of which the
+numbers behind the words are given too. Of a word, whether it is a hit or a miss.
+"""
+
+from collections.abc import Iterable
+
+from ddct_bringup.reproduction.calibration.search import Progress
+from ddct_bringup.reproduction.claims.closed_loop_values import (
+    SLIP_WORDS,
+    WORN,
+    WORN_ARCHITECTURE,
+    judge_table_5_2,
+)
+from ddct_bringup.reproduction.studies.scored_run import metrics_of
+from ddct_bringup.reproduction.studies.static_controller import StaticControllerAlone
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
+from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED, THESIS_TABLE
+from ddct_controllers.interface import Controller
+from ddct_plant.base.timebase import steps_in
+from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+OPEN_LOOP = 'C_fOL alone'
+"""In the place of a controller: the clutch left to C_fOL and the engine to the driver."""
+
+
+def predict(frozen: Scenario, members: Iterable[Scenario], progress: Progress) -> Predictions:
+    """Return every prediction of the frozen scenario, with its values in the members."""
+    progress(f'predictions of {frozen.name}')
+    by_member: dict[str, dict[str, Value]] = {}
+    frozen_values = predicted_values(frozen)
+    for member in members:
+        progress(f'predictions of {member.name}')
+        by_member[member.name] = predicted_values(member)
+    return Predictions(
+        scenario_digest(frozen),
+        {
+            name: Prediction(value, {member: by_member[member][name] for member in by_member})
+            for name, value in frozen_values.items()
+        },
+    )
+
+
+def predicted_values(scenario: Scenario) -> dict[str, Value]:
+    """Return every predicted value of a scenario by its id."""
+    found = _table_5_1(scenario)
+    for wear_gain in WORN:
+        found |= _table_5_2(scenario, wear_gain)
+    return found
+
+
+def _table_5_1(scenario: Scenario) -> dict[str, Value]:
+    settings = RunSettings(scenario)
+    controllers: dict[str, str | Controller] = {
+        row.controller: row.controller for row in THESIS_TABLE if row.use == PREDICTED
+    }
+    controllers[OPEN_LOOP] = StaticControllerAlone()
+    found: dict[str, Value] = {}
+    for name, controller in controllers.items():
+        metrics = metrics_of(settings, run_headless(settings, controller))
+        found |= {f'5.1 {name} {figure}': getattr(metrics, figure) for figure in FIGURES}
+    return found
+
+
+def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
+    settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
+    end = steps_in('score_window_s', scenario.score_window_s[1])
+    slips: dict[str, float] = {}
+    metrics: dict[str, Metrics] = {}
+    for name in SLIP_WORDS:
+        run = run_headless(settings, name)
+        slips[name] = abs(float(run.slip_speed[end]))
+        metrics[name] = metrics_of(settings, run)
+    found: dict[str, Value] = {
+        name: 'hit' if finding.holds else 'miss'
+        for name, finding in judge_table_5_2(wear_gain, slips, metrics).items()
+    }
+    for name in SLIP_WORDS:
+        found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = slips[name]
+        found |= {
+            f'5.2 {name} {figure} {wear_gain:g}': getattr(metrics[name], figure)
+            for figure in FIGURES[1:]
+        }
+    return found

@@ -1,0 +1,171 @@
+"""
+The calibration of the thesis scenario as a least-squares problem: what is fitted to what.
+
+The thesis prints no engine torque profile, no reference slope and no PI gains. They are fitted
+to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1; the MPC rows take no part.
+`calibration_parameters` has the parameters with their bounds, and the numbers.
+"""
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ddct_bringup.reproduction.calibration.parameters import (
+    BASE,
+    LOWER,
+    PARAMETERS,
+    PI_ONLY,
+    RANGE,
+    ROWS,
+    TARGETS,
+)
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import compute_metrics
+from ddct_bringup.thesis.table_5_1 import FIGURES, TOLERANCES
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.models.engine import TorqueProfile
+from ddct_plant.scenario.scenario import ReferenceParameters, Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+Values = Sequence[float] | np.ndarray
+"""(6,) in the order of PARAMETERS."""
+
+_STEP = 1e-4
+"""Difference step of the Jacobian, as a share of each parameter's range."""
+_PRECISION = 1e-5
+"""Relative change of the objective or the parameters at which a fit ends."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Residuals of some rows of the table for one score window."""
+
+    window_end_s: float
+    """The window starts with control."""
+    rows: tuple[str, ...] = ROWS
+    base: Scenario = BASE
+
+    def scenario(self, values: Values) -> Scenario:
+        """Return the scenario for the (6,) values of PARAMETERS."""
+        start, end, rise_end, slope, proportional, integral = (float(value) for value in values)
+        return dataclasses.replace(
+            self.base,
+            score_window_s=(self.base.control_start_s, self.window_end_s),
+            engine=TorqueProfile((0.0, rise_end), (start, end)),
+            reference=ReferenceParameters(slope),
+            controllers={'pi': {'proportional_gain': proportional, 'integral_gain': integral}},
+        )
+
+    def figures(self, values: Values) -> dict[str, dict[str, float]]:
+        """Return our figures by row, then metric name."""
+        scenario = self.scenario(values)
+        return {row: row_figures(scenario, row) for row in self.rows}
+
+    def residuals(self, values: Values) -> np.ndarray:
+        """Return (computed / printed - 1) / tolerance, (3 rows,), three figures a row."""
+        return scaled_residuals(self.figures(values))
+
+    def jacobian(self, values: Values) -> np.ndarray:
+        """Return d residuals / d (value / range) by one-sided differences, (3 rows, 6)."""
+        origin = np.asarray(values, dtype=float)
+        before = self.residuals(origin).reshape(-1, len(FIGURES))
+        columns = []
+        for index, parameter in enumerate(PARAMETERS):
+            step = _STEP * RANGE[index]
+            if origin[index] + step > parameter.upper:
+                step = -step
+            moved = origin.copy()
+            moved[index] += step
+            change = np.zeros_like(before)
+            for number, row in enumerate(self.rows):
+                if row == 'pi' or index not in PI_ONLY:
+                    after = dataclasses.replace(self, rows=(row,)).residuals(moved)
+                    change[number] = after - before[number]
+            columns.append(change.ravel() * RANGE[index] / step)
+        return np.column_stack(columns)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A local optimum."""
+
+    problem: Problem
+    values: tuple[float, ...]
+    """(6,) in the order of PARAMETERS."""
+    residuals: np.ndarray
+    """(3 rows,) scaled."""
+
+    @property
+    def objective(self) -> float:
+        """Half the sum of the squared scaled residuals."""
+        return 0.5 * float(np.sum(self.residuals**2))
+
+
+def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
+    """
+    Return the three figures of one controller, simulated to the end of the score window.
+
+    Where w_d does not reach zero by then, t_a is the time simulated since control start plus what
+    the reference's slope would need for the slip that is left: defined everywhere, continuous,
+    and the larger the worse. Raise DdctError for a run that is not finite.
+    """
+    start, end = scenario.score_window_s
+    shortened = dataclasses.replace(scenario, duration_s=end)
+    metrics = compute_metrics(
+        run_headless(RunSettings(shortened), controller),
+        control_start_s=scenario.control_start_s,
+        score_window_s=(start, end),
+    )
+    figures = {name: getattr(metrics, name) for name in FIGURES}
+    if figures['engagement_time_s'] is None and metrics.slip_final_rpm is not None:
+        left = abs(rad_s_from_rpm(metrics.slip_final_rpm)) / scenario.reference.slope_rad_s2
+        figures['engagement_time_s'] = end - scenario.control_start_s + left
+    missing = [name for name, value in figures.items() if value is None]
+    if missing:
+        raise DdctError(f'{controller} has no {", ".join(missing)}: narrow the bounds')
+    return figures
+
+
+def scaled_residuals(figures: dict[str, dict[str, float]]) -> np.ndarray:
+    """Return (computed / printed - 1) / tolerance, (3 rows,), for figures by row."""
+    return np.array(
+        [
+            (computed[name] / TARGETS[row][name] - 1.0) / TOLERANCES[name]
+            for row, computed in figures.items()
+            for name in FIGURES
+        ]
+    )
+
+
+def fit(
+    problem: Problem, start: Values, free: Sequence[int] = tuple(range(len(PARAMETERS)))
+) -> Fit:
+    """
+    Return the local optimum from (6,) start values; parameters not in `free` keep theirs.
+
+    A trust-region method within the bounds, each parameter measured by its range.
+    """
+    free = list(free)
+    origin = np.asarray(start, dtype=float)
+
+    def values_at(shares: np.ndarray) -> np.ndarray:
+        values = origin.copy()
+        values[free] = LOWER[free] + shares * RANGE[free]
+        return values
+
+    shares = np.clip((origin - LOWER) / RANGE, 1e-6, 1.0 - 1e-6)[free]
+    answer = least_squares(
+        lambda shares: problem.residuals(values_at(shares)),
+        shares,
+        jac=lambda shares: problem.jacobian(values_at(shares))[:, free],
+        bounds=(0.0, 1.0),
+        ftol=_PRECISION,
+        xtol=_PRECISION,
+        gtol=_PRECISION,
+        max_nfev=60,
+    )
+    return Fit(problem, tuple(values_at(answer.x).tolist()), answer.fun)

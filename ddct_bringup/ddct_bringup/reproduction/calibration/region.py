@@ -1,0 +1,119 @@
+"""The region of the parameters in which the nine figures are within tolerance: centre and rim."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ddct_bringup.reproduction.calibration.parameters import LOWER, PARAMETERS, RANGE
+from ddct_bringup.reproduction.calibration.problem import Problem, Values
+
+RIM = 0.98
+"""Largest scaled residual on the rim: rounding of the values and curvature may take the rest."""
+_STEPS = 40
+_PRECISION = 1e-3
+"""Change of what is sought, in tolerances or in shares of a range, at which a search ends."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """Fitted values and what becomes of the nine figures."""
+
+    values: tuple[float, ...]
+    """(6,) in the order of PARAMETERS."""
+    worst: float
+    """Largest magnitude of a scaled residual."""
+
+
+def centre(problem: Problem, start: Values) -> Point:
+    """
+    Return the point near (6,) start values whose largest scaled residual t is the least.
+
+    Sequential quadratic programming: least t with |residuals| <= t.
+    """
+    figures = _Figures(problem)
+    ones = np.ones((2 * figures.count, 1))
+    gradient = np.append(np.zeros(len(PARAMETERS)), 1.0)
+    shares = _shares(start)
+    answer = minimize(
+        lambda at: at[-1],
+        np.append(shares, np.max(np.abs(figures.residuals(shares)))),
+        jac=lambda at: gradient,
+        bounds=[*_BOUNDS, (0.0, None)],
+        constraints=_at_least_zero(
+            lambda at: at[-1] + figures.both_signs(at[:-1]),
+            lambda at: np.hstack([figures.both_signs_jacobian(at[:-1]), ones]),
+        ),
+        **_METHOD,
+    )
+    return figures.point(answer.x[:-1])
+
+
+def rim(problem: Problem, start: Values, direction: Sequence[float]) -> Point:
+    """
+    Return the point with all |residuals| <= RIM that goes the farthest along a direction.
+
+    `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
+    """
+    figures = _Figures(problem)
+    gain = np.array(direction, dtype=float)
+    answer = minimize(
+        lambda at: -gain @ at,
+        _shares(start),
+        jac=lambda at: -gain,
+        bounds=_BOUNDS,
+        constraints=_at_least_zero(
+            lambda at: RIM + figures.both_signs(at), figures.both_signs_jacobian
+        ),
+        **_METHOD,
+    )
+    return figures.point(answer.x)
+
+
+_BOUNDS = [(0.0, 1.0)] * len(PARAMETERS)
+_METHOD = {'method': 'SLSQP', 'options': {'maxiter': _STEPS, 'ftol': _PRECISION}}
+_Function = Callable[[np.ndarray], np.ndarray]
+
+
+class _Figures:
+    """The residuals of a problem as functions of the parameters' (6,) shares of their ranges."""
+
+    def __init__(self, problem: Problem) -> None:
+        """Keep what was computed last: each is asked for twice at a point."""
+        self.count = 3 * len(problem.rows)
+        self._residuals = lru_cache(lambda *values: problem.residuals(values))
+        self._jacobian = lru_cache(lambda *values: problem.jacobian(values))
+
+    def residuals(self, shares: np.ndarray) -> np.ndarray:
+        """Return the (9,) scaled residuals r."""
+        found: np.ndarray = self._residuals(*_values(shares))
+        return found
+
+    def both_signs(self, shares: np.ndarray) -> np.ndarray:
+        """Return (-r, r), (18,)."""
+        found = self.residuals(shares)
+        return np.concatenate([-found, found])
+
+    def both_signs_jacobian(self, shares: np.ndarray) -> np.ndarray:
+        """Return the derivatives of (-r, r), (18, 6)."""
+        found = self._jacobian(*_values(shares))
+        return np.vstack([-found, found])
+
+    def point(self, shares: np.ndarray) -> Point:
+        """Return the point."""
+        return Point(_values(shares), float(np.max(np.abs(self.residuals(shares)))))
+
+
+def _shares(values: Values) -> np.ndarray:
+    return (np.asarray(values, dtype=float) - LOWER) / RANGE
+
+
+def _values(shares: np.ndarray) -> tuple[float, ...]:
+    """Return the values; SLSQP leaves the bounds by the last digits."""
+    return tuple((LOWER + np.clip(shares, 0.0, 1.0) * RANGE).tolist())
+
+
+def _at_least_zero(function: _Function, jacobian: _Function) -> dict[str, object]:
+    return {'type': 'ineq', 'fun': function, 'jac': jacobian}

@@ -1,0 +1,92 @@
+"""What we compute for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims."""
+
+from collections.abc import Mapping
+
+from ddct_bringup.reproduction.claims.claims import claim_values
+from ddct_bringup.reproduction.claims.orders import CLEARLY, is_extreme, text
+from ddct_bringup.reproduction.claims.table_claims import table_claim_values
+from ddct_bringup.reproduction.claims.words import judge_words
+from ddct_bringup.reproduction.figures.scenario_figures import deviation_bound_percent
+from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
+from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
+from ddct_plant.base.timebase import steps_in
+
+WORN = (0.7, 1.3)
+"""The two critical values of K_usura, inequality (3.2)."""
+WORN_ARCHITECTURE = 'feedforward'
+"""That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
+SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+"""Table 5.2: w_d, at both values of K_usura."""
+OSCILLATION_WORDS = {
+    0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
+    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
+}
+"""Table 5.2: w_sr and A_x by K_usura."""
+NOT_REACHED = 'not reached'
+"""In the place of t_a when w_d does not become 0."""
+_EQUAL_MODELS_PERCENT = 1.0
+"""Of the peak of w_d: models that are nearer are equal."""
+
+
+def closed_loop_values() -> dict[str, Value | None]:
+    """Return the values by the ids that the thesis gate's files give them."""
+    bound = deviation_bound_percent()
+    models = Finding(bound <= _EQUAL_MODELS_PERCENT, f'within {bound:g} % of the peak')
+    return {
+        '1.5.1 models': models,
+        **claim_values(),
+        **_table_5_1(),
+        **table_claim_values(),
+        **_table_5_2(),
+    }
+
+
+def _table_5_1() -> dict[str, Value | None]:
+    found: dict[str, Value | None] = {}
+    for row in THESIS_TABLE:
+        metrics = thesis_metrics(thesis_run(row.controller, 'detailed', 1.0))
+        time = metrics.engagement_time_s
+        found |= {f'5.1 {row.controller} {name}': getattr(metrics, name) for name in row.figures()}
+        found[f'5.1 {row.controller} engagement_time_s'] = NOT_REACHED if time is None else time
+    return found
+
+
+def _table_5_2() -> dict[str, Value | None]:
+    found: dict[str, Value | None] = {}
+    ends = {}
+    for wear in WORN:
+        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
+        slips = {name: abs(float(run.slip_speed[_end_step()])) for name, run in runs.items()}
+        metrics = {name: thesis_metrics(run) for name, run in runs.items()}
+        found |= judge_table_5_2(wear, slips, metrics)
+        ends[wear] = slips
+    return found | {'5.1 robust': _only_robust('hinf2', ends)}
+
+
+def judge_table_5_2(
+    wear: float, slips: Mapping[str, float], metrics: Mapping[str, Metrics]
+) -> dict[str, Finding]:
+    """Return what the words come to, by the gate's ids; `slips` are |w_d| at the end in rad/s."""
+    twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
+    acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
+    words = {
+        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
+        'w_sr': judge_words(OSCILLATION_WORDS[wear], [('rpm', twist), ('m/s^2', acceleration)]),
+    }
+    return {
+        f'5.2 {name} {what} {wear:g}': finding
+        for what, findings in words.items()
+        for name, finding in findings.items()
+    }
+
+
+def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:
+    """Return whether one controller ends clearly nearer to zero at both values of K_usura."""
+    figures = '; '.join(f'K_usura {wear:g}: {text("rad/s", row)}' for wear, row in ends.items())
+    return Finding(is_extreme(name, min, ends.values(), CLEARLY), figures)
+
+
+def _end_step() -> int:
+    return steps_in('score_window_s', THESIS_SCENARIO.score_window_s[1])

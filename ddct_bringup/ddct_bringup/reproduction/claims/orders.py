@@ -1,0 +1,78 @@
+"""Figures of several runs by controller, and how they order them: what claims in words rest on."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from ddct_bringup.reproduction.numbers.thesis_number import Finding
+from ddct_bringup.reproduction.runs.runs import thesis_metrics, thesis_run
+from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
+
+COMPARED = tuple(row.controller for row in THESIS_TABLE)
+"""The controllers of Table 5.1."""
+CLEARLY = 2.0
+"""Factor behind `huge`, `very bad`, `no oscillations` and the only one that does something."""
+
+Row = Mapping[str, float]
+"""One figure by controller; infinite where it does not exist."""
+
+
+def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed') -> Row:
+    """Return a metric of the runs with a new clutch, by controller."""
+    found = {}
+    for controller in controllers:
+        value = getattr(thesis_metrics(thesis_run(controller, architecture, 1.0)), name)
+        found[controller] = math.inf if value is None else float(value)
+    return found
+
+
+def sigmas(controllers: Sequence[str], architecture: str = 'detailed') -> tuple[Row, Row]:
+    """Return the standard deviations of w_sr in rpm and of A_x in m/s^2."""
+    return (
+        metric('torsion_speed_std_rpm', controllers, architecture),
+        metric('acceleration_std_m_s2', controllers, architecture),
+    )
+
+
+def below(one: str, other: str, rows: Iterable[Row]) -> bool:
+    """Return whether one controller has the lower figure in every row."""
+    return all(row[one] < row[other] for row in rows)
+
+
+def is_extreme(
+    name: str, extreme: Callable[..., str], rows: Iterable[Row], factor: float = 1.0
+) -> bool:
+    """Return whether a controller is the `min` or `max` of every row, by a factor to the next."""
+    for row in rows:
+        next_one = row[extreme((other for other in row if other != name), key=row.__getitem__)]
+        least, most = (row[name], next_one) if extreme is min else (next_one, row[name])
+        if not factor * least < most:
+            return False
+    return True
+
+
+def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = True) -> Finding:
+    """Return whether each controller, or none, is lower in every row than the same elsewhere."""
+    names = list(ours[0])
+    lower = [
+        name
+        for name in names
+        if all(new[name] < old[name] for new, old in zip(ours, others, strict=True))
+    ]
+    which = ' in both' if len(ours) > 1 else ''
+    return Finding(
+        len(lower) == (len(names) if wanted else 0), f'{len(lower)} of {len(names)} lower{which}'
+    )
+
+
+def text(unit: str, row: Row) -> str:
+    """Return the figures of a row for a reader."""
+    parts = (
+        f'{name} {value:.3g}' if value < math.inf else f'{name} -' for name, value in row.items()
+    )
+    return f'{", ".join(parts)} {unit}'
+
+
+def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
+    """Return the two standard deviations of some controllers for a reader."""
+    twist, acceleration = ({name: row[name] for name in names} for row in rows)
+    return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'

@@ -1,0 +1,104 @@
+"""Subcommand `reproduce figures`: the thesis's figures as pictures with a gallery."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.reproduction.figures import collect, figure_tables, gallery
+from ddct_bringup.reproduction.figures.thesis_figure import DrawnFigure
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.output_file import write_text
+from ddct_plant.program.page_tables import fill_tables, read_page
+
+_DESCRIPTION = """\
+Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png, with
+a page index.html that shows them in order and tells what agrees with the thesis and what
+does not, and of the others why they are not drawn. With --only the page shows just
+those."""
+_EXAMPLES = """\
+examples:
+  reproduce figures --out figures
+  reproduce figures --out figures --only 2.10,3.5 --overwrite
+  reproduce figures --out figures --overwrite --write-doc docs/figures.md"""
+_PAGE = 'index.html'
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `figures` to the subcommands of `reproduce`."""
+    parser = subparsers.add_parser(
+        'figures',
+        help='the figures of the thesis, and a page that shows them',
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+    )
+    parser.add_argument('--out', required=True, metavar='DIR', help='folder, created if absent')
+    parser.add_argument('--only', metavar='N,N...', help='numbers such as 2.10,3.5')
+    parser.add_argument(
+        '--overwrite', action='store_true', help='replace earlier figures in the folder'
+    )
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw into the folder and return the exit code."""
+    if options.write_doc and options.only:
+        raise ParameterError('--write-doc is for all figures: leave out --only')
+    page = read_page(options.write_doc) if options.write_doc else ''
+    figures = collect.collect_figures()
+    numbers = {figure.number for figure in figures}
+    not_drawn = collect.figures_not_drawn()
+    if options.only:
+        wanted = _wanted(options.only, numbers, not_drawn)
+        figures = [figure for figure in figures if figure.number in wanted]
+        not_drawn = {}
+    folder = Path(options.out)
+    pictures = [folder / gallery.picture_name(figure.number) for figure in figures]
+    _make_room(folder, [*pictures, folder / _PAGE], gallery.GENERATOR, options.overwrite)
+    drawn = []
+    for count, (figure, picture) in enumerate(zip(figures, pictures, strict=True), start=1):
+        progress = f'{count}/{len(figures)} {figure.heading}'
+        print(f'reproduce figures: {progress}', file=sys.stderr, flush=True)
+        with chart_style():
+            drawing = figure.draw(figure.heading)
+            save_chart(drawing.figure, picture)
+        drawn.append(DrawnFigure(figure, drawing.remark))
+    write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
+    if options.write_doc:
+        tables = figure_tables.page_tables(drawn, not_drawn)
+        write_text(options.write_doc, fill_tables(page, 'figures', tables))
+    print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
+    return 0
+
+
+def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:
+    wanted = {number.strip() for number in only.split(',')}
+    for number in sorted(wanted - numbers):
+        if number in not_drawn:
+            raise ParameterError(f'figure {number} is not drawn: {not_drawn[number]}')
+        raise ParameterError(f'--only: the thesis has no figure {number!r}; write 2.10,3.5')
+    return wanted
+
+
+def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool) -> None:
+    """Create the folder; raise DdctError when a file in it would be lost."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        taken = [path for path in files if path.exists()]
+    except OSError as error:
+        raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
+    page = folder / _PAGE
+    if page.exists() and not _is_made_by(generator, page):
+        raise DdctError(f'{page} is not a page of ours: choose another --out')
+    if taken and not overwrite:
+        raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')
+
+
+def _is_made_by(generator: str, page: Path) -> bool:
+    try:
+        return generator in read_text_file(page)
+    except OSError:
+        return False

@@ -1,0 +1,106 @@
+"""The page that shows the figures in the order of the thesis, with reasons for what is missing."""
+
+import html
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+
+from ddct_bringup.reproduction.figures.gallery_style import STYLE
+from ddct_bringup.reproduction.figures.thesis_figure import DrawnFigure, figure_order
+from ddct_controllers.design.drawing.chart_style import INDEXED_SYMBOL
+
+GENERATOR = '<meta name="generator" content="reproduce figures">'
+"""Marks a page as written here, so that it may be replaced."""
+CHAPTERS = {
+    1: 'The transmission and its models',
+    2: 'Loop shaping',
+    3: 'H-infinity',
+    4: 'Predictive control',
+    5: 'Comparison',
+}
+"""Subjects of the thesis's chapters that have figures."""
+_INTRODUCTION = (
+    'Drawn from the identified driveline and the calibrated scenario. Below each figure stands '
+    'what agrees with the thesis and what does not. The thesis prints few numbers beside its '
+    'figures; where it does, they stand next to ours.'
+)
+
+
+def picture_name(number: str) -> str:
+    """Return the file name of a figure, such as figure_2_10.png."""
+    return f'figure_{number.replace(".", "_")}.png'
+
+
+def gallery_page(drawn: Sequence[DrawnFigure], not_drawn: Mapping[str, str]) -> str:
+    """
+    Return the HTML of the gallery; pictures are linked relative to it.
+
+    `not_drawn` has the reasons by number. The page shows what is in either, in order.
+    """
+    entries = {entry.figure.number: _picture(entry) for entry in drawn}
+    numbers = sorted((*entries, *not_drawn), key=figure_order)
+    chapters = {
+        chapter: list(found)
+        for chapter, found in groupby(numbers, key=lambda number: figure_order(number)[0])
+    }
+    links = [
+        f'<a href="#chapter-{chapter}">{chapter} {CHAPTERS[chapter]}</a>' for chapter in chapters
+    ]
+    sections = [
+        part
+        for chapter, found in chapters.items()
+        for part in (
+            f'<section id="chapter-{chapter}"><h2>Chapter {chapter}: {CHAPTERS[chapter]}</h2>',
+            *_entries(found, entries, not_drawn),
+            '</section>',
+        )
+    ]
+    return '\n'.join(
+        (
+            '<!doctype html>',
+            '<html lang="en"><head><meta charset="utf-8">',
+            GENERATOR,
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f'<title>Figures of the thesis</title><style>{STYLE}</style></head><body>',
+            '<header><h1>Figures of the thesis, computed</h1>',
+            f'<p>{len(drawn)} of {len(numbers)} figures are drawn. {_INTRODUCTION}</p>',
+            f'<nav>{" ".join(links)}</nav></header>',
+            '<main>',
+            *sections,
+            '</main></body></html>\n',
+        )
+    )
+
+
+def _entries(
+    numbers: Sequence[str], drawn: Mapping[str, str], not_drawn: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the HTML of figures in order; neighbours with the same reason share one line."""
+    for reason, found in groupby(numbers, key=lambda number: not_drawn.get(number, '')):
+        if not reason:
+            yield from (drawn[number] for number in found)
+            continue
+        first, *others = found
+        which = f'Figures {first} to {others[-1]}' if others else f'Figure {first}'
+        yield f'<p class="absent"><b>{which}:</b> {_text(reason)}.</p>'
+
+
+def _picture(entry: DrawnFigure) -> str:
+    figure, name = entry.figure, picture_name(entry.figure.number)
+    return (
+        f'<figure id="figure-{figure.number}">'
+        f'<a href="{name}"><img src="{name}" alt="{html.escape(figure.heading)}" loading="lazy" '
+        'width="1040" height="650"></a>'
+        f'<figcaption><b>Figure {figure.number}: {_text(figure.title)}.</b> {_text(entry.remark)}'
+        '</figcaption></figure>'
+    )
+
+
+def _text(text: str) -> str:
+    """Return text as HTML, symbols such as w_sr or W_s^-1 with their indices and powers."""
+    return INDEXED_SYMBOL.sub(
+        lambda symbol: (
+            f'<i>{symbol[1]}</i><sub>{symbol[2]}</sub>'
+            + (f'<sup>{symbol[3]}</sup>' if symbol[3] else '')
+        ),
+        html.escape(text),
+    )

@@ -1,0 +1,136 @@
+"""Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.reproduction.figures.thesis_figure import Drawing, ThesisFigure
+from ddct_bringup.reproduction.runs.groups import RUN_GROUPS, RunGroup
+from ddct_bringup.reproduction.runs.runs import thesis_metrics, thesis_run
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
+from ddct_controllers.design.drawing.chart_style import (
+    BLACK,
+    REFERENCE_LINE,
+    line_styles,
+    new_chart,
+)
+from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_plant.base.units import rpm_from_rad_s
+
+_FIRST_S = 0.5
+"""Start of the time axis: "before 0.6 seconds" (Section 2.3)."""
+_PI_LINE = {'color': BLACK, 'linestyle': '-', 'linewidth': 1.0}
+_LABELS = {'w_d': 'w_d, rpm', 'w_sr': 'w_sr, rpm', 'A_x': 'A_x, m/s²'}
+_SCORES = {
+    'w_d': (
+        ('t_a in s', 'engagement_time_s', '.2f'),
+        ('RMS error in rpm', 'slip_rmse_rpm', '.0f'),
+    ),
+    'w_sr': (('σ in rpm', 'torsion_speed_std_rpm', '.2f'),),
+    'A_x': (('σ in m/s²', 'acceleration_std_m_s2', '.2f'),),
+}
+"""Name, metric and format of what the score makes of a quantity."""
+_ARCHITECTURES = {
+    'base': 'Base',
+    'feedforward': 'Feedforward',
+    'feedforward_tanh': 'Feedforward with tanh reference',
+    'detailed': "CRF's detailed model",
+}
+
+
+def signal(run: Trajectory, quantity: str) -> np.ndarray:
+    """Return w_d or w_sr in rpm, or A_x in m/s^2, (N+1,)."""
+    if quantity == 'A_x':
+        return run.vehicle_accel
+    return rpm_from_rad_s(run.slip_speed if quantity == 'w_d' else run.joint_speed[:, 3])
+
+
+def thesis_label(controller: str) -> str:
+    """Return the thesis's name of a controller of the registry."""
+    return controller.replace('hinf', 'H∞').upper()
+
+
+def _runs(group: RunGroup) -> dict[str, Trajectory]:
+    """Return the runs by legend text."""
+    worn = len(group.wear_gains) > 1
+    return {
+        thesis_label(name) + (f' (K_usura = {wear:g})' if worn else ''): thesis_run(
+            name, group.architecture, wear
+        )
+        for name in group.controllers
+        for wear in group.wear_gains
+    }
+
+
+def _draw(heading: str, group: RunGroup, quantity: str) -> Drawing:
+    figure, (axes,) = new_chart(heading)
+    runs = _runs(group)
+    styles = line_styles()
+    for name, run in runs.items():
+        shown = run.time_s >= _FIRST_S
+        style = _PI_LINE if name == 'PI' else next(styles)
+        axes.plot(run.time_s[shown], signal(run, quantity)[shown], label=name, **style)
+    if quantity == 'w_d':
+        reference = rpm_from_rad_s(run.slip_reference[shown, 0])
+        axes.plot(run.time_s[shown], reference, label='reference', **REFERENCE_LINE)
+    label_time_axis(axes, _LABELS[quantity], (_FIRST_S, run.time_s[-1]))
+    return Drawing(
+        figure,
+        f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
+        + _table_5_1(group, quantity),
+    )
+
+
+def _scores(group: RunGroup, runs: dict[str, Trajectory], quantity: str) -> str:
+    """Return the score of the quantity, run by run."""
+    beside = {
+        thesis_label(name): thesis_run(name, group.architecture, 1.0) for name in group.compared
+    }
+    parts = []
+    for what, metric, form in _SCORES[quantity]:
+        part = f'{what}: {_texts(runs, metric, form)}'
+        if beside:
+            part += f' (for comparison {_texts(beside, metric, form)})'
+        parts.append(part)
+    return '; '.join(parts)
+
+
+def _texts(runs: dict[str, Trajectory], metric: str, form: str) -> str:
+    values = {name: getattr(thesis_metrics(run), metric) for name, run in runs.items()}
+    return ', '.join(
+        f'{name} {"none" if value is None else format(value, form)}'
+        for name, value in values.items()
+    )
+
+
+def _table_5_1(group: RunGroup, quantity: str) -> str:
+    """Return what Table 5.1 prints of these runs, which are those of the detailed model."""
+    metric = _SCORES[quantity][0][1]
+    rows = [thesis_row(name) for name in group.controllers if group.architecture == 'detailed']
+    found = ''
+    for use, kind in ((CALIBRATED, 'used'), (PREDICTED, 'not used')):
+        printed = [
+            f'{thesis_label(row.controller)} {row.figures()[metric]:.2f}'
+            for row in rows
+            if row and row.use == use
+        ]
+        if printed:
+            found += f' Table 5.1, {kind} in the calibration: {", ".join(printed)}.'
+    return found
+
+
+def _names(controllers: tuple[str, ...]) -> str:
+    labels = [thesis_label(name) for name in controllers if name != 'pi']
+    several = f'{labels[0]}-{labels[-1].lstrip("LSH∞MPC")}' if len(labels) > 1 else labels[0]
+    return f'{several} and PI' if 'pi' in controllers else several
+
+
+def _figure(group: RunGroup, quantity: str, number: str) -> ThesisFigure:
+    title = f'{quantity}, {_names(group.controllers)}, {_ARCHITECTURES[group.architecture]}'
+    return ThesisFigure(number, title, lambda heading: _draw(heading, group, quantity))
+
+
+RUN_FIGURES = tuple(
+    _figure(group, quantity, number)
+    for group in RUN_GROUPS
+    for quantity, number in zip(_LABELS, group.numbers, strict=False)
+)

@@ -1,0 +1,1 @@
+"""The gate: every number and claim of the thesis beside what is computed."""

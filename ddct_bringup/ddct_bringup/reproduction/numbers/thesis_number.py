@@ -1,0 +1,141 @@
+"""One number or word that the thesis prints, and what is claimed about it."""
+
+import math
+from dataclasses import dataclass
+
+from ddct_plant.base.checks import require_choice, require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.printed import PrintedNumber
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Whether a claim in words holds, and the figures that show it."""
+
+    holds: bool
+    figures: str
+
+
+Value = float | str | Finding
+"""What is computed for a printed number, or the word or finding for a printed word."""
+
+REPRODUCED = 'reproduced'
+CALIBRATED = 'calibrated'
+PREDICTED = 'predicted'
+ERRATUM = 'erratum'
+GIVEN = 'given'
+NOT_REPRODUCIBLE = 'not_reproducible'
+VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED, GIVEN, NOT_REPRODUCIBLE)
+"""
+What can be said of a printed number.
+
+`reproduced`: the thesis's other numbers lead to it. `erratum`: they lead to another value.
+`calibrated`: parameters of ours were fitted to its group. `predicted`: a model that was fitted to
+other numbers, or a rule of ours, leads to it or misses it. `given`: an input of the thesis.
+`not_reproducible`: a result of the thesis whose inputs it does not print.
+"""
+COMPUTED_VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED)
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How far a number may lie from the printed one: the widest of the parts that are given."""
+
+    half_units: float = 0.0
+    """In halves of a unit of the last printed digit; 1 is the rounding of the print."""
+    significant: float = 0.0
+    """Half a unit of this significant digit: rounding where the print drops trailing zeros."""
+    relative: float = 0.0
+    """As a fraction of the printed number."""
+    absolute: float = 0.0
+    """In the number's own unit."""
+
+    def __post_init__(self) -> None:
+        """Check the parts; raise ParameterError when none is given or one is negative."""
+        parts = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        for name, part in parts.items():
+            require_number(f'tolerance: {name}', part, at_least=0.0)
+        if not any(parts.values()):
+            raise ParameterError(f'tolerance: give {", ".join(parts)}, above 0')
+
+    def around(self, printed: str) -> float:
+        """Return the tolerance of a printed number in its own unit."""
+        number = PrintedNumber('', printed)
+        widest = max(
+            self.half_units * number.half_unit, self.relative * abs(number.value), self.absolute
+        )
+        if not self.significant or not number.value:
+            return widest
+        exponent = math.floor(math.log10(abs(number.value))) + 1 - self.significant
+        return max(widest, 0.5 * 10.0**exponent)
+
+
+@dataclass(frozen=True)
+class ThesisNumber:
+    """One entry of the gate's file."""
+
+    section: str
+    item: str
+    printed: str
+    """With the digits that the thesis prints, or a word."""
+    verdict: str
+    """One of VERDICTS."""
+    reason: str
+    """Why this tolerance; of an erratum, what is wrong; of the rest, why nothing is computed."""
+    unit: str = '1'
+    id: str | None = None
+    """Name under which a source computes it; None when nothing does."""
+    tolerance: Tolerance | None = None
+    """None for words, which must be equal, and for what is computed as a Finding."""
+    group: str | None = None
+    """What one computation, input or cause leads to together; counted as one fact."""
+    ours: str | None = None
+    """Our value of an erratum, to the digits that must come out; or a word."""
+    hit: str | None = None
+    """'no' of a calibrated number that the fit misses."""
+
+    def __post_init__(self) -> None:
+        """Check that the claim is complete; raise ParameterError that names what is not."""
+        try:
+            require_choice('verdict', self.verdict, VERDICTS)
+            self._require_complete()
+        except ParameterError as error:
+            raise ParameterError(f'{self.section}, {self.item}: {error}') from error
+
+    @property
+    def is_number(self) -> bool:
+        """Whether a number is printed, not a word."""
+        return is_number(self.printed)
+
+    @property
+    def absolute_tolerance(self) -> float | None:
+        """The tolerance in the number's unit, None without one."""
+        return self.tolerance.around(self.printed) if self.tolerance else None
+
+    @property
+    def fact(self) -> str:
+        """The group, or the number itself where it has none: what is counted once."""
+        return self.group or f'{self.section}, {self.item}'
+
+    def _require_complete(self) -> None:
+        if not self.reason.strip():
+            raise ParameterError('give a reason')
+        computed = self.verdict in COMPUTED_VERDICTS
+        if computed != (self.id is not None):
+            need = 'needs' if computed else 'has no'
+            raise ParameterError(f'verdict {self.verdict} {need} id')
+        if self.tolerance is not None and not (computed and self.is_number):
+            raise ParameterError('a word, and what nothing computes, has no tolerance')
+        if (self.verdict == ERRATUM) != (self.ours is not None):
+            raise ParameterError('give `ours` with an erratum, not otherwise')
+        if self.hit is not None and (self.hit, self.verdict) != ('no', CALIBRATED):
+            raise ParameterError("`hit: 'no'` is for a calibrated number that the fit misses")
+
+
+def is_number(text: str) -> bool:
+    """Return whether the text is a number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,64 @@
+"""Subcommand `reproduce studies`: what decides how the predictive controllers fare."""
+
+import argparse
+import sys
+from typing import Any
+
+from ddct_bringup.reproduction.studies.catalogue import STUDIES
+from ddct_bringup.reproduction.studies.study import Study
+from ddct_plant.base.checks import require_choice
+from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.program.page_tables import fill_tables, marked_tables, read_page
+from ddct_plant.program.table import print_table
+
+PAGE_MARK = 'studies'
+_DESCRIPTION = """\
+Chapter 4 and what it leaves to future work: closed-loop studies of the predictive
+controllers in the frozen thesis scenario, each a table."""
+_EPILOG = """\
+examples:
+  reproduce studies                                every study
+  reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
+  reproduce studies --study wear --json wear.json
+  reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks"""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `studies` to the subcommands of `reproduce`."""
+    parser = subparsers.add_parser(
+        'studies',
+        help='studies of the predictive controllers',
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+    )
+    parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
+    parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Make the tables, print them or write them where asked for, and return the exit code."""
+    page = read_page(options.write_doc) if options.write_doc else ''
+    names = options.study or marked_tables(page, PAGE_MARK) or list(STUDIES)
+    for name in names:
+        require_choice('study', name, list(STUDIES))
+    studies: dict[str, Study] = {}
+    for name in names:
+        print(f'reproduce studies: {name}', file=sys.stderr, flush=True)
+        studies[name] = STUDIES[name]()
+        if options.json != STDOUT:
+            _print(studies[name])
+    if options.json:
+        write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
+    if options.write_doc:
+        write_text(options.write_doc, fill_tables(page, PAGE_MARK, studies))
+    return 0
+
+
+def _print(study: Study) -> None:
+    print_table(study)
+    for remark in study.remarks:
+        print(f'  {remark}')
+    if study.remarks:
+        print()

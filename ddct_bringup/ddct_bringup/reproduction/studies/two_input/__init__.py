@@ -1,0 +1,1 @@
+"""Studies of the controllers that command the engine too."""

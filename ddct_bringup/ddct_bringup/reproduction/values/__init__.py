@@ -1,0 +1,1 @@
+"""What is computed for the numbers of Chapters 1 to 4."""

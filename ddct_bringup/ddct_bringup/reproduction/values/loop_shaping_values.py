@@ -1,0 +1,157 @@
+"""What we compute for the numbers of Chapter 2, loop shaping."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
+from ddct_bringup.reproduction.values.coefficients import coefficients, in_the_form_of
+from ddct_bringup.reproduction.values.factors import pair, real
+from ddct_bringup.reproduction.values.sampled_values import sampled_values
+from ddct_bringup.reproduction.values.step_values import (
+    fulfilled,
+    step_values,
+)
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.steady_state import poles_at_zero, required_integrators
+from ddct_controllers.design.loop_shaping.design import (
+    NETWORK_SPECIFICATIONS,
+    PLACEMENT_CROSSOVER_RAD_S,
+    PLACEMENT_SPECIFICATIONS,
+    integrators,
+    largest_zero_rad_s,
+    network_steps,
+    placement,
+)
+from ddct_controllers.design.loop_shaping.networks import network_phase
+from ddct_controllers.design.loop_shaping.nichols import contours
+from ddct_controllers.design.loop_shaping.nyquist import nyquist_count, stabilising_sign
+from ddct_controllers.design.loop_shaping.specifications import (
+    TimeSpecifications,
+    prototype_phase_margin,
+    rise_time_crossover_product,
+)
+from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
+from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
+from ddct_plant.models.parameters import DrivelineParameters
+
+_DRIVELINE = DrivelineParameters()
+_CROSSOVER_RAD_S = 8.0
+"""w_c that Section 2.2 designs G_c1 for."""
+_PRINTED_PRODUCT = 2.02
+"""t_r w_c that Section 2.2 reads off Figure 2.2."""
+_LEAD_RATIO = 16.0
+"""m_d as printed."""
+_INTEGRATORS = {0: '1', 1: 's'}
+"""The factor of mu poles at 0, as it is printed."""
+_SAMPLED_PAIR = 0.9481
+"""c of the pole pair of G_c2(z) as printed."""
+
+
+def loop_shaping_values() -> dict[str, Value | None]:
+    """Return the values by the ids of the gate's file."""
+    return {
+        **translation('2.2', NETWORK_SPECIFICATIONS),
+        '2.2 t_r w_c': rise_time_crossover_product(NETWORK_SPECIFICATIONS.damping),
+        **_crossovers(),
+        **_steady_state(),
+        **_sign(),
+        **_networks(),
+        **_placement(),
+        **_table_2_1(),
+        'G_c2 specifications': fulfilled(
+            LOOP_SHAPING_CONTROLLERS['ls7'], PLACEMENT_SPECIFICATIONS
+        ),
+        **sampled_values('ls7'),
+        'sampling period': 1e3 * _sampling_period_s(),
+    }
+
+
+def translation(section: str, specifications: TimeSpecifications) -> dict[str, Value | None]:
+    """Return zeta, S_p and T_p of an overshoot."""
+    return {
+        f'{section} zeta': specifications.damping,
+        f'{section} S_p': specifications.sensitivity_peak,
+        f'{section} T_p': specifications.complementary_peak,
+    }
+
+
+def _crossovers() -> dict[str, Value | None]:
+    """Return w_c from the printed t_r w_c, which bounds what is chosen from below."""
+    bound = _PRINTED_PRODUCT / PLACEMENT_SPECIFICATIONS.rise_time_s
+    chosen = PLACEMENT_CROSSOVER_RAD_S
+    return {
+        '2.2 w_c': _PRINTED_PRODUCT / NETWORK_SPECIFICATIONS.rise_time_s,
+        '2.2 w_c of G_c2': Finding(chosen >= bound, f'at least {bound:.2f}'),
+    }
+
+
+def _steady_state() -> dict[str, Value | None]:
+    plant = plant_in_rpm(_DRIVELINE)
+    mu = required_integrators(plant, engine_to_slip(_DRIVELINE))
+    for_load = required_integrators(plant, load_to_slip(_DRIVELINE))
+    return {
+        '2.2 mu': mu,
+        '2.2 integrator': _INTEGRATORS.get(mu, f's^{mu}'),
+        '2.2 p': poles_at_zero(plant),
+        '2.2 mu + p': mu + poles_at_zero(plant),
+        '2.2 mu for C_load': 'does not change' if for_load == mu else f'mu >= {for_load}',
+    }
+
+
+def _sign() -> dict[str, Value | None]:
+    found: dict[str, Value | None] = {}
+    for gain in (1.0, -1.0):
+        count = nyquist_count(continuous_loop(integrators(gain, 1)))
+        found |= {
+            f'K_c {gain:+g} P_ol': count.open_loop_unstable,
+            f'K_c {gain:+g} N': count.encirclements,
+            f'K_c {gain:+g} P_cl': count.closed_loop_unstable,
+        }
+    sign = stabilising_sign(plant_in_rpm(), 1)
+    return found | {'sign of K_c': 'positive' if sign > 0 else 'negative'}
+
+
+def _networks() -> dict[str, Value | None]:
+    """Return the phase that -1/s lacks at w_c, and what the networks make of G_c1."""
+    g_c1 = LOOP_SHAPING_CONTROLLERS['ls2']
+    response = continuous_loop(integrators(-1.0, 1)).response(np.array([_CROSSOVER_RAD_S]))[0]
+    wanted = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
+    s_peak, t_peak = contours(LoopCurve(continuous_loop(g_c1)), NETWORK_SPECIFICATIONS)
+    made = in_the_form_of(g_c1, network_steps()[-1].controller)
+    put_in = {'G_c1.zero 2', 'G_c1.zero 3', 'G_c1.pole 1', 'G_c1.pole 4'}
+    return {
+        'missing phase': math.degrees(wanted - float(np.angle(-response))),
+        'lead phase': math.degrees(network_phase(_LEAD_RATIO, 1.0)),
+        # w_c = 8 rad/s over the printed zero of the leads.
+        'lead zero': f'w_c / {_CROSSOVER_RAD_S / real(g_c1.numerator[1]):g}',
+        **{name: x for name, x in coefficients('G_c1', made).items() if name not in put_in},
+        'G_c1 in Nichols': 'out of the circles'
+        if s_peak.respected and t_peak.respected
+        else 'crosses the circle',
+        'G_c1 specifications': fulfilled(g_c1, NETWORK_SPECIFICATIONS),
+    }
+
+
+def _placement() -> dict[str, Value | None]:
+    """Return G_c2 by our placement: its zero is the largest allowed, its pairs the plant's."""
+    crossover, allowed = PLACEMENT_CROSSOVER_RAD_S, PLACEMENT_SPECIFICATIONS.overshoot
+    zero = largest_zero_rad_s(crossover, allowed, _DRIVELINE)
+    placed = placement(crossover, zero, _DRIVELINE)
+    found = coefficients('G_c2', in_the_form_of(LOOP_SHAPING_CONTROLLERS['ls7'], placed))
+    # The pole at 0 follows from mu.
+    return {name: value for name, value in found.items() if name != 'G_c2.pole 1'}
+
+
+def _table_2_1() -> Mapping[str, Value | None]:
+    found = step_values(LOOP_SHAPING_CONTROLLERS)
+    percent = found['ls7.overshoot']
+    return found | {'ls7.peak': None if percent is None else 1.0 + percent / 100.0}
+
+
+def _sampling_period_s() -> float:
+    """Return T of the printed pole pairs s^2 + b s + ... and z^2 + ... + c: c = exp(-b T)."""
+    b, _ = pair(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
+    return -math.log(_SAMPLED_PAIR) / b

@@ -1,0 +1,102 @@
+"""What we compute for the numbers of Chapter 1: driveline, actuator, load, feedforward."""
+
+import dataclasses
+
+import numpy as np
+
+from ddct_bringup.reproduction.numbers.thesis_number import Value
+from ddct_bringup.reproduction.values.factors import pair, real
+from ddct_plant.identification.fit import identify_driveline, predict_left_out
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.driveline_model import (
+    clutch_to_slip,
+    driveline_matrices,
+    engine_to_slip,
+    load_to_slip,
+)
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import (
+    ACTUATOR,
+    CLUTCH_TO_SLIP,
+    CLUTCH_TO_SLIP_AS_PRINTED,
+    ENGINE_TO_SLIP,
+    LOAD_TO_SLIP,
+)
+from ddct_plant.scenario.file import load_scenario
+
+
+def plant_values() -> dict[str, Value | None]:
+    """Return the values by the ids of the gate's file."""
+    identification = identify_driveline()
+    driveline = identification.parameters
+    return {
+        **{
+            f'{fit.transfer_function.lower()}.{fit.coefficient}': fit.computed
+            for fit in identification.coefficients
+        },
+        'p1.gain': engine_to_slip(driveline).gain,
+        'p2.zero c from the others': predict_left_out(
+            CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP, 'P2', 'zero c'
+        )[0],
+        **_shared_poles(driveline),
+        'actuator.gain': _unit_gain_at_rest(ACTUATOR),
+        'engine.rise end': load_scenario('thesis').engine.time_s[-1],
+        'driveline.ratio': driveline.total_ratio,
+        **_equations(driveline),
+        **_compensators(),
+    }
+
+
+def _shared_poles(driveline: DrivelineParameters) -> dict[str, Value]:
+    """Return the poles of P_3, which Section 1.5 makes those of P_2 without the one at 0."""
+    slow, fast = load_to_slip(driveline).denominator
+    b, c = pair(fast)
+    return {'p3.pole a': real(slow), 'p3.pole b': b, 'p3.pole c': c}
+
+
+def _unit_gain_at_rest(shape: FactoredTransferFunction) -> float:
+    """Return the gain that makes G(0) = 1 with these zeros and poles."""
+    return shape.gain / float(shape.at(np.array(0.0)).real)
+
+
+def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
+    """Return what the equations of Section 1.5 have to be for the printed P_2 to come out."""
+    model = driveline_matrices(driveline)
+    minus = model.c[0].tolist() == [1.0, -1.0, 0.0, 0.0]
+    undamped = clutch_to_slip(dataclasses.replace(driveline, shaft_damping=0.0)).denominator[1]
+    return {
+        'slip speed': 'w_m - w_p' if minus else 'not w_m - w_p',
+        **_wheel_coupling(model.a, driveline),
+        'p2.pole a without c_prim': real(undamped) + 0.0,  # no minus zero,
+    }
+
+
+def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> dict[str, Value]:
+    """Return which coefficient of w_p the w_r equation needs: one that leaves no growing pole."""
+    growth = {}
+    for inertia in ('shaft_inertia', 'vehicle_inertia'):
+        changed = a.copy()
+        coupling = driveline.halfshaft_damping / driveline.total_ratio
+        changed[2, 1] = coupling / getattr(driveline, inertia)
+        growth[inertia] = float(np.max(np.linalg.eigvals(changed).real))
+    symbols = {'shaft_inertia': 'J_p', 'vehicle_inertia': 'J_v'}
+    return {
+        'w_r equation': f'c_sa/({symbols[min(growth, key=lambda name: growth[name])]} tau)',
+    }
+
+
+def _compensators() -> dict[str, Value]:
+    """Return whether C_1 = P_1/(P_2 G_a) and C_2 = P_3/(P_2 G_a) can be built (Section 1.6.2)."""
+    inverted = CLUTCH_TO_SLIP.factored() * ACTUATOR
+    return {
+        f'feedforward.{name}': _buildable(path.factored(), inverted)
+        for name, path in (('C1', ENGINE_TO_SLIP), ('C2', LOAD_TO_SLIP))
+    }
+
+
+def _buildable(path: FactoredTransferFunction, inverted: FactoredTransferFunction) -> str:
+    """Return what is wrong with path / inverted, in words."""
+    order = len(path.poles) - len(path.zeros) - len(inverted.poles) + len(inverted.zeros)
+    unstable = int(np.count_nonzero(inverted.zeros.real > 0.0))
+    proper = 'improper, ' if order < 0 else ''
+    return f'{proper}{unstable} unstable poles'

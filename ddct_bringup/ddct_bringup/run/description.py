@@ -1,0 +1,54 @@
+"""What a run says of itself in its bag, the same from every process layout."""
+
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.run.source_commit import source_commit
+from ddct_controllers.controller_info import controller_info
+from ddct_controllers.interface import Controller
+from ddct_plant.base.timebase import time_of_step
+from ddct_plant.fail_safe.driveline_info import driveline_info
+from ddct_plant.fail_safe.engine_info import engine_info
+from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.graph.run_info import package_version, run_info_pairs
+from ddct_plant.scenario.file import scenario_to_yaml
+from ddct_plant.scenario.settings import RunSettings
+
+RunInfo = dict[str, tuple[tuple[str, str], ...]]
+"""Per node name the (key, value) pairs that it latches on `run_info`."""
+
+
+def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
+    """Return the bag's custom data: the facts of the run, its whole scenario and our version."""
+    scenario = settings.scenario
+    facts = RunFacts(
+        controller=controller,
+        architecture=settings.architecture,
+        scenario=scenario.name,
+        clutch=settings.clutch,
+        wear_gain=settings.wear_gain,
+        mode=settings.mode,
+        seed=settings.seed,
+        control_start_s=scenario.control_start_s,
+        score_window_s=scenario.score_window_s,
+        duration_s=time_of_step(steps),
+    )
+    return {
+        **facts.to_custom_data(),
+        'scenario_yaml': scenario_to_yaml(scenario),
+        'version': package_version(),
+        'commit': source_commit(),
+    }
+
+
+def run_info_of(settings: RunSettings, name: str, controller: Controller, steps: int) -> RunInfo:
+    """Return what the nodes of a graph with these settings say on `run_info`."""
+    extra: dict[str, dict[str, str]] = {
+        'engine': engine_info(controller.commands_engine),
+        'load': {},
+        'clutch': {},
+        'driveline': driveline_info(steps),
+        'actuator': FailSafeSettings().info(),
+        'reference': {'preview_steps': str(controller.preview_steps)},
+        'controller': controller_info(name, controller),
+        'recorder': {},
+    }
+    return {node: run_info_pairs(settings, pairs) for node, pairs in extra.items()}

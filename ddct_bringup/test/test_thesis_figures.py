@@ -1,0 +1,293 @@
+"""Figures of the thesis that need no run: what their lines hold, and what the command writes."""
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from ddct_bringup.programs import reproduce
+from ddct_bringup.reproduction.figures.collect import collect_figures
+from ddct_bringup.reproduction.figures.gallery import gallery_page
+from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
+from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
+from ddct_bringup.reproduction.figures.specification_figures import SPECIFICATION_FIGURES
+from ddct_bringup.reproduction.figures.thesis_figure import (
+    Drawing,
+    DrawnFigure,
+    ThesisFigure,
+)
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.step_response import step_response
+from ddct_controllers.design.drawing.chart_style import typeset
+from ddct_controllers.design.loop_shaping.nichols import nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.linear.lti import FactoredTransferFunction
+
+WITHOUT_RUN = (*SPECIFICATION_FIGURES, *LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
+
+
+def drawing(number: str) -> Drawing:
+    figure = next(figure for figure in WITHOUT_RUN if figure.number == number)
+    return figure.draw(figure.heading)
+
+
+def line(figure: Figure, label: str, panel: int = 0) -> np.ndarray:
+    """Return x and y of the line with this label, (2, n)."""
+    lines = {found.get_label(): found for found in figure.axes[panel].get_lines()}
+    return np.array(lines[label].get_data())
+
+
+def labels(figure: Figure, panel: int = 0) -> tuple[str, str]:
+    return figure.axes[panel].get_xlabel(), figure.axes[panel].get_ylabel()
+
+
+def test_rise_time_figure_is_the_prototypes_curve_and_says_what_2_02_belongs_to():
+    drawn = drawing('2.2')
+    damping, product = line(drawn.figure, 'second-order prototype')
+    expected = [rise_time_crossover_product(value) for value in damping]
+    np.testing.assert_allclose(product, expected, rtol=1e-12)
+    assert labels(drawn.figure) == ('Damping ratio ζ', 't_r ω_c, rad')
+    assert 'ζ = 0.63' in drawn.remark
+
+
+@pytest.mark.parametrize(('number', 'gain', 'unstable'), [('2.3', 1.0, 1), ('2.4', -1.0, 2)])
+def test_nyquist_figure_holds_the_loop_and_counts_as_the_thesis(number, gain, unstable):
+    drawn = drawing(number)
+    real, imaginary = line(drawn.figure, 'ω > 0', panel=1)
+    loop = continuous_loop(FactoredTransferFunction(gain, (), (0.0,)))
+    for omega in (0.5, 5.0, 20.0):
+        value = loop.response(np.array(omega))
+        distance = np.abs(real + 1j * imaginary - value).min()
+        assert distance < 2e-3 * abs(value)
+    assert f'P_cl = {unstable};' in drawn.remark
+    assert labels(drawn.figure, panel=1) == ('Re L', 'Im L')
+
+
+@pytest.mark.parametrize(
+    ('number', 'label', 'change'), [('2.5', 'm_d = 16', 1.0), ('2.6', 'm_i = 16', -1.0)]
+)
+def test_network_of_ratio_16_changes_the_gain_by_24_db_and_the_phase_by_62_degrees(
+    number, label, change
+):
+    figure = drawing(number).figure
+    magnitude, phase = (line(figure, label, panel)[1] for panel in (0, 1))
+    assert magnitude[-1] == pytest.approx(change * 20.0 * np.log10(16.0), abs=0.01)
+    assert change * phase[np.argmax(np.abs(phase))] == pytest.approx(61.93, abs=0.01)
+    assert [labels(figure, panel)[1] for panel in (0, 1)] == ['Magnitude, dB', 'Phase, °']
+
+
+@pytest.mark.parametrize(
+    ('number', 'label', 'controller'),
+    [('2.8', 'G_c1', 'ls2'), ('2.9', 'G_c2', 'ls7'), ('3.9', 'G_c = H∞1', 'hinf1')],
+)
+def test_nichols_figure_holds_the_loop_of_the_printed_controller(number, label, controller):
+    drawn = drawing(number)
+    expected = nichols_curve(LoopCurve(continuous_loop(PRINTED_CONTROLLERS[controller])).values)
+    phase, magnitude = line(drawn.figure, f'L with {label}')
+    np.testing.assert_array_equal(phase, expected.phase_deg)
+    np.testing.assert_array_equal(magnitude, expected.magnitude_db)
+    assert labels(drawn.figure) == ('Open-loop phase arg L, °', 'Open-loop magnitude |L|, dB')
+    assert 'enters the T curve' in drawn.remark
+
+
+def test_nichols_bounds_lie_on_the_constant_s_and_t_curves():
+    figure = drawing('2.9').figure
+    for label, function in (
+        ('|S| = S_p = 1.43', lambda loop: 1.0 / (1.0 + loop)),
+        ('|T| = T_p = 1.11', lambda loop: loop / (1.0 + loop)),
+    ):
+        phase, magnitude = line(figure, label)
+        loop = 10.0 ** (magnitude / 20.0) * np.exp(1j * np.radians(phase))
+        size = np.abs(function(loop[np.isfinite(loop)]))
+        np.testing.assert_allclose(size, float(label.split()[-1]), atol=0.005)
+
+
+def test_step_figure_holds_the_step_response():
+    drawn = drawing('2.10')
+    legend = [text.get_text() for text in drawn.figure.axes[0].get_legend().get_texts()]
+    time, output = line(drawn.figure, legend[0])
+    expected = step_response(continuous_loop(PRINTED_CONTROLLERS['ls7']), time[-1])
+    np.testing.assert_array_equal((time, output), expected)
+    assert legend == ['G_c2: t_r = 0.54 s, overshoot 13.2 %', 'reference']
+    assert labels(drawn.figure) == ('Time, s', 'w_d / reference')
+    assert 't_r = 0.54 s and overshoot 13 %; the thesis prints 0.52 s and 13 %' in drawn.remark
+
+
+@pytest.mark.parametrize(('number', 'function'), [('3.5', 'S_n'), ('3.6', 'T_n'), ('3.7', 'T_n')])
+def test_bound_figure_holds_s_and_t_of_the_printed_hinf1(number, function):
+    figure = drawing(number).figure
+    omega, magnitude = line(figure, f'|{function}|, G_c = H∞1')
+    loop = continuous_loop(PRINTED_CONTROLLERS['hinf1']).response(omega)
+    values = 1.0 / (1.0 + loop) if function == 'S_n' else 1.0 - 1.0 / (1.0 + loop)
+    np.testing.assert_allclose(magnitude, 20.0 * np.log10(np.abs(values)), atol=1e-6)
+    assert labels(figure) == ('Frequency, rad/s', 'Magnitude, dB')
+
+
+def test_bound_figures_show_the_gain_that_gives_two_of_the_printed_norms():
+    remarks = [drawing(number).remark for number in ('3.5', '3.6', '3.7')]
+    norms = [float(remark.rstrip('.').split()[-1]) for remark in remarks]
+    assert norms == pytest.approx([0.97, 1.047, 0.32], abs=0.006)
+    assert '|S_n|, G_c = 2.45 H∞1' in [
+        line.get_label() for line in drawing('3.5').figure.axes[0].get_lines()
+    ]
+
+
+def test_bounds_have_the_values_of_section_3_2():
+    omega, sensitivity = line(drawing('3.5').figure, '|W_s^-1|')
+    assert sensitivity[0] == pytest.approx(20.0 * np.log10(0.15 * omega[0] ** 2), abs=0.01)
+    assert sensitivity[-1] == pytest.approx(20.0 * np.log10(1.33), abs=0.01)
+    omega, complementary = line(drawing('3.6').figure, '|W_t^-1|')
+    assert complementary[0] == pytest.approx(20.0 * np.log10(1.02), abs=0.01)
+    at_corner = np.interp(28.0, omega, complementary)
+    assert at_corner == pytest.approx(complementary[0] - 10.0 * np.log10(2.0), abs=0.01)
+
+
+def test_wear_error_is_0_3_and_w_u_falls_short_of_it_at_high_frequency():
+    drawn = drawing('3.3')
+    for wear in (0.7, 1.3):
+        _, error = line(drawn.figure, f'error, K_usura = {wear:g}')
+        np.testing.assert_allclose(error, 0.3, rtol=1e-12)
+    _, weight = line(drawn.figure, '|W_u|')
+    assert weight[0] == pytest.approx(3913.0 / 13030.0, rel=1e-6)
+    assert weight[-1] == pytest.approx(0.2987, rel=1e-4)
+    assert '0.4 % short of inequality (3.3)' in drawn.remark
+
+
+def test_every_figure_has_a_heading_labelled_axes_and_a_remark():
+    for figure in WITHOUT_RUN:
+        drawn = figure.draw(figure.heading)
+        assert figure.heading in [text.get_text() for text in drawn.figure.texts]
+        assert all(
+            text for panel in range(len(drawn.figure.axes)) for text in labels(drawn.figure, panel)
+        ), figure.number
+        assert drawn.remark.endswith('.')
+
+
+def test_symbols_with_an_index_are_typeset():
+    assert typeset('w_sr, rpm') == '$w_{sr}$, rpm'
+    assert typeset('W_s^-1') == '$W_{s}^{-1}$'
+    assert typeset('a_file_name.png and $x_1$') == 'a_file_name.png and $x_1$'
+
+
+def run_command(*arguments: object) -> int:
+    return reproduce.main(['figures', *map(str, arguments)])
+
+
+@pytest.fixture
+def refusal(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
+    """Return a function that runs the command and returns its one line of complaint."""
+
+    def run(*arguments: object) -> str:
+        capsys.readouterr()
+        assert run_command(*arguments) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith('reproduce: ')
+        return line
+
+    return run
+
+
+def test_command_writes_pictures_and_a_page_that_links_them(tmp_path, capsys):
+    assert run_command('--out', tmp_path / 'new', '--only', '2.10,2.2') == 0
+    page = (tmp_path / 'new' / 'index.html').read_text(encoding='utf-8')
+    pictures = re.findall(r'<img src="([^"]+)"', page)
+    assert pictures == ['figure_2_2.png', 'figure_2_10.png']
+    for picture in pictures:
+        assert (tmp_path / 'new' / picture).read_bytes().startswith(b'\x89PNG')
+    assert sorted(path.name for path in (tmp_path / 'new').iterdir()) == sorted(
+        (*pictures, 'index.html')
+    )
+    assert 'reproduce figures: 2/2 Figure 2.10: ' in capsys.readouterr().err
+
+
+def test_command_replaces_figures_only_when_asked(tmp_path, refusal):
+    arguments = ('--out', tmp_path, '--only', '2.2')
+    run_command(*arguments)
+    assert re.search(r'figure_2_2.png exists: .* add --overwrite', refusal(*arguments))
+    assert run_command(*arguments, '--overwrite') == 0
+
+
+def test_command_never_replaces_a_page_that_is_not_its_own(tmp_path, refusal):
+    page = tmp_path / 'index.html'
+    for content in (b'<p>mine</p>', b'\xff\xfe'):
+        page.write_bytes(content)
+        complaint = refusal('--out', tmp_path, '--only', '2.2', '--overwrite')
+        assert 'index.html is not a page of ours' in complaint
+        assert page.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    ('number', 'complaint'),
+    [
+        ('1.24', 'figure 1.24 is not drawn: a block diagram'),
+        ('6.1', "the thesis has no figure '6.1'"),
+        ('', "the thesis has no figure ''"),
+    ],
+)
+def test_command_says_why_a_figure_cannot_be_drawn(tmp_path, refusal, number, complaint):
+    assert complaint in refusal('--out', tmp_path, '--only', f'2.2,{number}')
+    assert not list(tmp_path.iterdir())
+
+
+def test_command_refuses_a_folder_that_is_a_file(tmp_path, refusal):
+    (tmp_path / 'file').write_text('', encoding='utf-8')
+    complaint = refusal('--out', tmp_path / 'file', '--only', '2.2')
+    assert 'file: cannot be written' in complaint
+
+
+def test_page_of_the_documentation_is_for_all_figures(tmp_path, refusal):
+    page = tmp_path / 'page.md'
+    complaint = refusal('--out', tmp_path, '--only', '2.2', '--write-doc', page)
+    assert 'leave out --only' in complaint
+
+
+def test_figures_are_collected_once_and_in_order():
+    numbers = [figure.number for figure in collect_figures()]
+    assert len(numbers) == len(set(numbers))
+    assert numbers.index('2.9') < numbers.index('2.10')
+
+
+def gallery(drawn: list[str], not_drawn: dict[str, str]) -> str:
+    entries = [
+        DrawnFigure(ThesisFigure(number, 'w_d & <A_x>', drawing), 'W_s^-1 agrees.')
+        for number in drawn
+    ]
+    return gallery_page(entries, not_drawn)
+
+
+def test_gallery_has_drawn_and_other_figures_in_order_by_chapter():
+    reasons = {'1.1': 'a scheme', '1.2': 'a scheme', '1.10': 'a table', '2.1': 'a scheme'}
+    page = gallery(['1.4', '2.3', '2.20'], {**reasons, '1.9': 'a scheme'})
+    found = re.findall(r'id="((?:chapter|figure)-[\d.]+)"|class="absent">(.*?)</p>', page)
+    assert [identity or text for identity, text in found] == [
+        'chapter-1',
+        '<b>Figures 1.1 to 1.2:</b> a scheme.',
+        'figure-1.4',
+        '<b>Figure 1.9:</b> a scheme.',
+        '<b>Figure 1.10:</b> a table.',
+        'chapter-2',
+        '<b>Figure 2.1:</b> a scheme.',
+        'figure-2.3',
+        'figure-2.20',
+    ]
+    assert '3 of 8 figures are drawn' in page
+    assert re.findall(r'href="#(chapter-\d)"', page) == ['chapter-1', 'chapter-2']
+
+
+def test_gallery_typesets_symbols_and_escapes_text():
+    page = gallery(['2.3'], {})
+    assert '<i>w</i><sub>d</sub> &amp; &lt;<i>A</i><sub>x</sub>&gt;' in page
+    assert '<i>W</i><sub>s</sub><sup>-1</sup> agrees.' in page
+    assert 'alt="Figure 2.3: w_d &amp; &lt;A_x&gt;"' in page
+
+
+def test_gallery_needs_nothing_but_the_pictures_beside_it():
+    page = gallery(['2.3'], {'2.4': 'a scheme'})
+    assert re.findall(r'(?:src|href)="([^#"]+)"', page) == ['figure_2_3.png'] * 2
+    assert not re.search(r'https?:|<script|@import|url\(', page)
+    for query in ('prefers-color-scheme: dark', 'print', 'min-width'):
+        assert f'@media {query}' in page or f'@media ({query}' in page

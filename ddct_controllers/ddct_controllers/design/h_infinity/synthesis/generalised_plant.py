@@ -1,0 +1,120 @@
+"""The generalised plant M of Section 3.1: what H-infinity synthesis starts from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.linear.lti import StateSpace
+
+_RANK = 1e-10
+"""Singular values below this, relative to the largest, count as zero."""
+
+
+class GeneralisedPlantError(DdctError):
+    """No controller can be synthesised for this generalised plant."""
+
+
+@dataclass(frozen=True, eq=False)
+class GeneralisedPlant:
+    """
+    dx/dt = a x + b1 w + b2 u, z = c1 x + d11 w + d12 u, v = c2 x + d21 w + d22 u.
+
+    w are the external inputs, z the external outputs, u the one control (the last input) and v
+    the one controller input (the last output).
+    """
+
+    system: StateSpace
+    """From (w, u) to (z, v), continuous."""
+
+    @property
+    def b1(self) -> np.ndarray:
+        """(n, inputs w)."""
+        return self.system.b[:, :-1]
+
+    @property
+    def b2(self) -> np.ndarray:
+        """(n, 1)."""
+        return self.system.b[:, -1:]
+
+    @property
+    def c1(self) -> np.ndarray:
+        """(outputs z, n)."""
+        return self.system.c[:-1]
+
+    @property
+    def c2(self) -> np.ndarray:
+        """(1, n)."""
+        return self.system.c[-1:]
+
+    @property
+    def d11(self) -> np.ndarray:
+        """(outputs z, inputs w)."""
+        return self.system.d[:-1, :-1]
+
+    @property
+    def d12(self) -> np.ndarray:
+        """(outputs z, 1)."""
+        return self.system.d[:-1, -1:]
+
+    @property
+    def d21(self) -> np.ndarray:
+        """(1, inputs w)."""
+        return self.system.d[-1:, :-1]
+
+    @property
+    def d22(self) -> np.ndarray:
+        """(1, 1)."""
+        return self.system.d[-1:, -1:]
+
+    def require_solvable(self) -> None:
+        """Check what synthesis assumes; raise GeneralisedPlantError that names what is missing."""
+        _require_all_moved(self.system.a, self.b2, 'stabilisable', 'moved by the control')
+        _require_all_moved(
+            self.system.a.T, self.c2.T, 'detectable', 'seen in what the controller measures'
+        )
+        if not np.any(self.d12):
+            raise GeneralisedPlantError(
+                'generalised plant: no external output has the control in it directly (D12 is 0), '
+                'so that infinite gain costs nothing: weigh the torque, or give W_2 as many zeros '
+                'as the plant has more poles than zeros'
+            )
+        if not np.any(self.d21):
+            raise GeneralisedPlantError(
+                'generalised plant: no external input is in the measurement directly (D21 is 0): '
+                'let the reference, or noise, enter the slip error'
+            )
+
+    def close(self, controller: StateSpace) -> StateSpace:
+        """Return T_wz with u = controller v; the states of the plant come first."""
+        k = controller
+        through = np.linalg.inv(np.eye(1) - k.d @ self.d22)
+        u_of_x = np.hstack([through @ k.d @ self.c2, through @ k.c])
+        u_of_w = through @ k.d @ self.d21
+        v_of_x = np.hstack([self.c2, np.zeros((1, len(k.a)))]) + self.d22 @ u_of_x
+        v_of_w = self.d21 + self.d22 @ u_of_w
+        states = len(self.system.a)
+        a = np.zeros((states + len(k.a), states + len(k.a)))
+        a[:states, :states], a[states:, states:] = self.system.a, k.a
+        a[:states] += self.b2 @ u_of_x
+        a[states:] += k.b @ v_of_x
+        c = np.hstack([self.c1, np.zeros((len(self.c1), len(k.a)))]) + self.d12 @ u_of_x
+        b = np.vstack([self.b1 + self.b2 @ u_of_w, k.b @ v_of_w])
+        return StateSpace(a, b, c, self.d11 + self.d12 @ u_of_w)
+
+
+def _require_all_moved(a: np.ndarray, b: np.ndarray, wanted: str, what: str) -> None:
+    """Check [a - lambda, b] has full rank for every eigenvalue on or right of the axis."""
+    for eigenvalue in np.linalg.eigvals(a):
+        if eigenvalue.real < 0.0:
+            continue
+        pencil = np.hstack([a - eigenvalue * np.eye(len(a)), b])
+        largest = np.abs(pencil).max(axis=1, keepdims=True)
+        scaled = pencil / np.where(largest == 0.0, 1.0, largest)
+        sizes = np.linalg.svd(scaled, compute_uv=False)
+        if sizes[-1] <= _RANK * sizes[0]:
+            raise GeneralisedPlantError(
+                f'generalised plant is not {wanted}: its mode at {eigenvalue:.4g} rad/s is not '
+                f'{what}: take unstable poles out of the weights and cancelled ones out of the '
+                'plant'
+            )

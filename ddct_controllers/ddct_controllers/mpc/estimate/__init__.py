@@ -1,0 +1,1 @@
+"""Estimators: states that are not measured, disturbances, wear."""

@@ -1,0 +1,1 @@
+"""Models of the transmission that predictive controllers and their observers share."""

@@ -1,0 +1,115 @@
+"""The sampled model that the predictive controllers and their observers share."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import ACTUATOR
+
+STATES = 9
+"""w_m, w_p, w_r in rad/s, theta_sr in rad, four of G_a, and the request that is being delayed."""
+MEASURED = 3
+"""The first states, w_m, w_p and w_r, are measured."""
+REQUEST, ENGINE_TORQUE, LOAD_TORQUE = range(3)
+"""Inputs in N m: the saturated clutch torque request, C_m and C_load, held over a period."""
+SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED = range(3)
+"""Outputs at the start of a period: w_d in rad/s, dw_d/dt in rad/s^2, w_sr in rad/s."""
+DELAYED_REQUEST = STATES - 1
+
+
+@dataclass(frozen=True, eq=False)
+class TransmissionModel:
+    """
+    x_(k+1) = a x_k + b u_k, y_k = c x_k + d u_k at 10 ms, exact for the clutch while it slips.
+
+    Disturbances that are estimated follow the nine states as constants.
+    """
+
+    a: np.ndarray
+    """(n, n), n = 9 plus the disturbances."""
+    b: np.ndarray
+    """(n, 3), columns REQUEST, ENGINE_TORQUE, LOAD_TORQUE."""
+    c: np.ndarray
+    """(3, n), rows SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED."""
+    d: np.ndarray
+    """(3, 3)."""
+    clutch: np.ndarray
+    """(n,) per N m of C_f, held over a period, on top of what the actuator's model gives."""
+
+    @property
+    def disturbances(self) -> int:
+        """How many constant disturbances follow the nine states."""
+        return len(self.a) - STATES
+
+    def at_rest(
+        self, speeds: tuple[float, float, float], twist: float, request: float
+    ) -> np.ndarray:
+        """Return x (n,) with `speeds` w_m, w_p, w_r, actuator at rest on `request` in N m."""
+        actuator = ACTUATOR.to_state_space()
+        state = np.zeros(len(self.a))
+        state[:MEASURED], state[MEASURED] = speeds, twist
+        state[4:DELAYED_REQUEST] = np.linalg.solve(actuator.a, -actuator.b[:, 0] * request)
+        state[DELAYED_REQUEST] = request
+        return state
+
+    def without_load(self) -> 'TransmissionModel':
+        """Return the same with C_load, which then is not known, driving nothing."""
+        b, d = self.b.copy(), self.d.copy()
+        b[:, LOAD_TORQUE], d[:, LOAD_TORQUE] = 0.0, 0.0
+        return replace(self, b=b, d=d)
+
+
+def transmission_model(
+    driveline: DrivelineParameters, wear_gain: float = 1.0, *, delay: bool = True
+) -> TransmissionModel:
+    """
+    Return the exact sampled model of driveline (Section 1.5), G_a(s) and delay (Section 1.4.2).
+
+    Four driveline states, four of G_a and one for the delay, which is one period. The clutch
+    transmits `wear_gain` times the actuator's torque. Without `delay` it is the plant of Section
+    3.2.1.3, P_2 G_a: the request acts at once, and the last state drives nothing.
+    """
+    plant, actuator = driveline_matrices(driveline), ACTUATOR.to_state_space()
+    clutch = wear_gain * plant.b[:, 1:2]
+    a = np.block([[plant.a, clutch @ actuator.c], [np.zeros((4, 4)), actuator.a]])
+    b = np.zeros((8, 3))
+    b[4:, REQUEST] = actuator.b[:, 0]
+    b[:4, ENGINE_TORQUE], b[:4, LOAD_TORQUE] = plant.b[:, 0], plant.b[:, 2]
+    slip = np.hstack([plant.c[:1], np.zeros((1, 4))])
+    torsion = np.hstack([plant.c[1:], np.zeros((1, 4))])
+    outputs = np.vstack([slip, slip @ a, torsion])
+    feedthrough = np.vstack([np.zeros((1, 3)), slip @ b, np.zeros((1, 3))])
+    sampled = discretise_zoh(StateSpace(a, b, outputs, feedthrough), PERIOD_S)
+    held_clutch = discretise_zoh(plant, PERIOD_S).b[:, 1]
+    return _with_last_request(sampled, held_clutch, delay=delay)
+
+
+def _with_last_request(
+    sampled: StateSpace, clutch: np.ndarray, *, delay: bool
+) -> TransmissionModel:
+    """Append the request of the period before as a state, which acts in place of REQUEST."""
+    a, b, d = np.zeros((STATES, STATES)), sampled.b.copy(), sampled.d.copy()
+    a[:8, :8], through = sampled.a, np.zeros((len(sampled.c), 1))
+    if delay:
+        a[:8, DELAYED_REQUEST], through[:, 0] = b[:, REQUEST], d[:, REQUEST]
+        b[:, REQUEST], d[:, REQUEST] = 0.0, 0.0
+    b = np.vstack([b, [1.0, 0.0, 0.0]])
+    c = np.hstack([sampled.c, through])
+    return TransmissionModel(a, b, c, d, np.concatenate([clutch, np.zeros(STATES - 4)]))
+
+
+def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> TransmissionModel:
+    """Append constant disturbances that drive the nine states through `columns` (9, count)."""
+    count = columns.shape[1]
+    lower = np.zeros((count, len(model.a)))
+    return TransmissionModel(
+        np.block([[model.a, columns], [lower, np.eye(count)]]),
+        np.vstack([model.b, np.zeros((count, 3))]),
+        np.hstack([model.c, np.zeros((len(model.c), count))]),
+        model.d,
+        np.concatenate([model.clutch, np.zeros(count)]),
+    )

@@ -1,0 +1,46 @@
+"""Program `design`: from specifications to a verified controller, and what it can bear."""
+
+from ddct_controllers.workflows import (
+    h_infinity_command,
+    loop_shaping_command,
+    margins_command,
+    mpc_command,
+)
+from ddct_plant.graph.run_info import package_version
+from ddct_plant.program.command_line import ProgramParser, run_program
+
+PROGRAM = 'design'
+_COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command)
+
+_EPILOG = """\
+examples:
+  design loop-shaping                                 Chapter 2, step by step
+  design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
+  design h-infinity                                   Chapter 3, step by step
+  design mpc --export control_unit --controller mpc3  C for a control unit
+  design margins --controller all                     the sampled loop with hold and delay
+
+Each workflow has its own --help. The thesis's numbers, figures and studies: reproduce."""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _design, argv)
+
+
+def _design(argv: list[str]) -> int:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Design controllers, and check them in the loop as it runs.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument('--version', action='version', version=package_version())
+    commands = parser.add_subparsers(required=True, metavar='WORKFLOW')
+    for command in _COMMANDS:
+        command.add_parser(commands)
+    options = parser.parse_args(argv)
+    return options.run(options)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,137 @@
+"""What the sampled loops of controllers can bear, as plain values for JSON."""
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ddct_controllers.design.analysis.driveline_mode import driveline_mode
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
+from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
+from ddct_controllers.interface import Controller
+from ddct_controllers.registry import controller_label, make_controller
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.settings import RunSettings
+
+Evidence = dict[str, Any]
+"""None where nothing limits a margin, or where the loop is unstable and has none."""
+
+
+def frequency_evidence(names: Sequence[str], settings: RunSettings) -> Evidence:
+    """
+    Return `conditions` and one entry per controller, in the order of `names`.
+
+    The driveline is the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3. A
+    controller that is not linear has an entry that says so. Raise DdctError for one that cannot
+    be built or whose `linear_model` cannot be used.
+    """
+    corners = PlantCorners(settings.scenario.driveline)
+    return {
+        'conditions': {
+            'scenario': settings.scenario.name,
+            'scenario_digest': scenario_digest(settings.scenario),
+            'period_s': PERIOD_S,
+            'delay_s': PERIOD_S,
+            'wear_gain_range': [WEAR_GAINS[0], WEAR_GAINS[-1]],
+            'corners': len(corners.plants),
+            'corner_spread': PARAMETER_SPREAD,
+            'corner_parameters': corners.varied,
+        },
+        'controllers': [_controller_evidence(name, settings, corners) for name in names],
+    }
+
+
+def _controller_evidence(name: str, settings: RunSettings, corners: PlantCorners) -> Evidence:
+    model = _linear_model(name, make_controller(name, settings))
+    entry: Evidence = {'controller': controller_label(name), 'linear': model is not None}
+    if model is None:
+        return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
+    driveline = settings.scenario.driveline
+    try:
+        wear = {
+            gain: loop_evidence(model, driveline, gain)
+            for gain in sorted({*WEAR_GAINS, settings.wear_gain})
+        }
+        worst = _corner_evidence(model, corners)
+    except (DdctError, np.linalg.LinAlgError) as error:
+        raise _unusable(name, error) from error
+    return entry | {
+        'nominal': wear[1.0],
+        'stable_wear_gain': _stable_wear_gain(wear[1.0]),
+        'wear': list(wear.values()),
+        'corners': worst,
+    }
+
+
+def _linear_model(name: str, controller: Controller) -> StateSpace | None:
+    """Return the model; raise DdctError for what no loop can be closed with."""
+    try:
+        model: object = controller.linear_model()
+    except Exception as error:
+        raise _unusable(name, f'{type(error).__name__}: {error}') from error
+    if model is None:
+        return None
+    if not isinstance(model, StateSpace):
+        raise _unusable(
+            name, f'it is of type {type(model).__name__}, not ddct_plant.linear.lti.StateSpace'
+        )
+    if model.d.shape != (1, 1):
+        outputs, inputs = model.d.shape
+        raise _unusable(name, f'it has {inputs} inputs and {outputs} outputs: give one of each')
+    return model
+
+
+def _unusable(name: str, reason: object) -> DdctError:
+    return DdctError(f'controller {name!r}: its linear_model cannot be used: {reason}')
+
+
+def loop_evidence(
+    controller: StateSpace, driveline: DrivelineParameters, wear_gain: float
+) -> Evidence:
+    """Return margins and driveline mode of the sampled loop at one wear gain."""
+    loop = sampled_loop(controller, driveline, wear_gain)
+    mode = driveline_mode(loop, driveline)
+    return {
+        'wear_gain': wear_gain,
+        **{name: _finite(x) for name, x in dataclasses.asdict(loop_margins(loop)).items()},
+        'driveline_mode_hz': mode.frequency_hz if mode else None,
+        'driveline_mode_damping': mode.damping if mode else None,
+        'driveline_mode_torsion_rpm': mode.torsion_amplitude_rpm if mode else None,
+    }
+
+
+def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> Evidence:
+    found = worst_corner(controller, corners)
+    worst = loop_evidence(controller, corners.parameters[found.index], found.wear_gain)
+    return {
+        'unstable': found.unstable_corners,
+        'sensitivity_peak': found.sensitivity_peak,
+        'least_driveline_mode_damping': found.least_mode_damping,
+        'worst': {
+            'factors': dict(zip(corners.varied, corners.factors[found.index], strict=True)),
+            **worst,
+        },
+    }
+
+
+def _stable_wear_gain(nominal: Evidence) -> Evidence | None:
+    """Return the wear gains between which the loop is stable: its gain margins, both ways."""
+    if not nominal['stable']:
+        return None
+    less, more = nominal['gain_reduction_margin_db'], nominal['gain_margin_db']
+    return {
+        'lowest': 0.0 if less is None else 10.0 ** (-less / 20.0),
+        'highest': None if more is None else 10.0 ** (more / 20.0),
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is None or math.isfinite(value) else None

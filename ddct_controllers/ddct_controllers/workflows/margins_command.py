@@ -1,0 +1,97 @@
+"""Subcommand `design margins`: the robustness of linear controllers in the loop as it runs."""
+
+import argparse
+from typing import Any
+
+from ddct_controllers.registry import controller_names
+from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_json
+from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.settings import RunSettings
+
+_DESCRIPTION = """\
+Margins of the sampled loop with its hold and its 10 ms delay: at one wear gain, the
+gain, phase, delay and disk margins, M_s, M_t, crossover, bandwidth, and the driveline
+mode. Then the highest wear gain that is stable and, over wear gains 0.7 to 1.3 and all
+driveline parameters +-20 %, the highest M_s and the number of unstable corners."""
+_EXAMPLES = """\
+examples:
+  design margins
+  design margins --controller ls8 --wear-gain 1.3 --json -"""
+_POINT_COLUMNS = (
+    ('GM dB', 'gain_margin_db', '.1f'),
+    ('PM deg', 'phase_margin_deg', '.1f'),
+    ('DM s', 'delay_margin_s', '.3f'),
+    ('disk', 'disk_margin', '.2f'),
+    ('M_s', 'sensitivity_peak', '.2f'),
+    ('M_t', 'complementary_peak', '.2f'),
+    ('w_c rad/s', 'crossover_rad_s', '.2f'),
+    ('w_b rad/s', 'bandwidth_rad_s', '.2f'),
+    ('mode Hz', 'driveline_mode_hz', '.2f'),
+    ('damping', 'driveline_mode_damping', '.3f'),
+    ('w_sr rpm', 'driveline_mode_torsion_rpm', '.3f'),
+)
+"""Heading, key of `loop_evidence` and format."""
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `margins` to the subcommands of `design`."""
+    parser = subparsers.add_parser(
+        'margins',
+        help='margins of the sampled loop, over wear and plant corners',
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+    )
+    parser.add_argument('--controller', default='all', metavar='NAME|FILE|all')
+    parser.add_argument(
+        '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura of the margins'
+    )
+    add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
+    parser.add_argument('--json', metavar='FILE', help='write all figures; - is standard output')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the table, write the JSON, and return the exit code."""
+    settings = RunSettings(
+        load_scenario(options.scenario, options.overrides), wear_gain=options.wear_gain
+    )
+    every = options.controller == 'all'
+    names = controller_names() if every else [options.controller]
+    evidence = frequency_evidence(names, settings)
+    linear = [entry for entry in evidence['controllers'] if entry['linear']]
+    if not linear:
+        raise DdctError(
+            f'{options.controller} is not linear: it has no frequency response; '
+            'choose a controller that has a linear_model, or all'
+        )
+    if options.json != '-':
+        title = f'Sampled loop, {settings.scenario.name}, wear gain {settings.wear_gain:g}'
+        headers = (
+            *('controller', 'stable'),
+            *(heading for heading, _, _ in _POINT_COLUMNS),
+            *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
+        )
+        rows = [_row(entry, settings.wear_gain) for entry in linear]
+        print_table(Table(title, headers, rows))
+        others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
+        if others:
+            print(f'Not linear, without a frequency response: {", ".join(others)}')
+    if options.json:
+        write_json(options.json, evidence)
+    return 0
+
+
+def _row(entry: Evidence, wear_gain: float) -> list[str]:
+    point = next(point for point in entry['wear'] if point['wear_gain'] == wear_gain)
+    return [
+        entry['controller'],
+        'yes' if point['stable'] else 'no',
+        *(text_or_dash(point[key], form) for _, key, form in _POINT_COLUMNS),
+        text_or_dash((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
+        text_or_dash(entry['corners']['sensitivity_peak'], '.2f'),
+        str(entry['corners']['unstable']),
+    ]

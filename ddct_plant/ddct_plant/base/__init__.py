@@ -1,0 +1,1 @@
+"""What everything else stands on: errors, checks, units and the time base."""

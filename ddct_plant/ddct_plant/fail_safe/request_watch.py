@@ -1,0 +1,106 @@
+"""What actuator, engine and driveline do in real time when what they wait for stops coming."""
+
+import math
+from dataclasses import asdict, dataclass
+
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.timebase import PERIOD_NS, PERIOD_S
+
+REQUEST_TIMEOUT_S = 0.05
+"""How long a missing request is waited for."""
+LEAST_REQUEST_TIMEOUT_S, MOST_REQUEST_TIMEOUT_S = PERIOD_S, 10.0
+CLUTCH_TIMEOUT_S = 0.1
+"""How long the driveline waits for a missing clutch torque: the actuator's fail-safe is first."""
+MOST_CATCH_UP_STEPS = round(MOST_REQUEST_TIMEOUT_S / PERIOD_S)
+"""Steps without a request that are made up for at most: none is held for longer."""
+
+
+@dataclass(frozen=True)
+class FailSafeSettings:
+    """When and how fast the clutch opens."""
+
+    request_timeout_s: float = REQUEST_TIMEOUT_S
+    """A missing request is held this long."""
+    fail_safe_ramp_n_m_s: float = 1000.0
+    """Rate at which the request then runs to zero, in N m/s."""
+
+    def __post_init__(self) -> None:
+        """Check both; raise ParameterError that names a bad one."""
+        require_number(
+            'request_timeout_s',
+            self.request_timeout_s,
+            at_least=LEAST_REQUEST_TIMEOUT_S,
+            at_most=MOST_REQUEST_TIMEOUT_S,
+        )
+        require_number('fail_safe_ramp_n_m_s', self.fail_safe_ramp_n_m_s, above=0.0, at_most=1e6)
+
+    def info(self) -> dict[str, str]:
+        """Return both as text for `run_info`."""
+        return {name: repr(value) for name, value in asdict(self).items()}
+
+
+def steps_to_make_up(next_step: int, step: int) -> range:
+    """Return the steps before `step`, from the first not yet answered, that still count."""
+    return range(max(next_step, step - MOST_CATCH_UP_STEPS), step)
+
+
+class RequestWatch:
+    """
+    Notice that requests have stopped for longer than the timeout in s.
+
+    It stays so until the node is started again: who has been silent is not obeyed unasked.
+    """
+
+    def __init__(self, timeout_s: float) -> None:
+        # Stamps are whole ns, so the timeout is too: in floats some trip a step early.
+        self._timeout_ns = round(timeout_s * 1e9)
+        self._last_step: int | None = None
+        self.stopped = False
+
+    @property
+    def heard(self) -> bool:
+        """Whether there was a request at all."""
+        return self._last_step is not None
+
+    def request(self, step: int) -> None:
+        """Note that a request came for `step`."""
+        self._last_step = step
+
+    def tick(self, step: int) -> bool:
+        """Say at the start of `step` whether requests have stopped."""
+        if self._last_step is not None and not self.stopped:
+            self.stopped = self.too_long(self._last_step, step)
+        return self.stopped
+
+    def too_long(self, since_step: int, step: int) -> bool:
+        """Say whether more than the timeout lies between two steps."""
+        return (step - since_step) * PERIOD_NS > self._timeout_ns
+
+
+class FailSafe:
+    """Watch the requests and, when they stop, ramp the last one down to an open clutch."""
+
+    def __init__(self, settings: FailSafeSettings) -> None:
+        self.watch = RequestWatch(settings.request_timeout_s)
+        self._most_change = settings.fail_safe_ramp_n_m_s * PERIOD_S
+        self._torque = 0.0
+
+    @property
+    def engaged(self) -> bool:
+        """Whether the clutch is being opened, or open."""
+        return self.watch.stopped
+
+    def request(self, step: int, torque: float) -> None:
+        """Note the request in N m that came for `step`."""
+        self.watch.request(step)
+        self._torque = torque
+
+    def tick(self, step: int) -> bool:
+        """Say at the start of `step` whether the fail-safe is engaged from now on."""
+        return self.watch.tick(step)
+
+    def next_torque(self, periods: int = 1) -> float:
+        """Return the request in N m on the way to an open clutch, so many periods later."""
+        left = max(abs(self._torque) - periods * self._most_change, 0.0)
+        self._torque = math.copysign(left, self._torque)
+        return self._torque

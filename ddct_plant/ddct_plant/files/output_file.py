@@ -1,0 +1,61 @@
+"""Write the files that options such as `--json FILE` ask for, whole or not at all."""
+
+import contextlib
+import json
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+from ddct_plant.base.errors import DdctError
+
+STDOUT = '-'
+"""The file name that stands for standard output."""
+
+
+def require_place(option: str, target: str) -> None:
+    """Raise DdctError where `target`, given with `option`, cannot be a file: before long work."""
+    path = Path(target)
+    if target == STDOUT:
+        return
+    if path.is_dir():
+        raise DdctError(f'{option} {target} is a folder: name a file in it')
+    if not path.parent.is_dir():
+        raise DdctError(f'{option} {target}: there is no folder {path.parent}: make it first')
+
+
+def write_json(target: str, content: Any) -> None:
+    """Write `content` as JSON like `write_text`; NaN and infinity raise ValueError."""
+    write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n')
+
+
+def write_text(target: str, text: str) -> None:
+    """
+    Write `text` to the file `target`, or to standard output for `-`.
+
+    A file appears complete or keeps what it held. Raise DdctError when it cannot be written.
+    """
+    if target == STDOUT:
+        sys.stdout.write(text)
+        return
+    path = Path(target).resolve()
+    try:
+        if path.exists() and not path.is_file():
+            path.write_text(text, encoding='utf-8')  # a device or pipe: nothing to replace
+        else:
+            _replace(path, text)
+    except OSError as error:
+        raise DdctError(
+            f'{target}: cannot be written ({error.strerror}); give another file'
+        ) from error
+
+
+def _replace(path: Path, text: str) -> None:
+    temporary = path.with_name(f'.{path.name}.{os.getpid()}')
+    try:
+        temporary.write_text(text, encoding='utf-8')
+        temporary.replace(path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise

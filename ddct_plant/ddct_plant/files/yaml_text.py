@@ -1,0 +1,152 @@
+"""
+The one way in which YAML is read and written: scenarios, controllers, what a bag holds.
+
+Values are those of YAML 1.2's core schema (1e-3 and -1e-2 are numbers, yes and 1:30 are text).
+They are built here from the parser's events, so text cannot make any other object.
+"""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import yaml
+
+from ddct_plant.base.errors import ParameterError
+
+MOST_CHARACTERS = 1_000_000
+MOST_VALUES = 100_000
+"""Numbers, texts, lists and mappings together."""
+MOST_DEPTH = 20
+"""Lists and mappings within one another."""
+MOST_DIGITS = 40
+"""Characters of a number; a double needs 24."""
+
+_PARSER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+_SURROGATE = re.compile('[\ud800-\udfff]')
+_WORDS = {
+    **dict.fromkeys(('', '~', 'null', 'Null', 'NULL')),
+    **dict.fromkeys(('true', 'True', 'TRUE'), True),
+    **dict.fromkeys(('false', 'False', 'FALSE'), False),
+}
+_INTEGER = re.compile(r'[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+')
+_FLOAT = re.compile(
+    r'[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?'
+    r'|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)'
+)
+
+
+def parse_yaml(text: str) -> Any:
+    """
+    Return the numbers, texts, booleans, nulls, lists and dicts that one YAML document holds.
+
+    Raise ParameterError that names the line for invalid YAML, a key given twice, aliases and tags,
+    and beyond the limits above.
+    """
+    if len(text) > MOST_CHARACTERS:
+        raise ParameterError(f'not valid YAML: longer than {MOST_CHARACTERS} characters')
+    try:
+        text.encode('utf-8')
+        return _Document(yaml.parse(text, Loader=_PARSER)).value()
+    except UnicodeEncodeError as error:
+        raise ParameterError('not valid YAML: it is not UTF-8 text') from error
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1
+        raise ParameterError(f'not valid YAML: line {line}: {error.problem}') from error
+    except yaml.YAMLError as error:
+        raise ParameterError(f'not valid YAML: {" ".join(str(error).split())}') from error
+
+
+def dump_yaml(value: Any, **options: Any) -> str:
+    """Return YAML text, keys in their order, that `parse_yaml` reads back to equal values."""
+    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, **options)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Puts text in quotes that YAML 1.2 takes for a number, and writes no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+_Dumper.add_implicit_resolver(
+    'tag:yaml.org,2002:float',
+    re.compile(rf'(?:{_FLOAT.pattern}|{_INTEGER.pattern})$'),
+    list('-+.0123456789'),
+)
+
+
+class _Document:
+    """Builds the values of one document from the events of the parser."""
+
+    def __init__(self, events: Iterator[yaml.Event]) -> None:
+        self._events = events
+        self._values = 0
+
+    def value(self) -> Any:
+        """Return the value of the only document; None for empty text."""
+        next(self._events)
+        event = next(self._events)
+        if isinstance(event, yaml.StreamEndEvent):
+            return None
+        value = self._value(next(self._events), 0)
+        next(self._events)
+        after = next(self._events)
+        if not isinstance(after, yaml.StreamEndEvent):
+            raise _refused(after, 'a second document begins: give one')
+        return value
+
+    def _value(self, event: yaml.Event, depth: int) -> Any:
+        self._values += 1
+        if self._values > MOST_VALUES:
+            raise _refused(event, f'more than {MOST_VALUES} values')
+        if isinstance(event, yaml.AliasEvent):
+            raise _refused(event, f'the alias *{event.anchor}: write out what it stands for')
+        if event.tag is not None:
+            raise _refused(event, f'the tag {event.tag}: write the value without it')
+        if isinstance(event, yaml.ScalarEvent):
+            return _scalar(event)
+        if depth == MOST_DEPTH:
+            raise _refused(event, f'nested more than {MOST_DEPTH} deep')
+        if isinstance(event, yaml.SequenceStartEvent):
+            return [self._value(item, depth + 1) for item in self._until(yaml.SequenceEndEvent)]
+        return self._mapping(depth)
+
+    def _mapping(self, depth: int) -> dict[Any, Any]:
+        content: dict[Any, Any] = {}
+        lines: dict[Any, int] = {}
+        for event in self._until(yaml.MappingEndEvent):
+            if not isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent)):
+                raise _refused(event, 'a list or mapping is used as a key: give text')
+            key = self._value(event, depth)
+            if key in lines:
+                first = lines[key]
+                raise _refused(event, f'the key {key!r} is given twice, first in line {first}')
+            lines[key] = event.start_mark.line + 1
+            content[key] = self._value(next(self._events), depth + 1)
+        return content
+
+    def _until(self, end: type[yaml.Event]) -> Iterator[yaml.Event]:
+        while not isinstance(event := next(self._events), end):
+            yield event
+
+
+def _scalar(event: yaml.ScalarEvent) -> Any:
+    text = event.value
+    if _SURROGATE.search(text):
+        raise _refused(event, 'half of a surrogate pair is no character')
+    if not event.implicit[0]:  # in quotes, or a block of text
+        return text
+    if text in _WORDS:
+        return _WORDS[text]
+    integer = _INTEGER.fullmatch(text)
+    if not integer and not _FLOAT.fullmatch(text):
+        return text
+    if len(text) > MOST_DIGITS:
+        raise _refused(event, f'a number of {len(text)} digits: give at most {MOST_DIGITS}')
+    if integer:
+        return int(text, {'0o': 8, '0x': 16}.get(text[:2], 10))
+    return float(text.lower().replace('.inf', 'inf').replace('.nan', 'nan'))
+
+
+def _refused(event: yaml.Event, what: str) -> ParameterError:
+    return ParameterError(f'not valid YAML: line {event.start_mark.line + 1}: {what}')

@@ -1,0 +1,1 @@
+"""The driveline parameters behind the thesis's printed transfer functions."""

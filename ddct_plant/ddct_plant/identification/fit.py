@@ -1,0 +1,165 @@
+"""Driveline parameters from the printed transfer functions, by weighted least squares."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.coefficients import (
+    FITTED,
+    PrintedCoefficients,
+    computed_coefficients,
+    with_fitted,
+)
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.printed import (
+    CLUTCH_TO_SLIP,
+    LOAD_TO_SLIP,
+    PrintedTransferFunction,
+)
+
+ROUNDING_VARIANCE = 1.0 / 3.0
+"""Variance of a rounding error, uniform within one half-unit, in half-units squared."""
+_SINGULAR = 1e8
+"""Condition number above which some combination of parameters is not determined."""
+
+
+@dataclass(frozen=True)
+class CoefficientFit:
+    """One printed coefficient beside what the identified driveline has."""
+
+    transfer_function: str
+    coefficient: str
+    printed: str
+    computed: float
+    residual_half_units: float
+    """Computed less printed, in half-units of the last printed digit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """The weighted least-squares fit; vectors of parameters are in the order of FITTED."""
+
+    parameters: DrivelineParameters
+    """The best fit, not rounded."""
+    relative_std: np.ndarray
+    """(7,) standard deviation of each fitted parameter over its value."""
+    correlation: np.ndarray
+    """(7, 7) between the fitted parameters."""
+    condition: float
+    """Condition number of the weighted Jacobian with respect to the logarithms."""
+    weakest_direction: np.ndarray
+    """(7,) unit vector of relative changes that moves the coefficients least."""
+    coefficients: tuple[CoefficientFit, ...]
+
+    @property
+    def residuals(self) -> np.ndarray:
+        """(9,) in half-units of the last printed digit."""
+        return np.array([fit.residual_half_units for fit in self.coefficients])
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Coefficients less parameters."""
+        return len(self.coefficients) - len(FITTED)
+
+    @property
+    def chi_square(self) -> float:
+        """
+        Sum of squared residuals over the variance of rounding.
+
+        Rounding is uniform rather than normal, so comparing it with the chi-square distribution
+        of `degrees_of_freedom` is approximate.
+        """
+        return float(self.residuals @ self.residuals / ROUNDING_VARIANCE)
+
+    @property
+    def logarithms(self) -> np.ndarray:
+        """(7,) natural logarithms of the fitted parameters."""
+        return np.log([getattr(self.parameters, name) for name in FITTED])
+
+
+def identify_driveline(
+    p2: PrintedTransferFunction = CLUTCH_TO_SLIP, p3: PrintedTransferFunction = LOAD_TO_SLIP
+) -> Identification:
+    """
+    Return the driveline of Section 1.5 whose P_2 and P_3 come closest to the printed ones.
+
+    Each coefficient weighs by the half-unit of its last printed digit; c_m = 0. The covariance is
+    (J^T J)^-1 times the variance of rounding: print rounding is taken as the only error, uniform
+    and independent. Raise DdctError when the fit does not converge.
+    """
+    coefficients = PrintedCoefficients(p2, p3)
+    kept = np.ones(len(coefficients.numbers), dtype=bool)
+    logarithms = _fit(coefficients, kept)
+    jacobian = coefficients.jacobian(logarithms)
+    covariance = np.linalg.inv(jacobian.T @ jacobian) * ROUNDING_VARIANCE
+    std = np.sqrt(np.diag(covariance))
+    singular = np.linalg.svd(jacobian)
+    parameters = with_fitted(logarithms)
+    rows = zip(
+        coefficients.numbers,
+        computed_coefficients(parameters).tolist(),
+        coefficients.residuals(logarithms).tolist(),
+        strict=True,
+    )
+    return Identification(
+        parameters=parameters,
+        relative_std=std,
+        correlation=covariance / np.outer(std, std),
+        condition=float(singular.S[0] / singular.S[-1]),
+        weakest_direction=singular.Vh[-1],
+        coefficients=tuple(
+            CoefficientFit(name, number.label, number.text, computed, residual)
+            for (name, number), computed, residual in rows
+        ),
+    )
+
+
+def predict_left_out(
+    p2: PrintedTransferFunction,
+    p3: PrintedTransferFunction,
+    name: str,
+    coefficient: str,
+) -> tuple[float, float]:
+    """
+    Return one coefficient and its standard deviation, as the other eight predict it.
+
+    Raise DdctError for a coefficient that is not among the nine, or one that the others leave
+    free: each of the two gains is the only measure of the size of its transfer function.
+    """
+    coefficients = PrintedCoefficients(p2, p3)
+    labels = [(function, number.label) for function, number in coefficients.numbers]
+    if (name, coefficient) not in labels:
+        raise DdctError(f'{name} has no coefficient {coefficient!r} to leave out')
+    index = labels.index((name, coefficient))
+    kept = np.arange(len(labels)) != index
+    if np.linalg.cond(coefficients.jacobian(coefficients.start())[kept]) > _SINGULAR:
+        raise DdctError(f'the other coefficients do not determine {name} {coefficient}')
+    logarithms = _fit(coefficients, kept)
+    jacobian = coefficients.jacobian(logarithms)
+    covariance = np.linalg.inv(jacobian[kept].T @ jacobian[kept]) * ROUNDING_VARIANCE
+    half_unit = coefficients.numbers[index][1].half_unit
+    std = half_unit * np.sqrt(jacobian[index] @ covariance @ jacobian[index])
+    return float(computed_coefficients(with_fitted(logarithms))[index]), float(std)
+
+
+def _fit(coefficients: PrintedCoefficients, kept: np.ndarray) -> np.ndarray:
+    """Return the (7,) logarithms that fit the coefficients where `kept` is true."""
+    answer = least_squares(
+        lambda logarithms: coefficients.residuals(logarithms)[kept],
+        coefficients.start(),
+        jac=lambda logarithms: coefficients.jacobian(logarithms)[kept],
+        x_scale='jac',
+        xtol=1e-14,
+        ftol=1e-14,
+        gtol=1e-14,
+    )
+    if not answer.success:
+        raise DdctError(f'identification of the driveline does not converge: {answer.message}')
+    return answer.x
+
+
+def round_significant(value: float, digits: int) -> float:
+    """Return `value` rounded to `digits` significant digits."""
+    return float(f'{value:.{digits - 1}e}')

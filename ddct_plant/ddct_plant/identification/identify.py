@@ -1,0 +1,169 @@
+"""Program `identify`: the driveline parameters behind the thesis's transfer functions."""
+
+from typing import Any
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_json
+from ddct_plant.identification.checks import IdentificationCheck, check_identification
+from ddct_plant.identification.coefficients import FITTED, PrintedCoefficients
+from ddct_plant.identification.fit import Identification, identify_driveline
+from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
+from ddct_plant.models.printed import CLUTCH_TO_SLIP, CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP
+from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.table import Table, print_table
+
+SYMBOLS_AND_UNITS = {
+    'engine_inertia': ('J_m', 'kg m^2'),
+    'engine_damping': ('c_m', 'N m s/rad'),
+    'shaft_inertia': ('J_p', 'kg m^2'),
+    'shaft_damping': ('c_prim', 'N m s/rad'),
+    'halfshaft_damping': ('c_sa', 'N m s/rad'),
+    'halfshaft_stiffness': ('k_sa', 'N m/rad'),
+    'total_ratio': ('tau', '1'),
+    'vehicle_inertia': ('J_v', 'kg m^2'),
+}
+_DESCRIPTION = """\
+Derive the driveline parameters from the nine printed coefficients of P2 and P3
+(thesis, Section 1.6.2) by least squares weighted by the rounding of the print.
+P1 and the zero pair of P2 are checks. A residual is computed less printed, in
+half-units of the last printed digit; std follows from the rounding alone, and
+lowest and highest are the ends of what the printed digits allow."""
+_EXAMPLES = """\
+examples:
+  ros2 run ddct_plant identify
+  ros2 run ddct_plant identify --json parameters.json
+  ros2 run ddct_plant identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program('identify', _run, argv)
+
+
+def _run(argv: list[str]) -> int:
+    parser = ProgramParser(
+        prog='identify',
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+    )
+    parser.add_argument(
+        '--json', metavar='FILE', help='write the result as JSON; - is standard output, alone'
+    )
+    parser.add_argument(
+        '--as-printed', action='store_true', help='keep the 334.4 that Section 1.6.2 prints in P2'
+    )
+    options = parser.parse_args(argv)
+    p2 = CLUTCH_TO_SLIP_AS_PRINTED if options.as_printed else CLUTCH_TO_SLIP
+    identification = identify_driveline(p2)
+    checks = check_identification(identification, p2)
+    content = _content(identification, _ranges(identification, p2), checks)
+    if options.json != '-':
+        _print_tables(content)
+    if options.json:
+        write_json(options.json, content)
+    failed = [check.name for check in checks if not check.passed]
+    if failed:
+        advice = '; leave out --as-printed' if options.as_printed else ''
+        raise DdctError(f'no driveline fits: {"; ".join(failed)}{advice}')
+    return 0
+
+
+def _ranges(identification: Identification, p2: Any) -> np.ndarray | None:
+    coefficients = PrintedCoefficients(p2, LOAD_TO_SLIP)
+    worst, centre = smallest_worst_residual(coefficients, identification.logarithms)
+    return parameter_ranges(coefficients, centre) if worst <= 1.0 else None
+
+
+def _content(
+    identification: Identification,
+    ranges: np.ndarray | None,
+    checks: tuple[IdentificationCheck, ...],
+) -> dict[str, Any]:
+    """Return what is printed and written; null stands for what does not exist."""
+    parameters = []
+    for name, (symbol, unit) in SYMBOLS_AND_UNITS.items():
+        value = getattr(identification.parameters, name)
+        row = {'name': name, 'symbol': symbol, 'value': value, 'std': None, 'unit': unit}
+        row |= {'lowest': None, 'highest': None}
+        if name in FITTED:
+            index = FITTED.index(name)
+            row['std'] = value * float(identification.relative_std[index])
+            if ranges is not None:
+                row['lowest'], row['highest'] = ranges[index].tolist()
+        parameters.append(row)
+    weakest = zip(FITTED, identification.weakest_direction.tolist(), strict=True)
+    return {
+        'parameters': parameters,
+        'coefficients': [vars(fit) for fit in identification.coefficients],
+        'checks': [vars(check) | {'passed': check.passed} for check in checks],
+        'fit': {
+            'degrees_of_freedom': identification.degrees_of_freedom,
+            'chi_square': identification.chi_square,
+            'condition': identification.condition,
+            'weakest_direction': dict(weakest),
+        },
+    }
+
+
+def _print_tables(content: dict[str, Any]) -> None:
+    print_table(
+        Table(
+            'Driveline parameters',
+            ('parameter', 'symbol', 'value', 'std', 'lowest', 'highest', 'unit'),
+            [
+                (
+                    row['name'],
+                    row['symbol'],
+                    _text(row['value'], 7),
+                    _text(row['std'], 2),
+                    _text(row['lowest'], 5),
+                    _text(row['highest'], 5),
+                    row['unit'],
+                )
+                for row in content['parameters']
+            ],
+        )
+    )
+    print_table(
+        Table(
+            'Printed coefficients',
+            ('function', 'coefficient', 'printed', 'computed', 'residual, half-units'),
+            [
+                (
+                    row['transfer_function'],
+                    row['coefficient'],
+                    row['printed'],
+                    _text(row['computed'], 7),
+                    f'{round(row["residual_half_units"], 2) + 0.0:+.2f}',
+                )
+                for row in content['coefficients']
+            ],
+        )
+    )
+    print_table(
+        Table(
+            'Checks',
+            ('check', 'value', 'lowest', 'highest', 'passed'),
+            [
+                (
+                    row['name'],
+                    *(_text(row[key], 6) for key in ('value', 'lowest', 'highest')),
+                    'yes' if row['passed'] else 'no',
+                )
+                for row in content['checks']
+            ],
+        )
+    )
+    weakest = ', '.join(
+        f'{SYMBOLS_AND_UNITS[name][0]} {share:+.2f}'
+        for name, share in content['fit']['weakest_direction'].items()
+    )
+    print(f'Condition number {content["fit"]["condition"]:.0f}; least determined together:')
+    print(f'  {weakest} (relative changes)')
+
+
+def _text(value: float | None, digits: int) -> str:
+    """Return `digits` significant digits, or a dash for what is fixed or does not exist."""
+    return '-' if value is None else f'{value:.{digits}g}'

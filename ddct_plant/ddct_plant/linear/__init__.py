@@ -1,0 +1,1 @@
+"""Linear systems: their forms, realisations and exact discretisation."""

@@ -1,0 +1,189 @@
+"""Linear time-invariant systems: two forms, and exact discretisation over a sampling period."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.cascade import Factor, realise_cascade
+
+
+@dataclass(frozen=True, eq=False)
+class StateSpace:
+    """
+    dx/dt = a x + b u, y = c x + d u; with `period_s`, x_(k+1) = a x_k + b u_k instead.
+
+    n states, m inputs, p outputs; the arrays are copied and cannot be written.
+    """
+
+    a: np.ndarray
+    """(n, n)."""
+    b: np.ndarray
+    """(n, m)."""
+    c: np.ndarray
+    """(p, n)."""
+    d: np.ndarray
+    """(p, m)."""
+    period_s: float | None = None
+    """Sampling period of a discrete system in s, None for a continuous one."""
+
+    def __post_init__(self) -> None:
+        """Check the shapes and that all is finite; raise ParameterError otherwise."""
+        for name in ('a', 'b', 'c', 'd'):
+            matrix = np.array(getattr(self, name), dtype=float)
+            if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
+                raise ParameterError(f'state space: {name} must be a matrix of finite numbers')
+            matrix.setflags(write=False)
+            object.__setattr__(self, name, matrix)
+        states, inputs, outputs = len(self.a), self.b.shape[1], len(self.c)
+        shapes = {'a': (states, states), 'b': (states, inputs), 'c': (outputs, states)}
+        shapes['d'] = (outputs, inputs)
+        for name, shape in shapes.items():
+            if getattr(self, name).shape != shape:
+                raise ParameterError(
+                    f'state space: {name} is {getattr(self, name).shape}, it must be {shape}'
+                )
+
+
+@dataclass(frozen=True)
+class FactoredTransferFunction:
+    """
+    gain times a product of (s + a) and (s^2 + b s + c), over another: the form the thesis prints.
+
+    A number a in `numerator` or `denominator` stands for (s + a), a pair (b, c) for
+    (s^2 + b s + c); so 0.0 is the factor s.
+    """
+
+    gain: float
+    numerator: tuple[Factor, ...] = field(default=())
+    denominator: tuple[Factor, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        """Check that every number is finite; raise ParameterError otherwise."""
+        require_number('transfer function: gain', self.gain)
+        for factor in (*self.numerator, *self.denominator):
+            for number in factor if isinstance(factor, tuple) else (factor,):
+                require_number('transfer function: a coefficient', number)
+
+    @property
+    def zeros(self) -> np.ndarray:
+        """(number of zeros,) complex, in rad/s."""
+        return _roots(self.numerator)
+
+    @property
+    def poles(self) -> np.ndarray:
+        """(number of poles,) complex, in rad/s."""
+        return _roots(self.denominator)
+
+    def __mul__(self, other: 'FactoredTransferFunction') -> 'FactoredTransferFunction':
+        """Return the product with every factor of both; none is cancelled."""
+        return FactoredTransferFunction(
+            self.gain * other.gain,
+            self.numerator + other.numerator,
+            self.denominator + other.denominator,
+        )
+
+    def at(self, s: np.ndarray) -> np.ndarray:
+        """Return the complex value, the shape of `s`, at points of the complex plane in rad/s."""
+        s = np.asarray(s, dtype=complex)
+        return self.gain * _product(self.numerator, s) / _product(self.denominator, s)
+
+    def frequency_response(self, omega: np.ndarray) -> np.ndarray:
+        """Return the complex response, the shape of `omega`, at frequencies in rad/s."""
+        return self.at(1j * np.asarray(omega, dtype=float))
+
+    def to_state_space(self) -> StateSpace:
+        """Return a real cascade realisation; raise ParameterError when it is not proper."""
+        return StateSpace(*realise_cascade(self.gain, self.numerator, self.denominator))
+
+
+def _product(factors: Sequence[Factor], s: np.ndarray) -> np.ndarray:
+    product = np.ones_like(s)
+    for factor in factors:
+        if isinstance(factor, tuple):
+            product = product * (s * s + factor[0] * s + factor[1])
+        else:
+            product = product * (s + factor)
+    return product
+
+
+def _roots(factors: Sequence[Factor]) -> np.ndarray:
+    roots = [np.roots((1.0, *f)) if isinstance(f, tuple) else np.array([-f]) for f in factors]
+    return np.concatenate([np.zeros(0, dtype=complex), *roots])
+
+
+def discretise_zoh(system: StateSpace, period_s: float) -> StateSpace:
+    """
+    Return the exact sampled system for inputs held over each period of `period_s` seconds.
+
+    exp([[a, b], [0, 0]] T) = [[a_d, b_d], [0, 1]].
+    """
+    _require_continuous(system)
+    require_number('period_s', period_s, above=0.0)
+    states, inputs = system.b.shape
+    block = np.zeros((states + inputs, states + inputs))
+    block[:states, :states], block[:states, states:] = system.a, system.b
+    transition = _exponential(block * period_s)[:states]
+    return StateSpace(transition[:, :states], transition[:, states:], system.c, system.d, period_s)
+
+
+def lift_piecewise_linear(
+    a: np.ndarray, b: np.ndarray, period_s: float, intervals: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return a_d (n, n) and gamma (n, intervals + 1), so that x_(k+1) = a_d x_k + gamma @ nodes.
+
+    `b` is the column of one input, (n,) or (n, 1); `nodes` are its values at the ends of
+    `intervals` equal parts of the period, between which it is linear. Exact: over one part of
+    length h, u(t) = u_0 + (u_1 - u_0) t / h makes (x, u, u_1 - u_0) an autonomous linear system.
+    """
+    require_number('intervals', intervals, at_least=1)
+    require_number('period_s', period_s, above=0.0)
+    states = len(a)
+    part_s = period_s / intervals
+    block = np.zeros((states + 2, states + 2))
+    block[:states, :states], block[:states, states] = a, np.reshape(b, states)
+    block[states, states + 1] = 1.0 / part_s
+    transition = _exponential(block * part_s)[:states]
+    step, level, change = transition[:, :states], transition[:, -2], transition[:, -1]
+    a_d, gamma = np.eye(states), np.zeros((states, intervals + 1))
+    for part in reversed(range(intervals)):
+        gamma[:, part : part + 2] += a_d @ np.column_stack([level - change, change])
+        a_d = a_d @ step
+    return a_d, gamma
+
+
+def lift_zoh_dense(
+    system: StateSpace, period_s: float, intervals: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """
+    Return a_d, b_d and the outputs within a period for an input u held over it.
+
+    x_(k+1) = a_d x_k + b_d u; the outputs at i period_s / intervals, i = 0..intervals, stacked
+    node after node, are outputs @ x_k + feedthrough @ u with outputs (nodes p, n) and feedthrough
+    (nodes p, m), nodes = intervals + 1. Node 0 has the input of this period already.
+    """
+    require_number('intervals', intervals, at_least=1)
+    part = discretise_zoh(system, period_s / intervals)
+    a_d, b_d = np.eye(len(part.a)), np.zeros(part.b.shape)
+    outputs, feedthrough = [system.c], [system.d]
+    for _ in range(intervals):
+        b_d = b_d + a_d @ part.b
+        a_d = a_d @ part.a
+        outputs.append(system.c @ a_d)
+        feedthrough.append(system.c @ b_d + system.d)
+    return a_d, b_d, np.vstack(outputs), np.vstack(feedthrough)
+
+
+def _exponential(matrix: np.ndarray) -> np.ndarray:
+    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
+    from scipy.linalg import expm
+
+    return expm(matrix)
+
+
+def _require_continuous(system: StateSpace) -> None:
+    if system.period_s is not None:
+        raise ParameterError(f'state space is already sampled at {system.period_s:g} s')

@@ -1,0 +1,1 @@
+"""Models of engine, load, clutch, driveline, vehicle and actuator; no ROS, no clock."""

@@ -1,0 +1,110 @@
+"""The driveline as linear equations: its four states and its transfer functions to slip speed."""
+
+import numpy as np
+
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
+
+
+def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
+    """
+    Return the state space of Section 1.5.
+
+    x = [w_m, w_p, w_r, theta_sr], u = [C_m, C_f, C_load], y = [w_d, w_sr]. Row 3 is that of the
+    thesis's matrix A, with c_sa/(J_v tau); its third differential equation prints
+    c_sa/(J_p tau), an erratum: the half-shaft would not push back with the torque it is pushed
+    with. Equation (1.4) leaves out c_prim, which the matrix has.
+    """
+    p = parameters
+    tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
+    j_p, j_v = p.shaft_inertia, p.vehicle_inertia
+    a = [
+        [-p.engine_damping / p.engine_inertia, 0.0, 0.0, 0.0],
+        [
+            0.0,
+            -(damping / tau**2 + p.shaft_damping) / j_p,
+            damping / (j_p * tau),
+            -stiffness / (j_p * tau),
+        ],
+        [0.0, damping / (j_v * tau), -damping / j_v, stiffness / j_v],
+        [0.0, 1.0 / tau, -1.0, 0.0],
+    ]
+    b = [
+        [1.0 / p.engine_inertia, -1.0 / p.engine_inertia, 0.0],
+        [0.0, 1.0 / j_p, 0.0],
+        [0.0, 0.0, -1.0 / j_v],
+        [0.0, 0.0, 0.0],
+    ]
+    c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / tau, -1.0, 0.0]]
+    return StateSpace(np.array(a), np.array(b), np.array(c), np.zeros((2, 3)))
+
+
+def engine_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:
+    """Return P_1 = w_d / C_m = (1/J_m) / (s + c_m/J_m)."""
+    gain = 1.0 / parameters.engine_inertia
+    return FactoredTransferFunction(gain, (), (gain * parameters.engine_damping,))
+
+
+def clutch_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:
+    """
+    Return P_2 = w_d / C_f, factored in the layout the thesis prints it in.
+
+    w_p / C_f = (J_v s^2 + c_sa s + k_sa) / D(s), with D the free driveline's cubic, and
+    w_m / C_f = -1 / (J_m s + c_m). The zeros are the roots of
+    D(s) + (J_m s + c_m)(J_v s^2 + c_sa s + k_sa): the driveline with the clutch locked, whose
+    primary shaft has the inertia J_p + J_m and the damping c_prim + c_m.
+    """
+    p = parameters
+    locked = _driveline_cubic(
+        p, p.shaft_inertia + p.engine_inertia, p.shaft_damping + p.engine_damping
+    )
+    free = _driveline_cubic(p, p.shaft_inertia, p.shaft_damping)
+    return FactoredTransferFunction(
+        gain=-(1.0 / p.engine_inertia + 1.0 / p.shaft_inertia),
+        numerator=_factored(locked),
+        denominator=(p.engine_damping / p.engine_inertia, *_factored(free)),
+    )
+
+
+def load_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:
+    """Return P_3 = w_d / C_load = (c_sa s + k_sa) / (tau D(s)), laid out as the thesis does."""
+    p = parameters
+    free = _driveline_cubic(p, p.shaft_inertia, p.shaft_damping)
+    return FactoredTransferFunction(
+        gain=p.halfshaft_damping / (p.total_ratio * p.shaft_inertia * p.vehicle_inertia),
+        numerator=(p.halfshaft_stiffness / p.halfshaft_damping,),
+        denominator=_factored(free),
+    )
+
+
+def _driveline_cubic(
+    parameters: DrivelineParameters, inertia: float, damping: float
+) -> tuple[float, float, float]:
+    """
+    Return d_2, d_1, d_0 of the monic cubic of shaft, half-shaft and vehicle.
+
+    D(s) = J J_v s^3 + (c J_v + J c_sa + c_sa J_v/tau^2) s^2
+    + (J k_sa + c c_sa + k_sa J_v/tau^2) s + c k_sa, for a shaft of inertia J and damping c.
+    """
+    p = parameters
+    reflected = p.vehicle_inertia / p.total_ratio**2
+    leading = inertia * p.vehicle_inertia
+    return (
+        (damping * p.vehicle_inertia + (inertia + reflected) * p.halfshaft_damping) / leading,
+        ((inertia + reflected) * p.halfshaft_stiffness + damping * p.halfshaft_damping) / leading,
+        damping * p.halfshaft_stiffness / leading,
+    )
+
+
+def _factored(cubic: tuple[float, float, float]) -> tuple[float, tuple[float, float]]:
+    """
+    Return a and (b, c) with s^3 + d_2 s^2 + d_1 s + d_0 = (s + a)(s^2 + b s + c).
+
+    -a is the slowest real root; b and c follow by division, without the other two roots.
+    """
+    d_2, d_1, d_0 = cubic
+    roots = np.roots([1.0, d_2, d_1, d_0])
+    real = roots[roots.imag == 0.0].real
+    a = float(-real[np.argmin(np.abs(real))])
+    b = d_2 - a
+    return a, (b, d_1 - a * b)

@@ -1,0 +1,167 @@
+"""Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ddct_plant.base.checks import require_number, require_rising
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
+
+MOST_AUTHORITY = 1e6
+"""Largest deviation in N m and largest rate in N m/s that an engine's authority may have."""
+
+
+@dataclass(frozen=True)
+class TorqueProfile:
+    """Engine torque over scenario time, linear between its points and constant outside them."""
+
+    time_s: tuple[float, ...]
+    """Scenario times in s, strictly increasing."""
+    torque_n_m: tuple[float, ...]
+    """C_m in N m at those times, from 0 to 10 kN m."""
+
+    def __post_init__(self) -> None:
+        """Check the points; raise ParameterError that names the first bad one."""
+        _require_points('engine.time_s', self.time_s)
+        _require_points('engine.torque_n_m', self.torque_n_m, at_least=0.0, at_most=1e4)
+        if len(self.time_s) != len(self.torque_n_m):
+            raise ParameterError(
+                f'engine has {len(self.time_s)} times and {len(self.torque_n_m)} torques: '
+                'give one torque for each time'
+            )
+        require_rising('engine.time_s', self.time_s)
+
+
+def _require_points(
+    name: str,
+    values: Sequence[float],
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> None:
+    if not values:
+        raise ParameterError(f'{name} is empty: give at least one point')
+    for index, value in enumerate(values):
+        require_number(f'{name}[{index}]', value, at_least=at_least, at_most=at_most)
+
+
+@dataclass(frozen=True)
+class EngineAuthority:
+    """
+    How far and how fast a controller may move the engine away from the driver's demand.
+
+    It shapes the deviation from the demand, so an engine without requests delivers the demand. As
+    it stands the engine follows any request at once, as the thesis assumes (Section 4.3).
+    """
+
+    deviation_n_m: float = 1000.0
+    """Largest deviation from the demand, either way."""
+    slew_n_m_s: float = MOST_AUTHORITY
+    """Largest rate of the deviation."""
+    lag_s: float = 0.0
+    """Time constant of the first-order lag with which the deviation comes about; 0 is none."""
+    minimum_torque_n_m: float = 0.0
+    """Lowest torque delivered."""
+    maximum_torque_n_m: float = 1000.0
+    """Highest torque delivered."""
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        for name in ('deviation_n_m', 'slew_n_m_s', 'lag_s'):
+            require_number(
+                f'engine_authority.{name}',
+                getattr(self, name),
+                at_least=0.0,
+                at_most=MOST_AUTHORITY,
+            )
+        for name in ('minimum_torque_n_m', 'maximum_torque_n_m'):
+            require_number(
+                f'engine_authority.{name}', getattr(self, name), at_least=-1e4, at_most=1e4
+            )
+        if self.minimum_torque_n_m >= self.maximum_torque_n_m:
+            raise ParameterError(
+                f'engine_authority.minimum_torque_n_m is {self.minimum_torque_n_m:g} N m: it must '
+                f'be below maximum_torque_n_m, {self.maximum_torque_n_m:g} N m'
+            )
+
+    @property
+    def lag_share(self) -> float:
+        """Share of a held deviation that comes about within one period."""
+        return 1.0 - math.exp(-PERIOD_S / self.lag_s) if self.lag_s > 0.0 else 1.0
+
+
+class EngineResponse:
+    """What becomes of requests within an engine's authority: the state between two periods."""
+
+    def __init__(self, authority: EngineAuthority) -> None:
+        """Start on the demand."""
+        self._authority = authority
+        self._most_change = authority.slew_n_m_s * PERIOD_S
+        self.asked = 0.0
+        """Deviation from the demand in N m, limited, before the lag."""
+        self.deviation = 0.0
+        """The same after the lag."""
+
+    def deliver(self, demand: float, request: float) -> float:
+        """
+        Return C_m in N m over the coming period, and take the request in N m in.
+
+        The deviation is limited, then its rate; it passes the lag; then the torque is limited.
+        """
+        limits = self._authority
+        asked = _limited(request - demand, limits.deviation_n_m)
+        self.asked += _limited(asked - self.asked, self._most_change)
+        self.deviation += limits.lag_share * (self.asked - self.deviation)
+        torque = demand + self.deviation
+        return min(max(torque, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
+
+    def reachable(self, demand: float, periods: int) -> tuple[float, float]:
+        """
+        Return the lowest and the highest deviation in N m that may be asked for `periods` ahead.
+
+        Within them the torque keeps its limits, as far as the rate allows; 1 is the coming period.
+        """
+        limits, asked, change = self._authority, self.asked, periods * self._most_change
+        lowest = _limited(limits.minimum_torque_n_m - demand, limits.deviation_n_m)
+        highest = _limited(limits.maximum_torque_n_m - demand, limits.deviation_n_m)
+        return asked + _limited(lowest - asked, change), asked + _limited(highest - asked, change)
+
+
+class Engine:
+    """
+    An engine whose torque C_m is held over the 10 ms period that starts at its stamp.
+
+    The thesis's engine delivers the demanded torque at once (Section 1.4.3). A controller with two
+    inputs may ask for another torque (Section 4.3), within the engine's authority.
+    """
+
+    def __init__(self, profile: TorqueProfile, authority: EngineAuthority | None = None) -> None:
+        """Start on the demand; without `authority` it follows any request at once."""
+        self._profile = profile
+        self._response = EngineResponse(authority or EngineAuthority())
+
+    def demand(self, step: int) -> float:
+        """Return the driver's torque demand in N m at step `step`."""
+        times, torques = self._profile.time_s, self._profile.torque_n_m
+        time = time_of_step(step)
+        if time <= times[0]:
+            return torques[0]
+        for index in range(1, len(times)):
+            if time < times[index]:
+                share = (time - times[index - 1]) / (times[index] - times[index - 1])
+                return torques[index - 1] + share * (torques[index] - torques[index - 1])
+        return torques[-1]
+
+    def torque(self, step: int, request: float | None = None) -> float:
+        """
+        Return the torque C_m in N m delivered over the period of step `step`.
+
+        It is the demand, or what comes about of `request` in N m; with requests it is called once
+        per step, in order.
+        """
+        demand = self.demand(step)
+        return demand if request is None else self._response.deliver(demand, request)
+
+
+def _limited(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)

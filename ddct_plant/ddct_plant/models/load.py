@@ -1,0 +1,66 @@
+"""Road load: aerodynamic, rolling and slope resistance as a wheel torque (Section 1.4.4)."""
+
+import math
+from dataclasses import dataclass
+
+from ddct_plant.base.checks import require_number
+from ddct_plant.models.vehicle import VehicleParameters
+
+
+@dataclass(frozen=True)
+class LoadParameters:
+    """What resists the vehicle, apart from its mass and wheels; the thesis prints no values."""
+
+    air_density_kg_m3: float = 1.2
+    """rho_a."""
+    frontal_area_m2: float = 2.1
+    """A_f."""
+    drag_coefficient: float = 0.32
+    """C_a."""
+    rolling_coefficient: float = 0.0125
+    """mu_r."""
+    wind_speed_m_s: float = 0.0
+    """v_a, positive as a head wind."""
+    slope_rad: float = 0.0
+    """Slope angle of the road, called alpha and beta in the thesis; positive uphill."""
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        require_number('load.air_density_kg_m3', self.air_density_kg_m3, at_least=0.0)
+        require_number('load.frontal_area_m2', self.frontal_area_m2, at_least=0.0)
+        require_number('load.drag_coefficient', self.drag_coefficient, at_least=0.0)
+        require_number('load.rolling_coefficient', self.rolling_coefficient, at_least=0.0)
+        require_number('load.wind_speed_m_s', self.wind_speed_m_s, at_least=-60.0, at_most=60.0)
+        require_number('load.slope_rad', self.slope_rad, at_least=-0.6, at_most=0.6)
+
+
+class RoadLoad:
+    """
+    Wheel torque that resists a vehicle at speed v_v (Section 1.4.4).
+
+    F_a = 0.5 rho_a A_f C_a (v_a + v_v)^2, F_r = m g mu_r cos(alpha), F_g = m g sin(alpha) and
+    C_load = (F_a + F_r + F_g) r_w. F_a keeps the sign of the relative wind, which the printed
+    square loses for a tail wind stronger than the vehicle is fast.
+    """
+
+    def __init__(self, parameters: LoadParameters, vehicle: VehicleParameters) -> None:
+        weight = vehicle.mass_kg * vehicle.gravity_m_s2
+        self._drag = (
+            0.5
+            * parameters.air_density_kg_m3
+            * parameters.frontal_area_m2
+            * parameters.drag_coefficient
+        )
+        self._wind = parameters.wind_speed_m_s
+        self._constant_force = weight * (
+            parameters.rolling_coefficient * math.cos(parameters.slope_rad)
+            + math.sin(parameters.slope_rad)
+        )
+        self._wheel_radius = vehicle.wheel_radius_m
+
+    def torque(self, vehicle_speed: float) -> float:
+        """Return C_load in N m, positive when it resists, at `vehicle_speed` in m/s."""
+        air_speed = self._wind + vehicle_speed
+        return (
+            self._drag * air_speed * abs(air_speed) + self._constant_force
+        ) * self._wheel_radius

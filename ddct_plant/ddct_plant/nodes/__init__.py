@@ -1,0 +1,1 @@
+"""The plant's ROS 2 nodes: thin shells around the models."""

@@ -1,0 +1,92 @@
+"""Node `actuator`: turns each torque request into the torque over the coming period."""
+
+from typing import Any, ClassVar
+
+from geometry_msgs.msg import WrenchStamped
+from trajectory_msgs.msg import JointTrajectory
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.fail_safe.guarded_actuator import GuardedActuator
+from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.graph.arrivals import read_torque
+from ddct_plant.graph.follower import FollowerNode, Reply
+from ddct_plant.graph.messages import TorquePointsMessage
+from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_timeout
+from ddct_plant.graph.spin import run_node
+from ddct_plant.scenario.initial import initial_state
+
+REQUEST = 'clutch/torque_request'
+
+
+class ActuatorNode(FollowerNode):
+    """
+    Answer `clutch/torque_request` with `actuator/torque`.
+
+    In real time it also follows `/clock`: a request that is missing is held for
+    `request_timeout_s`, then the clutch opens at `fail_safe_ramp_n_m_s`. Until it hears
+    `/clock` it gives no torque, and it ends when requests go on without: it could not tell that
+    they stop.
+    """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p fail_safe_ramp_n_m_s:=500.0',)
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Build the actuator at rest on the run's first request."""
+        super().__init__('actuator', **kwargs)
+        fail_safe = FailSafeSettings(
+            declare_request_timeout(self, 'the clutch opens'), declare_fail_safe_ramp(self)
+        )
+        self._actuator = GuardedActuator(initial_state(self.settings).torque_request, fail_safe)
+        self._torque = self.create_publisher(JointTrajectory, 'actuator/torque', LOOP_QOS)
+        self._message = TorquePointsMessage()
+        self._requests_without_clock = 0
+        self.publish_run_info(fail_safe.info())
+        self.follow([(WrenchStamped, REQUEST, read_torque)])
+        if not self.settings.lockstep:
+            self._safe_state = SafeStateReport(self)
+
+    def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
+        """Return the torque over the period of step k, after any steps that had no request."""
+        torques = self._actuator.request(step, inputs[REQUEST])
+        return () if torques is None else self._reply_at(stamp_ns, torques)
+
+    def publish_reply(self) -> None:
+        """Publish the torque, in real time once the fail-safe sees the time pass."""
+        if self.limit is None or self.limit.tick_seen:
+            super().publish_reply()
+
+    def admits(self, topic: str, stamp: int) -> bool:
+        """Say whether a stamp may be true; raise DdctError when no tick tells, but requests do."""
+        true = super().admits(topic, stamp)
+        if not true and self.limit and not self.limit.tick_seen:
+            self._requests_without_clock += 1
+            if self._actuator.too_long(0, 1 + self._requests_without_clock):
+                raise DdctError(
+                    f'at stamp {stamp} ns: {REQUEST} comes without /clock, by which the fail-safe '
+                    'sees that requests stop: publish /clock (rosgraph_msgs/Clock) with the stamp '
+                    'of every tick'
+                )
+        return true
+
+    def on_tick(self, step: int, stamp: int) -> None:
+        """Open the clutch while requests have stopped."""
+        torques = self._actuator.tick(step)
+        if torques is None:
+            return
+        self._safe_state.tell(step, stamp, f'no {REQUEST} for too long: opening the clutch')
+        for publisher, message in self._reply_at(stamp, torques):
+            publisher.publish(message)
+
+    def _reply_at(self, stamp: int, torques: list[float]) -> Reply:
+        return ((self._torque, self._message.fill(stamp, torques)),)
+
+
+def main() -> int:
+    """Run the node until it is stopped."""
+    return run_node('actuator', ActuatorNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,119 @@
+"""Node `engine`: the driver's demand and the delivered engine torque at every tick."""
+
+from typing import Any, ClassVar
+
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import step_of_stamp
+from ddct_plant.fail_safe.engine_info import engine_info
+from ddct_plant.fail_safe.guarded_engine import GuardedEngine
+from ddct_plant.graph.arrivals import read_stamp_only, read_torque
+from ddct_plant.graph.follower import FollowerNode, Reply
+from ddct_plant.graph.messages import stamp_ns, torque_message
+from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.settings import declare, declare_request_timeout
+from ddct_plant.graph.spin import run_node
+from ddct_plant.models.engine import Engine
+
+JOINT_STATES = 'driveline/joint_states'
+REQUEST = 'engine/torque_request'
+
+
+class EngineNode(FollowerNode):
+    """
+    Answer `driveline/joint_states` with `engine/torque_demand` and `engine/torque`.
+
+    With `two_input` the demand is answered at once, and `engine/torque` once the controller's
+    `engine/torque_request` of that stamp is here. In real time, when requests stop for
+    `request_timeout_s`, the engine goes back to the demand as fast as its authority lets it, and
+    stays there until it is started again: the actuator has opened the clutch by then.
+    """
+
+    EXAMPLES: ClassVar[tuple[str, ...]] = ('-p two_input:=true',)
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Build the engine of the run's scenario."""
+        super().__init__('engine', **kwargs)
+        self._two_input = declare(
+            self, 'two_input', False, 'Wait for engine/torque_request of a two-input controller'
+        )
+        scenario = self.settings.scenario
+        self._engine = Engine(scenario.engine, scenario.engine_authority)
+        timeout_s = declare_request_timeout(self, "the driver's demand takes over")
+        self._commanded = GuardedEngine(self._engine, timeout_s)
+        self._demand = self.create_publisher(WrenchStamped, 'engine/torque_demand', LOOP_QOS)
+        self._torque = self.create_publisher(WrenchStamped, 'engine/torque', LOOP_QOS)
+        self._demand_message = WrenchStamped()
+        self._torque_message = WrenchStamped()
+        self.publish_run_info(engine_info(self._two_input, timeout_s))
+        if self._two_input:
+            self.create_subscription(
+                JointState, JOINT_STATES, self.guarded(self._publish_demand), LOOP_QOS
+            )
+            self.follow(
+                [
+                    (JointState, JOINT_STATES, read_stamp_only),
+                    (WrenchStamped, REQUEST, read_torque),
+                ]
+            )
+        else:
+            self.create_subscription(
+                WrenchStamped, REQUEST, self.guarded(self._refuse_request), LOOP_QOS
+            )
+            self.follow([(JointState, JOINT_STATES, read_stamp_only)])
+        if not self.settings.lockstep:
+            self._safe_state = SafeStateReport(self)
+
+    def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
+        """Return the torque over the period of step k, and the demand if it is not out yet."""
+        if self._two_input:
+            torque = self._commanded.request(step, inputs[REQUEST])
+            return () if torque is None else (self._delivered(stamp_ns, torque),)
+        return (
+            self._delivered(stamp_ns, self._engine.torque(step)),
+            (self._demand, self._demand_at(step, stamp_ns)),
+        )
+
+    def _publish_demand(self, message: JointState) -> None:
+        stamp = stamp_ns(message)
+        if not self.admits(JOINT_STATES, stamp):
+            return
+        step = step_of_stamp(stamp)
+        self._demand.publish(self._demand_at(step, stamp))
+        if not self.settings.lockstep:
+            self._answer_alone(step, stamp)
+
+    def _answer_alone(self, step: int, stamp: int) -> None:
+        torque = self._commanded.tick(step)
+        if self._commanded.on_demand:
+            self._safe_state.tell(
+                step,
+                stamp,
+                f'no {REQUEST} for too long: the demand holds until the engine is started again',
+            )
+        if torque is not None:
+            self._torque.publish(self._delivered(stamp, torque)[1])
+
+    def _refuse_request(self, _message: WrenchStamped) -> None:
+        raise DdctError(
+            f'{REQUEST} arrived, but this engine follows the demand alone: start it with '
+            '--ros-args -p two_input:=true, or choose a controller with one input'
+        )
+
+    def _delivered(self, stamp: int, torque: float) -> tuple[Any, WrenchStamped]:
+        return self._torque, torque_message(stamp, torque, reuse=self._torque_message)
+
+    def _demand_at(self, step: int, stamp: int) -> WrenchStamped:
+        return torque_message(stamp, self._engine.demand(step), reuse=self._demand_message)
+
+
+def main() -> int:
+    """Run the node until it is stopped."""
+    return run_node('engine', EngineNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,96 @@
+"""What every program does around its work: one-line errors and honest exit codes."""
+
+import argparse
+import contextlib
+import errno
+import os
+import sys
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.printable import printable
+
+USAGE = 2
+"""Exit code after options that do not make sense, as argparse gives it."""
+INTERRUPTED = 130
+"""Exit code after SIGINT, as shells give it."""
+PIPE_CLOSED = 141
+"""Exit code after the reader of our output has gone, as shells give it for SIGPIPE."""
+_ADVICE = {
+    errno.ENAMETOOLONG: 'give a shorter name',
+    errno.ENOSPC: 'free some space or choose another place',
+    errno.EDQUOT: 'free some space or choose another place',
+}
+
+
+class ProgramParser(argparse.ArgumentParser):
+    """Keeps the lines of descriptions and examples, and complains in one line."""
+
+    def __init__(self, **options: Any) -> None:
+        """Take what ArgumentParser takes."""
+        options.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
+        super().__init__(**options)
+
+    def error(self, message: str) -> NoReturn:
+        """End the program."""
+        self.exit(USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Write help or version; where argparse would pass over it, OSError tells of failure."""
+        stream = file or sys.stderr
+        if message and stream is not None:
+            stream.write(message)
+
+
+def run_program(
+    name: str, main_function: Callable[[list[str]], int], argv: list[str] | None
+) -> int:
+    """
+    Run `main_function(argv)` and return the program's exit code.
+
+    `argv` is without the program's name; None takes it from the command line. A DdctError is
+    printed on standard error as `<name>: <text>` and gives 1, and so is what the operating system
+    refuses: a name that is too long, a full disk or standard output.
+    """
+    try:
+        try:
+            return main_function(sys.argv[1:] if argv is None else argv)
+        finally:  # argparse ends the program itself after --help
+            _flush()
+    except DdctError as error:
+        complain(name, error)
+        return 1
+    except KeyboardInterrupt:
+        complain(name, 'interrupted')
+        return INTERRUPTED
+    except BrokenPipeError:
+        _drop_output()
+        return PIPE_CLOSED
+    except OSError as error:
+        complain(name, _refused(error))
+        _drop_output()
+        return 1
+
+
+def complain(name: str, text: object) -> None:
+    """Print `<name>: <text>` as one line on standard error, fit for a terminal."""
+    print(f'{name}: {printable(text)}', file=sys.stderr, flush=True)
+
+
+def _flush() -> None:
+    if sys.stdout is not None:  # it is None when it was closed before the start
+        sys.stdout.flush()
+
+
+def _refused(error: OSError) -> str:
+    """Say what the operating system refused; files that are written name themselves."""
+    what = 'the output' if error.filename is None else error.filename
+    advice = _ADVICE.get(error.errno or 0, 'choose another place')
+    return f'{what}: {error.strerror or error}: {advice}'
+
+
+def _drop_output() -> None:
+    """Let what is left of the output go nowhere: the interpreter flushes once more."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,1 @@
+"""Scenarios: what a run consists of, read from files, with its initial state."""

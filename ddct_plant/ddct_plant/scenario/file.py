@@ -1,0 +1,172 @@
+"""Read, change and write scenarios as YAML; every unknown key and bad value is named."""
+
+import dataclasses
+import difflib
+import hashlib
+import importlib.resources
+import json
+import typing
+from collections.abc import Iterable, Mapping
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.scenario.scenario import Scenario
+
+_PARTS = (
+    'engine',
+    'engine_authority',
+    'engine_speed_reference',
+    'initial',
+    'reference',
+    'load',
+    'vehicle',
+    'driveline',
+)
+
+
+def scenario_names() -> list[str]:
+    """Return the names of the scenarios that come with the package."""
+    folder = _packaged()
+    return sorted(
+        Path(entry.name).stem for entry in folder.iterdir() if entry.name.endswith('.yaml')
+    )
+
+
+def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
+    """
+    Return the scenario that a name or a YAML file describes, changed by `KEY=VALUE` overrides.
+
+    Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
+    cannot be read.
+    """
+    text, default_name = _read(name_or_file)
+    try:
+        content = parse_yaml(text)
+    except ParameterError as error:
+        raise ParameterError(f'scenario {name_or_file}: {error}') from error
+    if not isinstance(content, dict):
+        raise DdctError(f'scenario {name_or_file}: the file must be a mapping of keys to values')
+    content.setdefault('name', default_name)
+    for override in overrides:
+        _apply(content, override)
+    try:
+        return scenario_from_mapping(content)
+    except ParameterError as error:
+        raise ParameterError(f'scenario {name_or_file}: {error}') from error
+
+
+def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
+    """Build a scenario from nested mappings, the form that YAML files have."""
+    content = dict(content)
+    for part in _PARTS:
+        if part in content:
+            part_type = next(f.type for f in dataclasses.fields(Scenario) if f.name == part)
+            content[part] = _build(part_type, content[part], f'{part}.')
+    content.setdefault('description', '')
+    content['controllers'] = _gains(content.get('controllers') or {})
+    return _build(Scenario, content, '')
+
+
+def scenario_to_yaml(scenario: Scenario) -> str:
+    """Return the YAML text that `load_scenario` reads back to an equal scenario."""
+    return dump_yaml(_plain(dataclasses.asdict(scenario)))
+
+
+def scenario_digest(scenario: Scenario) -> str:
+    """Return a short hash over every value of the scenario, to tell two of one name apart."""
+    text = json.dumps(_plain(dataclasses.asdict(scenario)), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _packaged() -> Traversable:
+    return importlib.resources.files('ddct_plant.scenario') / 'packaged'
+
+
+def _read(name_or_file: str) -> tuple[str, str]:
+    if not name_or_file:
+        raise ParameterError('scenario is empty: give a name or a YAML file')
+    if '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml')):
+        if name_or_file not in scenario_names():
+            raise ParameterError(
+                f'unknown scenario {name_or_file!r}: choose from {", ".join(scenario_names())}, '
+                'or give the path of a YAML file'
+            )
+        resource = (
+            importlib.resources.files('ddct_plant.scenario') / 'packaged' / f'{name_or_file}.yaml'
+        )
+        return resource.read_text(encoding='utf-8'), name_or_file
+    path = Path(name_or_file)
+    try:
+        return read_text_file(path), path.stem
+    except OSError as error:
+        raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
+
+
+def _apply(content: dict[str, Any], override: str) -> None:
+    key, equals, text = override.partition('=')
+    if not equals or not key:
+        raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
+    try:
+        value = parse_yaml(text)
+    except ParameterError as error:
+        raise ParameterError(f'--set {override}: {error}') from error
+    *folders, leaf = key.split('.')
+    target = content
+    for folder in folders:
+        target = target.setdefault(folder, {})
+        if not isinstance(target, dict):
+            raise ParameterError(f'--set {override}: {folder} holds a value, not keys')
+    target[leaf] = value
+
+
+def _build(part_type: Any, content: Any, prefix: str) -> Any:
+    if not isinstance(content, Mapping):
+        raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
+    fields = {field.name: field for field in dataclasses.fields(part_type)}
+    for key in content:
+        if key not in fields:
+            close = difflib.get_close_matches(str(key), fields, n=1)
+            hint = f'did you mean {prefix}{close[0]}?' if close else f'known: {", ".join(fields)}'
+            raise ParameterError(f'unknown key {prefix}{key}: {hint}')
+    for name, field in fields.items():
+        required = (
+            field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+        )
+        if required and name not in content:
+            raise ParameterError(f'key {prefix}{name} is missing')
+    return part_type(
+        **{
+            key: _frozen(value, fields[key].type, f'{prefix}{key}')
+            for key, value in content.items()
+        }
+    )
+
+
+def _frozen(value: Any, field_type: Any, name: str) -> Any:
+    if value is None:
+        raise ParameterError(f'{name} is empty: give a value')
+    if typing.get_origin(field_type) is tuple:
+        if not isinstance(value, (list, tuple)):
+            raise ParameterError(f'{name} is {value!r}: give a list, [...]')
+        return tuple(value)
+    if field_type is str and not isinstance(value, str):
+        raise ParameterError(f'{name} is {value!r}: give text')
+    return value
+
+
+def _gains(content: Any) -> dict[str, dict[str, Any]]:
+    if not isinstance(content, Mapping) or not all(
+        isinstance(gains, Mapping) for gains in content.values()
+    ):
+        raise ParameterError('controllers: give gains by controller name, {pi: {...}}')
+    return {str(name): dict(gains) for name, gains in content.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value

@@ -1,0 +1,1 @@
+"""The simplified plants of Section 1.5.1."""

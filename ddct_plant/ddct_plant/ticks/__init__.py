@@ -1,0 +1,1 @@
+"""Who steps when: the owner of time, its barrier, the join and the limits of stamps; no ROS."""

@@ -1,0 +1,120 @@
+"""The owner of time at 100 Hz on a steady clock; knows nothing of ROS."""
+
+from collections.abc import Callable
+from typing import Any
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, stamp_of_step, time_of_step
+from ddct_plant.fail_safe.request_watch import FailSafe
+from ddct_plant.ticks.tick_owner import (
+    CLUTCH,
+    ENGINE,
+    LOAD,
+    RECORDER_TOPIC,
+    TORQUE_TOPICS,
+    TickOwner,
+)
+
+RECORDER_PATIENCE_S = 2.0
+"""How long a real-time run waits at t_N for the recorder, which may lack a reply for good."""
+
+
+class RealtimeOwner(TickOwner):
+    """
+    Step on a steady 10 ms grid with the replies to the tick before, and count the missing ones.
+
+    t_0 is waited for as in lock-step, recorder included: it is the start barrier. t_N waits for
+    the torques, which end the run, and a while for the recorder. In between a missing torque is
+    held at its last value; a clutch torque that stays away for longer than its timeout runs to
+    zero at the stated rate, and counts no more when it comes back: that is the safe state.
+    """
+
+    def __init__(
+        self, *arguments: Any, on_started: Callable[[], None] = lambda: None, **options: Any
+    ) -> None:
+        """Take what `TickOwner` takes; `on_started` is called when the 10 ms grid begins."""
+        super().__init__(*arguments, **options)
+        self._on_started = on_started
+        self.missed_replies = dict.fromkeys(TORQUE_TOPICS, 0)
+        self.worst_lateness_s = 0.0
+        self._held: dict[str, Any] = {}
+        self._silent_since: dict[str, int] = dict.fromkeys(TORQUE_TOPICS, 0)
+        self._clutch = FailSafe(self._plan.clutch)
+        self._started_at: float | None = None
+
+    @property
+    def safe(self) -> bool:
+        """Whether the clutch torque has stayed away and is being taken to zero."""
+        return self._clutch.engaged
+
+    def tick(self) -> None:
+        """Take every step that is due by the wall clock."""
+        if self._started_at is None:
+            return
+        while self.step < self._plan.steps:
+            due = self._started_at + (self.step + 1) * PERIOD_S
+            now = self._clock()
+            if now < due:
+                return
+            self.worst_lateness_s = max(self.worst_lateness_s, now - due)
+            self._take_step()
+
+    def watch(self) -> None:
+        """Guard the first and the last tick; the ones between never wait."""
+        if self._started_at is not None and self.step < self._plan.steps:
+            return
+        waited = self._clock() - self._opened_at
+        last = self._started_at is not None
+        if last and self.barrier.missing() == [RECORDER_TOPIC] and waited > RECORDER_PATIENCE_S:
+            self._finish(None)
+        else:
+            super().watch()
+
+    def _awaited(self, step: int) -> tuple[str, ...]:
+        if step not in (0, self._plan.steps):
+            return TORQUE_TOPICS
+        return tuple(topic for topic in self._plan.topics if topic != CLUTCH or not self.safe)
+
+    def _on_complete(self) -> None:
+        if self.step == self._plan.steps:
+            self._finish(None)
+        elif self._started_at is None:
+            self._started_at = self._clock()
+            self._on_started()
+
+    def _take_step(self) -> None:
+        replies = {topic: self.barrier.get(topic) for topic in TORQUE_TOPICS}
+        self.missed_steps += any(reply is None for reply in replies.values())
+        for topic, reply in replies.items():
+            if reply is None:
+                self._miss(topic)
+            else:
+                self._silent_since[topic] = self.step
+                if topic != CLUTCH:
+                    self._held[topic] = reply
+        clutch = self._clutch_torques(replies[CLUTCH])
+        self._integrate(self._held[ENGINE], self._held[LOAD], clutch)
+
+    def _clutch_torques(self, reply: list[float] | None) -> list[float]:
+        """Return the (11,) torques in N m of this period: the reply, the last one, or the ramp."""
+        if reply is not None and not self.safe:
+            self._clutch.request(self.step, reply[-1])
+            self._held[CLUTCH] = reply[-1]
+            return reply
+        held = self._held[CLUTCH]
+        if not self._clutch.tick(self.step):
+            return [held] * (SUBSTEPS + 1)
+        self._held[CLUTCH] = self._clutch.next_torque()
+        change = (self._held[CLUTCH] - held) / SUBSTEPS
+        return [held + i * change for i in range(SUBSTEPS + 1)]
+
+    def _miss(self, topic: str) -> None:
+        self.missed_replies[topic] += 1
+        silent_s = time_of_step(self.step - self._silent_since[topic])
+        if silent_s > self._plan.answer_timeout_s:
+            self._finish(
+                DdctError(
+                    f'no {topic} since stamp {stamp_of_step(self._silent_since[topic])} ns, '
+                    f'{silent_s:.2f} s ago: check that the node which publishes it is running'
+                )
+            )

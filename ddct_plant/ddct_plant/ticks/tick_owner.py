@@ -1,0 +1,121 @@
+"""The owner of time: when the driveline steps, and on which replies. Knows nothing of ROS."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.ticks.barrier import TickBarrier
+
+ENGINE, LOAD, CLUTCH = 'engine/torque', 'load/torque', 'clutch/torque'
+TORQUE_TOPICS = (ENGINE, LOAD, CLUTCH)
+RECORDER_TOPIC = 'recorder/ack'
+RESEND_AFTER_S = 0.1
+"""How long a tick may stay unanswered before it is sent again."""
+
+
+@dataclass(frozen=True)
+class TickPlan:
+    """How far a run goes and what it waits for."""
+
+    steps: int
+    """N: states run t_0..t_N."""
+    require_recorder: bool
+    """Whether `recorder/ack` is part of the barrier."""
+    answer_timeout_s: float
+    """Wall time after which an unanswered tick ends the run."""
+    clutch: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
+    """Real time: when and how fast a clutch torque that stays away is taken to zero."""
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """The replies that a whole tick has."""
+        return (*TORQUE_TOPICS, RECORDER_TOPIC) if self.require_recorder else TORQUE_TOPICS
+
+
+class TickOwner(ABC):
+    """
+    Common part of both modes: publish a tick, gather its replies, integrate, go on.
+
+    `publish(step)` sends the driveline's present outputs; `finish(error)` ends the run.
+    """
+
+    def __init__(
+        self,
+        driveline: Driveline,
+        plan: TickPlan,
+        publish: Callable[[int], None],
+        finish: Callable[[DdctError | None], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.step = 0
+        self.resends = 0
+        self.missed_steps = 0
+        self.barrier = TickBarrier()
+        self._driveline = driveline
+        self._plan = plan
+        self._publish = publish
+        self._finish = finish
+        self._clock = clock
+        self._opened_at = 0.0
+        self._sent_at = 0.0
+
+    def start(self) -> None:
+        """Publish t_0; it is re-sent until every node has answered, so any start order works."""
+        self._open(0)
+
+    def offer(self, topic: str, stamp_ns: int, reply: Any) -> None:
+        """Take one reply; the one that completes the tick may make the driveline step."""
+        if self.barrier.offer(topic, stamp_ns, reply):
+            self._on_complete()
+
+    def watch(self) -> None:
+        """Send an unanswered tick again, or end the run; called every few ms of wall time."""
+        now = self._clock()
+        missing = self.barrier.missing()
+        if not missing:
+            return
+        if now - self._opened_at > self._plan.answer_timeout_s:
+            self._finish(
+                DdctError(
+                    f'no {" and no ".join(missing)} for stamp {stamp_of_step(self.step)} ns '
+                    f'(step {self.step}) within {self._plan.answer_timeout_s:g} s: '
+                    'check that the nodes which publish them are running'
+                )
+            )
+        elif now - self._sent_at > RESEND_AFTER_S:
+            self._sent_at = now
+            self.resends += 1
+            self._publish(self.step)
+
+    def _awaited(self, step: int) -> tuple[str, ...]:
+        return self._plan.topics
+
+    @abstractmethod
+    def _on_complete(self) -> None: ...
+
+    def _open(self, step: int) -> None:
+        self.step = step
+        self.barrier.open(step, self._awaited(step))
+        self._opened_at = self._sent_at = self._clock()
+        self._publish(step)
+
+    def _integrate(self, engine: float, load: float, clutch: list[float]) -> None:
+        self._driveline.step(engine, load, clutch)
+        self._open(self.step + 1)
+
+
+class LockstepOwner(TickOwner):
+    """Wait for every reply stamped exactly t_k, then step; never go on with old data."""
+
+    def _on_complete(self) -> None:
+        if self.step == self._plan.steps:
+            self._finish(None)
+        else:
+            get = self.barrier.get
+            self._integrate(get(ENGINE), get(LOAD), get(CLUTCH))

@@ -1,0 +1,95 @@
+"""Imports go down only: between packages, between the rooms of a package; no room is too full."""
+
+import ast
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+MAY_IMPORT = {
+    'ddct_plant': set(),
+    'ddct_reference': {'ddct_plant'},
+    'ddct_controllers': {'ddct_plant'},
+    'ddct_bringup': {'ddct_plant', 'ddct_reference', 'ddct_controllers'},
+}
+"""By package the others of ours that it may import."""
+MOST_MODULES = 15
+"""In one folder, besides __init__.py."""
+
+
+def imports(package: str) -> Iterator[tuple[Path, tuple[str, ...]]]:
+    """Yield each import of our packages: the file in its package, and the parts of the name."""
+    folder = ROOT / package / package
+    for file in sorted(folder.rglob('*.py')):
+        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                assert not node.level, f'{file}: a relative import, not followed here'
+                names = [f'{node.module}.{alias.name}' for alias in node.names]
+            else:
+                continue
+            for name in names:
+                if name.partition('.')[0] in MAY_IMPORT:
+                    yield file.relative_to(folder), tuple(name.split('.'))
+
+
+def room_arrows(package: str) -> dict[str, set[str]]:
+    """Return by room the rooms that it imports; a module outside of all folders is a room too."""
+    arrows: dict[str, set[str]] = {}
+    for file, (top, *rest) in imports(package):
+        room = Path(file.parts[0]).stem
+        if top == package and rest and rest[0] != room:
+            arrows.setdefault(room, set()).add(rest[0])
+    return arrows
+
+
+@pytest.mark.parametrize('package', MAY_IMPORT)
+def test_no_package_imports_upward(package: str) -> None:
+    upward = [
+        f'{file}: {".".join(name)}'
+        for file, name in imports(package)
+        if name[0] not in {package, *MAY_IMPORT[package]}
+    ]
+    assert upward == []
+
+
+@pytest.mark.parametrize('package', MAY_IMPORT)
+def test_no_room_imports_in_a_circle(package: str) -> None:
+    TopologicalSorter(room_arrows(package)).prepare()
+
+
+@pytest.mark.parametrize('package', ['ddct_plant', 'ddct_bringup'])
+def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> None:
+    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    section = page.partition(f'## The rooms of `{package}`')[2].partition('\n## ')[0]
+    rows = re.findall(r'^\| `(\w+)/` \|', section, re.MULTILINE)
+    folders = (ROOT / package / package).glob('*/__init__.py')
+    assert sorted(rows) == sorted(file.parent.name for file in folders)
+    for room, imported in room_arrows(package).items():
+        assert imported <= set(rows[: rows.index(room)]), room
+
+
+@pytest.mark.parametrize('package', MAY_IMPORT)
+def test_no_folder_has_too_many_modules(package: str) -> None:
+    folder = ROOT / package / package
+    for each in (folder, *(path for path in folder.rglob('*') if path.is_dir())):
+        modules = {path.stem for path in each.glob('*.py')} - {'__init__'}
+        assert len(modules) <= MOST_MODULES, each
+
+
+@pytest.mark.parametrize('module', ['registry', 'architecture'])
+def test_controllers_load_no_design_code_before_they_need_it(module: str) -> None:
+    code = (
+        f'import sys, ddct_controllers.{module}\n'
+        "print(*(name for name in sys.modules if name.startswith('ddct_controllers.design.')))"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+    )
+    assert done.stdout.split() == []
