@@ -11,6 +11,8 @@ from documented_commands import NOT_RUN_HERE, SHELL_BLOCKS, commands_of, in_this
 from support.documented import Block
 
 WITHIN_S = 240.0
+TOO_BUSY = 'steps held a torque for want of a reply'
+"""What `bringup` says of a real-time run that does not count."""
 BLOCKS = [block for block in SHELL_BLOCKS if not in_this_process(block)]
 
 ROS2 = """\
@@ -54,4 +56,6 @@ def test_commands_run(block: Block, workplace: Path, environment: dict[str, str]
         timeout=WITHIN_S,
         check=False,
     )
+    if 'realtime' in script and TOO_BUSY in done.stderr:
+        pytest.skip('too busy for real time, as the program says: exit code 1')
     assert done.returncode == 0, f'{script}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
