@@ -36,8 +36,12 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 PERIOD_US = 10_000.0
-WORST_RATIO = 1.5
-"""What the graph's nodes may cost over a chain that does no work."""
+WORST_RATIOS = {'processes': 1.5, 'single-process': 1.75}
+"""
+What the graph's nodes may cost over a chain that does no work, by layout.
+
+In one process the chain itself is short, so that the MCAP library's writer weighs more.
+"""
 BARE_S = 300.0
 """How long a bare chain may take; it ends by itself when a message is lost."""
 BARE = Path(__file__).with_name('bare_chain.py')
@@ -79,7 +83,11 @@ def main() -> int:
             'exported_mpc': exported,
         }
         write_json(options.json, figures)
-    return 0 if all(result['ratio'] <= WORST_RATIO for result in results.values()) else 1
+    return (
+        0
+        if all(results[layout]['ratio'] <= worst for layout, worst in WORST_RATIOS.items())
+        else 1
+    )
 
 
 def _print_synthesis(figures: dict[str, Any]) -> None:
@@ -104,7 +112,7 @@ def _measure(layout: str, settings: RunSettings, rounds: int) -> dict[str, objec
     print(
         f'{layout}: bare {bare_us:.0f} us, graph {graph_us:.0f} us per step '
         f'({PERIOD_US / graph_us:.1f}x real time), ratio {graph_us / bare_us:.2f} '
-        f'(rounds {ratios[0]:.2f} to {ratios[-1]:.2f}; at most {WORST_RATIO} wanted)',
+        f'(rounds {ratios[0]:.2f} to {ratios[-1]:.2f}; at most {WORST_RATIOS[layout]} wanted)',
         flush=True,
     )
     return {'bare_us': bare, 'graph_us': graph, 'ratio': graph_us / bare_us}
