@@ -143,7 +143,7 @@ def printed_lti_plant(parameters: DrivelineParameters) -> LtiPlant:
     """
     Return the LTI plant with the thesis's rounded P_1, P_2, P_3 (Section 1.6.2).
 
-    C_m P_1 and C_f P_2 nearly cancel, so rounding costs more than its digits: 0.24 % of the slip
+    C_m P_1 and C_f P_2 nearly cancel, so rounding costs more than its digits: 0.23 % of the slip
     peak after the 1.1 s of Figure 1.23, growing with time.
     """
     printed = ENGINE_TO_SLIP, CLUTCH_TO_SLIP, LOAD_TO_SLIP
