@@ -1,5 +1,7 @@
 """Our H-infinity controllers in the frozen scenario, beside the thesis's Hinf1 (Table 5.1)."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
@@ -11,6 +13,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis')
+PAGE = Path(__file__).parents[2] / 'docs' / 'h_infinity.md'
 
 
 def metrics(controller: str, wear_gain: float = 1.0) -> Metrics:
@@ -59,6 +62,8 @@ def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
     ]
     found = [getattr(metrics(name), figure) for figure in FIGURES]
     assert found == pytest.approx(expected, rel=2e-3)
+    row = f'| `{name}` | ' + ' | '.join(f'{figure:.3f}' for figure in found) + ' |'
+    assert row in PAGE.read_text(encoding='utf-8')
 
 
 def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):

@@ -26,9 +26,11 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
     scenario = settings.scenario
     plant, filter_ = driveline_matrices(scenario.driveline), ACTUATOR.to_state_space()
     initial = initial_state(settings)
-    engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
-    reference = make_reference(settings)
-    architecture = make_architecture(settings, make_controller(name, settings))
+    engine = Engine(scenario.engine, scenario.engine_authority)
+    load = RoadLoad(scenario.load, scenario.vehicle)
+    controller = make_controller(name, settings)
+    reference = make_reference(settings, controller.preview_steps)
+    architecture = make_architecture(settings, controller)
     delayed = initial.torque_request
     state = np.concatenate(
         [
@@ -42,11 +44,12 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
         outputs.append(plant.c @ state[:4])
         w_m, w_p, w_r, _ = state[:4]
         speed = radius * w_r
-        c_m, c_load = engine.torque(step), load.torque(speed)
+        demand, c_load = engine.demand(step), load.torque(speed)
         references, rates = reference.update(step, w_m - w_p)
         request = architecture.update(
-            Measurement(step, w_m, w_p, w_r, speed, c_m, references, rates)
-        ).torque
+            Measurement(step, w_m, w_p, w_r, speed, demand, references, rates)
+        )
+        c_m = engine.torque(step, request.engine_torque)
 
         def derivative(_, x, held=delayed, c_m=c_m, c_load=c_load):
             c_f = settings.wear_gain * (filter_.c @ x[4:])[0]
@@ -56,7 +59,7 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
         solution = solve_ivp(
             derivative, (0.0, 0.01), state, method='DOP853', rtol=1e-10, atol=1e-10
         )
-        state, delayed = solution.y[:, -1], max(request, 0.0)
+        state, delayed = solution.y[:, -1], max(request.torque, 0.0)
         accelerations.append(radius * derivative(0.01, state)[2])
     slip, torsion = np.transpose(outputs)
     return {'w_d': slip, 'w_sr': torsion, 'A_x': np.array(accelerations[:-1])}
