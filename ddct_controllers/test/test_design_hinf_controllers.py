@@ -143,8 +143,8 @@ def test_two_rows_of_table_3_1_are_reproduced(name, printed):
 
 def test_the_row_of_hinf1_is_that_of_2_14_times_its_printed_gain():
     rise_time, percent = step_figures(HINF1)
-    assert rise_time == pytest.approx(0.55, abs=0.01)
-    assert percent == pytest.approx(13.0, abs=1.0)
+    assert rise_time == pytest.approx(0.550, abs=0.001)
+    assert percent == pytest.approx(12.5, abs=0.05)
     rise_time, percent = step_figures(FactoredTransferFunction(2.14) * HINF1)
     assert rise_time == pytest.approx(0.30, abs=0.005)
     assert percent == pytest.approx(8.0, abs=1.0)
@@ -177,13 +177,13 @@ def test_no_gain_of_hinf1_has_the_printed_norm_of_w_t_t():
 
 
 def test_no_printed_requirement_but_w_t_t_fails_for_hinf_thesis():
-    """W_s S 0.95 and W_u T 0.33 are below 1, W_t T is 1.08: the weights exclude each other."""
+    """W_s S 0.95 and W_u T 0.33 are below 1, W_t T is not: the weights exclude each other."""
     weights = make_weights('thesis')
     loop = continuous_loop(synthesised_design('hinf_thesis').cleaned)
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
     assert norms.sensitivity < 1.0
     assert norms.uncertainty < 1.0
-    assert norms.complementary == pytest.approx(1.076, abs=0.01)
+    assert norms.complementary > 1.0
     assert norms.stack == pytest.approx(
         synthesised_design('hinf_thesis').synthesis.gamma, rel=0.01
     )

@@ -35,5 +35,7 @@ def test_its_tables_are_those_of_the_program():
 def test_hinf1_has_the_worst_sensitivity_that_the_page_says():
     sampled = discretise_zoh(H_INFINITY_CONTROLLERS['hinf1'].to_state_space(), 0.01)
     worst = worst_corner(sampled, PlantCorners()).sensitivity_peak
-    assert worst == pytest.approx(3.38, abs=0.005)
-    assert '| `hinf1` | 0.795 | 0.897 | 0.175 | 3.38 |' in PAGE.read_text(encoding='utf-8')
+    row = next(
+        line for line in PAGE.read_text('utf-8').split('\n') if line.startswith('| `hinf1` |')
+    )
+    assert float(row.split('|')[-2]) == pytest.approx(worst, abs=0.005)

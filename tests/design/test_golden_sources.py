@@ -1,9 +1,8 @@
 """
 Where the fixed figures of the design tests come from: printed formulas and other libraries.
 
-Nothing here is computed by the product: transfer functions are typed from the thesis, with
-339.4 for 334.4 in P_2, and evaluated by python-control, scipy and closed forms. Parameters of
-the driveline are the identified ones, so that a figure can be held to all its digits.
+Nothing here is computed by the product: `typed_loops` has the thesis's formulas, which
+python-control, scipy and closed forms evaluate.
 """
 
 import math
@@ -11,77 +10,20 @@ import math
 import control
 import numpy as np
 import pytest
-from scipy.optimize import brentq, least_squares
-
-from ddct_plant.models.parameters import DrivelineParameters
-
-DT = 0.01
-RPM = 30.0 / math.pi
-P = DrivelineParameters()
-
-
-def driveline() -> control.StateSpace:
-    """Matrix A of Section 1.5, C_f in, slip speed out, in rpm."""
-    tau, c, k = P.total_ratio, P.halfshaft_damping, P.halfshaft_stiffness
-    j_p, j_v = P.shaft_inertia, P.vehicle_inertia
-    a = [
-        [0.0, 0.0, 0.0, 0.0],
-        [0.0, -(c / tau**2 + P.shaft_damping) / j_p, c / (j_p * tau), -k / (j_p * tau)],
-        [0.0, c / (j_v * tau), -c / j_v, k / j_v],
-        [0.0, 1.0 / tau, -1.0, 0.0],
-    ]
-    b = [[-1.0 / P.engine_inertia], [1.0 / j_p], [0.0], [0.0]]
-    return control.ss(a, b, [[RPM, -RPM, 0.0, 0.0]], [[0.0]])
-
-
-def printed(gain: float, numerator: list, denominator: list) -> control.StateSpace:
-    """Return gain times factors [1, a] or [1, b, c], each pair of factors its own system."""
-    system = control.ss([], [], [], [[gain]])
-    numerator = [[1.0]] * (len(denominator) - len(numerator)) + numerator
-    for top, bottom in zip(sorted(numerator, key=len), sorted(denominator, key=len), strict=True):
-        system = system * control.tf2ss(top, bottom)
-    return system
-
-
-G_A = printed(25.305, [[1, 138], [1, -161.3, 31340]], [[1, 82.23, 2563], [1, 134.1, 42700]])
-HINF2 = printed(
-    -0.48353,
-    [[1, 206.6], [1, 7.48], [1, 0.01008], [1, 82.23, 2563], [1, 121.4, 7696]],
-    [[1, 0], [1, 303.1], [1, 0.01729], [1, 202.0 + 138.0, 202.0 * 138.0], [1, 5.344, 339.4]],
+from scipy.optimize import brentq
+from typed_loops import (
+    DT,
+    G_A,
+    HINF1,
+    HINF2,
+    corner_plants,
+    driveline,
+    g_c1,
+    g_c2,
+    peaks,
+    rise_and_overshoot,
+    sampled,
 )
-
-
-def g_c1(gain: float) -> control.StateSpace:
-    return printed(gain, [[1, 9.6], [1, 1], [1, 1]], [[1, 0], [1, 16], [1, 16], [1, 0.6]])
-
-
-def g_c2(gain: float) -> control.StateSpace:
-    return printed(gain, [[1, 0.8361], [1, 74.29, 2393]], [[1, 0], [1, 5.325, 339.3]])
-
-
-def sampled(controller: control.StateSpace, wear_gain: float = 1.0) -> control.StateSpace:
-    """Return the loop under zero-order hold, with the actuator's delay of a sample."""
-    delay = control.ss([[0.0]], [[1.0]], [[1.0]], [[0.0]], DT)
-    plant = control.c2d(driveline() * G_A, DT, 'zoh')
-    return control.c2d(controller, DT, 'zoh') * delay * plant * wear_gain
-
-
-def peaks(loop: control.StateSpace, delay_s: float = 0.0) -> tuple[float, float]:
-    """Return M_s and M_t on a grid of 30 000 frequencies."""
-    omega = np.geomspace(0.1, math.pi / DT * 0.9999, 30_000)
-    at = 1j * omega if not loop.dt else np.exp(1j * omega * DT)
-    values = loop(at) * np.exp(-1j * omega * delay_s)
-    return np.abs(1.0 / (1.0 + values)).max(), np.abs(values / (1.0 + values)).max()
-
-
-def rise_and_overshoot(loop: control.StateSpace, step_s: float) -> tuple[float, float]:
-    """Return the first time at the final value 1 and the overshoot in percent."""
-    time = np.arange(0.0, 8.0, step_s)
-    closed = control.feedback(loop, 1)
-    response = control.step_response(closed, time).outputs
-    first = int(np.argmax(response >= 1.0))
-    rise = np.interp(1.0, response[first - 1 : first + 1], time[first - 1 : first + 1])
-    return float(rise), 100.0 * (float(response.max()) - 1.0)
 
 
 def test_hinf2_on_paper_and_as_it_runs():
@@ -123,11 +65,52 @@ def test_steps_of_ls3_ls4_and_ls5():
     assert figures[2][0] == pytest.approx(0.766, abs=5e-4)
 
 
+def test_steps_of_hinf1_as_printed_and_with_2_14_times_its_gain():
+    """0.55 s and 12.5 %, where Table 3.1 has the 0.30 s and 8 % of 2.14 times the gain."""
+    as_printed = rise_and_overshoot(driveline() * G_A * HINF1, 1e-3)
+    assert as_printed == pytest.approx((0.550, 12.5), abs=0.01)
+    louder = rise_and_overshoot(driveline() * G_A * HINF1 * 2.14, 1e-3)
+    assert louder == pytest.approx((0.300, 7.29), abs=0.01)
+
+
+def test_worst_m_s_of_hinf1_by_trying_every_corner():
+    """3.38 over 128 corners, K_usura from 0.7 to 1.3 in steps of 0.01, 2000 frequencies."""
+    z = np.exp(1j * np.geomspace(0.1, math.pi / DT, 2000) * DT)
+    controller = (control.c2d(HINF1, DT, 'zoh'))(z) / z
+    highest = 0.0
+    for plant in corner_plants():
+        rates, vectors = np.linalg.eig(plant.A)
+        parts = (plant.C @ vectors)[0] * np.linalg.solve(vectors, plant.B)[:, 0]
+        loop = controller * (parts / (z[:, None] - rates)).sum(axis=1)
+        for wear_gain in np.arange(0.7, 1.305, 0.01):
+            highest = max(highest, (1.0 / np.abs(1.0 + wear_gain * loop)).max())
+    assert highest == pytest.approx(3.38, abs=0.005)
+
+
+def prototype(overshoot: float) -> tuple[float, float]:
+    """Return zeta, and w_c over w_n of w_n^2 / (s (s + 2 zeta w_n))."""
+    log = math.log(overshoot)
+    zeta = -log / math.hypot(math.pi, log)
+    return zeta, math.sqrt(math.sqrt(1.0 + 4.0 * zeta**4) - 2.0 * zeta**2)
+
+
+def test_highest_crossover_by_arc_tangents():
+    """
+    24.5 rad/s: delay and half the hold, 15 ms, and the actuator's all-pass leave 14 % its margin.
+
+    The margin is atan(2 zeta w_n / w_c); a pair of zeros turns twice its own angle.
+    """
+    zeta, crossing = prototype(0.14)
+    left = math.pi / 2.0 - math.atan2(2.0 * zeta, crossing)
+    bound = brentq(
+        lambda w: 0.015 * w + 2.0 * math.atan2(161.3 * w, 31340.0 - w**2) - left, 1.0, 100.0
+    )
+    assert bound == pytest.approx(24.5, abs=0.05)
+
+
 def test_prototype_of_14_percent_by_its_closed_forms():
     """t_r w_c = 1.921 and w_c = 7.69 rad/s; -1/s lacks 67.9 degrees at 8 rad/s; asin(15/17)."""
-    log = math.log(0.14)
-    zeta = -log / math.hypot(math.pi, log)
-    crossing = math.sqrt(math.sqrt(1.0 + 4.0 * zeta**4) - 2.0 * zeta**2)
+    zeta, crossing = prototype(0.14)
     product = (math.pi - math.acos(zeta)) / math.sqrt(1.0 - zeta**2) * crossing
     assert product == pytest.approx(1.921, abs=5e-4)
     assert product / 0.25 == pytest.approx(7.69, abs=5e-3)
@@ -141,65 +124,3 @@ def test_lag_of_the_actuator_at_rest_is_a_sum_over_its_factors():
     """33.1 ms: b/c of each pole pair, less 1/138 and -161.3/31340 of its zeros."""
     lag = 82.23 / 2563 + 134.1 / 42700 - 1 / 138 + 161.3 / 31340
     assert lag == pytest.approx(0.0331, abs=5e-5)
-
-
-PRINTED = [-103.43, 0.005905, 5.344, 339.4, 0.006733, 121.4, 7696.0, 7.2217, 63.99]
-HALF_UNITS = [5e-3, 5e-7, 5e-4, 5e-2, 5e-7, 5e-2, 5e-1, 5e-5, 5e-3]
-
-
-def coefficients(logarithms: np.ndarray) -> np.ndarray:
-    """Return P_2's gain, zeros and poles, P_3's gain and zero, by Cramer's rule on s I - A."""
-    j_m, j_p, c_p, c, k, tau, j_v = np.exp(logarithms)
-    # Rows of [w_p, w_r, theta]: characteristic polynomial, and minors for C_f and C_load.
-    a = np.array(
-        [
-            [-(c / tau**2 + c_p) / j_p, c / (j_p * tau), -k / (j_p * tau)],
-            [c / (j_v * tau), -c / j_v, k / j_v],
-            [1.0 / tau, -1.0, 0.0],
-        ]
-    )
-    poles = np.poly(a)
-    minor = np.poly(a[1:, 1:])
-    # P_2 = -1/(J_m s) - minor/(J_p poles).
-    zeros = np.polyadd(poles / j_m, np.append(minor, 0.0) / j_p)
-    real, pair = split(zeros / zeros[0])
-    slow, fast = split(poles)
-    return np.array(
-        [
-            -(1 / j_m + 1 / j_p),
-            real,
-            *pair,
-            slow,
-            *fast,
-            c / (j_p * tau * j_v),
-            k / c,
-        ]
-    )
-
-
-def split(cubic: np.ndarray) -> tuple[float, np.ndarray]:
-    """Return a and (b, c) of (s + a)(s^2 + b s + c)."""
-    roots = np.roots(cubic)
-    slow = roots[np.argmin(np.abs(roots))].real
-    return -slow, np.polydiv(cubic, [1.0, -slow])[0][1:]
-
-
-def test_the_best_driveline_misses_the_print_by_a_chi_square_of_3_556():
-    """
-    By scipy from the rounded parameters, on polynomials made here.
-
-    A rounding error is uniform within a half-unit, so its variance is a third of that squared.
-    """
-    start = np.log([0.25, 0.010057, 0.0120, 105.0, 6720.0, 9.344, 154.7])
-    found = least_squares(
-        lambda x: (coefficients(x) - PRINTED) / HALF_UNITS,
-        start,
-        x_scale='jac',
-        xtol=1e-14,
-        ftol=1e-14,
-        gtol=1e-14,
-    )
-    assert 3.0 * 2.0 * found.cost == pytest.approx(3.556, abs=0.001)
-    identified = [P.engine_inertia, P.shaft_inertia, P.shaft_damping, P.halfshaft_damping]
-    identified += [P.halfshaft_stiffness, P.total_ratio, P.vehicle_inertia]
-    assert np.exp(found.x) == pytest.approx(identified, rel=1e-4)
