@@ -8,7 +8,7 @@ import pytest
 from test_report_escaping import SETTINGS, recording
 
 from ddct_bringup.report import evidence
-from ddct_bringup.report.evidence import COMPUTED
+from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
@@ -38,6 +38,13 @@ def remark(tmp_path, monkeypatch, whole, run):
         return loop.remark
 
     return read
+
+
+def test_figures_are_those_of_the_run_s_own_wear_gain(whole):
+    (entry,) = whole['controllers']
+    for wear_gain in (0.7, 1.0, 1.3):
+        assert LoopEvidence('pi', wear_gain, entry).point['wear_gain'] == wear_gain
+    assert LoopEvidence('pi', 0.85, entry).point is None
 
 
 def test_whole_evidence_is_taken(remark, whole):
