@@ -82,14 +82,10 @@ test: setup
 	    || status=1; \
 	exit $$status
 
-# Pure tests: no graph, browser or compiler. Left out are the files of the whole design workflows.
-FAST_FOLDERS := ddct_plant/test ddct_reference/test ddct_controllers/test
-SLOW_TESTS := $(addprefix ddct_controllers/test/test_,design_hinf_command.py \
-    design_hinf_page.py design_hinf_sampled.py design_loop_shaping_command.py \
-    design_loop_shaping_search.py margins_command.py)
+# Pure tests; the markers are described in pyproject.toml.
 test-fast: setup
-	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile $(FAST_FOLDERS) \
-	    $(SLOW_TESTS:%=--ignore=%)
+	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
+	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
 # MUTANTS='--claim TEXT' or files of tests/mutants try only those.
 mutants: setup

@@ -17,6 +17,21 @@ if TYPE_CHECKING:
     from support.in_process_graph import InProcessGraph
 
 
+HERE = Path(__file__).parent
+MARKERS = dict.fromkeys(
+    ('bag', 'docs', 'faults', 'foxglove', 'graph', 'live', 'programs', 'report'), 'graph'
+)
+MARKERS['export'] = 'compiler'
+"""What the tests of a folder need, beyond Python."""
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark a test with what its folder needs, so that a new file cannot forget it."""
+    folder = item.path.relative_to(HERE).parts[0]
+    if folder in MARKERS:
+        item.add_marker(MARKERS[folder])
+
+
 @pytest.fixture(autouse=True)
 def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Reserve a ROS domain, and fail when a process that the test started is still there."""

@@ -14,6 +14,8 @@ from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
 from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
 from ddct_plant.linear.lti import StateSpace
 
+pytestmark = pytest.mark.slow
+
 
 def problem(recipe: str) -> GeneralisedPlant:
     return generalised_plant(make_weights(recipe))

@@ -8,6 +8,8 @@ from headless_chromium import PRINT, chromium, visit
 
 from ddct_bringup.report.line_looks import LIGHT_COLOURS
 
+pytestmark = pytest.mark.browser
+
 pytestmark = pytest.mark.skipif(
     chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
 )

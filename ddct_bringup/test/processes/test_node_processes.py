@@ -1,0 +1,213 @@
+"""The supervisor of a graph's processes, on small programs in place of the nodes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.processes import node_process, node_processes
+from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.node_processes import STOP_LADDER, NodeProcesses
+from ddct_plant.base.errors import DdctError
+
+pytestmark = pytest.mark.slow
+
+WITHIN_S = 20.0
+"""How long a small program may take to start or to end on a loaded machine."""
+LIVE = """
+import os, signal, sys, time
+from ddct_plant.program.pulse import pulse
+beat = pulse()
+def run():
+    print('ready', flush=True)
+    while True:
+        beat()
+        time.sleep(0.01)
+"""
+OBEDIENT = 'signal.signal(signal.SIGINT, lambda *_: sys.exit(0))\nrun()\n'
+DEAF = (
+    'for number in (signal.SIGINT, signal.SIGTERM):\n'
+    '    signal.signal(number, signal.SIG_IGN)\n'
+    'run()\n'
+)
+QUICK_LADDER = tuple((number, 1.0) for number, _ in STOP_LADDER)
+
+
+@pytest.fixture
+def processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Return a function that makes a supervisor of programs with these texts, by node name."""
+    monkeypatch.setenv('PYTHONPATH', f'{tmp_path}:{os.environ.get("PYTHONPATH", "")}')
+    monkeypatch.setattr(node_processes, 'STOP_LADDER', QUICK_LADDER)
+    (tmp_path / 'stubs').mkdir()
+
+    def make(**texts: str) -> NodeProcesses:
+        for name, text in texts.items():
+            (tmp_path / 'stubs' / f'{name}_node.py').write_text(LIVE + text)
+        made = NodeProcesses(tmp_path, tmp_path / 'parameters.yaml')
+        made.__enter__()
+        made.start([NodeSpec(name, f'stubs.{name}_node') for name in texts])
+        for node in made._nodes:
+            wait_until(lambda node=node: b'ready' in node._all_words())
+        return made
+
+    return make
+
+
+def wait_until(condition) -> None:
+    deadline = time.monotonic() + WITHIN_S
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def gone(pid: int) -> bool:
+    """Say whether a process has ended, waited for or not."""
+    try:
+        return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] in 'ZX'
+    except OSError:
+        return True
+
+
+def wait_as_supervisor(nodes: NodeProcesses) -> str:
+    """Return why the supervisor ends, having stopped everything."""
+    deadline = time.monotonic() + WITHIN_S
+
+    def stopped() -> bool:
+        assert time.monotonic() < deadline, 'nothing was noticed'
+        return False
+
+    try:
+        with pytest.raises(DdctError) as raised:
+            nodes.wait_for('driveline', stopped)
+    finally:
+        nodes.__exit__()
+    return str(raised.value)
+
+
+def test_a_stopped_driveline_is_noticed_within_the_stated_time_and_everything_ends(
+    processes, monkeypatch
+):
+    monkeypatch.setattr(node_process, 'ANSWER_TIMEOUT_S', 1.0)
+    nodes = processes(driveline=OBEDIENT, load=OBEDIENT)
+    nodes._look(0.0)
+    nodes._nodes[0].process.send_signal(signal.SIGSTOP)
+    started = time.monotonic()
+    reason = wait_as_supervisor(nodes)
+    assert reason.startswith('node driveline has shown no sign of life for 1 s; its log is ')
+    assert time.monotonic() - started < WITHIN_S
+    assert [node.process.returncode for node in nodes._nodes] == [0, 0]
+
+
+def test_a_node_that_never_begins_is_noticed_too(processes, monkeypatch):
+    monkeypatch.setattr(node_process, 'START_S', 1.0)
+    reason = wait_as_supervisor(
+        processes(driveline="print('ready', flush=True)\ntime.sleep(60)\n")
+    )
+    assert reason.startswith('node driveline has shown no sign of life for 1 s')
+
+
+def test_silence_while_the_supervisor_itself_was_stopped_is_none(processes):
+    nodes = processes(driveline=OBEDIENT)
+    nodes._nodes[0].process.send_signal(signal.SIGSTOP)
+    nodes._look(0.0)
+    for _ in range(19):
+        nodes._look(3600.0)
+    nodes.__exit__()
+
+
+def test_a_deaf_node_is_killed_at_the_end_of_the_ladder_and_that_is_told(processes):
+    nodes = processes(driveline=OBEDIENT, load=DEAF)
+    nodes.stop(lambda name: True)
+    assert [node.process.returncode for node in nodes._nodes] == [0, -signal.SIGKILL]
+    with pytest.raises(DdctError, match='node load did not stop when asked and was killed; its'):
+        nodes.require_clean_end()
+    nodes.__exit__()
+
+
+def test_a_node_that_was_killed_by_another_is_said_to_be(processes):
+    nodes = processes(driveline=OBEDIENT)
+    nodes._nodes[0].process.kill()
+    assert wait_as_supervisor(nodes).startswith('node driveline was killed by SIGKILL; its log')
+
+
+def test_a_stopped_node_is_woken_to_end_in_order(processes):
+    nodes = processes(driveline=OBEDIENT)
+    nodes._nodes[0].process.send_signal(signal.SIGSTOP)
+    nodes.stop(lambda name: True)
+    nodes.require_clean_end()
+    nodes.__exit__()
+
+
+def test_ctrl_c_in_the_terminal_reaches_the_supervisor_alone(processes):
+    nodes = processes(driveline=OBEDIENT)
+    pids = [nodes._nodes[0].process.pid, nodes._guardian._process.pid]
+    assert os.getpgrp() not in [os.getpgid(pid) for pid in pids]
+    nodes.__exit__()
+
+
+SUPERVISOR = """
+import sys, time
+from pathlib import Path
+from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.node_processes import NodeProcesses
+folder = Path(sys.argv[1])
+with NodeProcesses(folder, folder / 'parameters.yaml') as nodes:
+    nodes.start([NodeSpec(name, f'stubs.{name}_node') for name in sys.argv[2:]])
+    pids = [*(node.process.pid for node in nodes._nodes), nodes._guardian._process.pid]
+    while not all(b'ready' in node._all_words() for node in nodes._nodes):
+        time.sleep(0.01)
+    print(*pids, flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.mark.parametrize('stopped', [False, True])
+def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, stopped):
+    (tmp_path / 'stubs').mkdir()
+    finishing = (
+        f"signal.signal(signal.SIGTERM, lambda *_: open({str(tmp_path / 'whole')!r}, 'w').close()"
+        ' or sys.exit(0))\nrun()\n'
+    )
+    for name, text in (('recorder', finishing), ('load', 'run()\n')):
+        (tmp_path / 'stubs' / f'{name}_node.py').write_text(LIVE + text)
+    paths = f'{tmp_path}:{os.environ.get("PYTHONPATH", "")}'
+    supervisor = subprocess.Popen(
+        [sys.executable, '-c', SUPERVISOR, str(tmp_path), 'recorder', 'load'],
+        stdout=subprocess.PIPE,
+        env={**os.environ, 'PYTHONPATH': paths},
+    )
+    pids = [int(pid) for pid in supervisor.stdout.readline().split()]
+    if stopped:
+        os.kill(pids[0], signal.SIGSTOP)
+    supervisor.kill()
+    supervisor.communicate()
+    try:
+        wait_until(lambda: all(gone(pid) for pid in pids))
+    finally:
+        for pid in pids:
+            if not gone(pid):
+                os.kill(pid, signal.SIGKILL)
+    assert (tmp_path / 'whole').exists(), 'the recorder could not finish'
+
+
+def test_the_guardian_kills_what_does_not_heed_the_end_of_its_supervisor(tmp_path):
+    ready = tmp_path / 'ready'
+    deaf = subprocess.Popen(
+        [
+            sys.executable,
+            '-c',
+            'import pathlib, signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN);'
+            f'pathlib.Path({str(ready)!r}).touch(); time.sleep(60)',
+        ]
+    )
+    wait_until(ready.exists)
+    guard = (
+        'from ddct_bringup.processes import guardian; guardian.PATIENCE_S = 0.1;'
+        f'guardian.guard(["{deaf.pid}"])'
+    )
+    subprocess.run([sys.executable, '-c', guard], check=True, timeout=WITHIN_S)
+    assert deaf.wait(WITHIN_S) == -signal.SIGKILL

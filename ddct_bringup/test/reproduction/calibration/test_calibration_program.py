@@ -1,0 +1,135 @@
+"""Program `reproduce calibration`: what it prints and writes, and how it refuses."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.programs import reproduce
+from ddct_bringup.reproduction.calibration import command
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import ReferenceParameters
+
+DOCS = Path(__file__).resolve().parents[4] / 'docs'
+RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
+
+
+@pytest.fixture
+def calibrated(monkeypatch):
+    """Spare the tests of the outputs the minute and a half of the calibration itself."""
+    monkeypatch.setattr(command, 'calibrate', lambda progress: RECORD)
+
+
+def test_help_has_examples(capsys):
+    with pytest.raises(SystemExit) as end:
+        reproduce.main(['calibration', '--help'])
+    assert end.value.code == 0
+    assert 'examples:' in capsys.readouterr().out
+
+
+def test_quick_check_of_the_frozen_scenario_passes_and_shows_fit_residuals(capsys, tmp_path):
+    assert reproduce.main(['calibration', '--quick', '--json', str(tmp_path / 'check.json')]) == 0
+    output = capsys.readouterr()
+    assert 'not reproductions' in output.out
+    assert 'local refit' in output.err
+    residuals = json.loads((tmp_path / 'check.json').read_text())['residuals']
+    assert [row['computed'] for row in residuals] == pytest.approx(
+        [row['computed'] for row in RECORD['residuals']], rel=1e-6
+    )
+
+
+def test_quick_check_fails_for_a_scenario_that_is_not_the_optimum(monkeypatch, capsys):
+    scenario = load_scenario('thesis')
+    other = dataclasses.replace(
+        scenario, reference=ReferenceParameters(scenario.reference.slope_rad_s2 + 5.0)
+    )
+    monkeypatch.setattr(command, 'load_scenario', lambda name: other)
+    assert reproduce.main(['calibration', '--quick']) == 1
+    errors = capsys.readouterr().err.splitlines()
+    assert errors[-1].startswith('reproduce: scenario thesis is not the optimum')
+
+
+def test_json_on_standard_output_stands_alone(calibrated, capsys):
+    assert reproduce.main(['calibration', '--json', '-']) == 0
+    assert json.loads(capsys.readouterr().out) == RECORD
+
+
+def test_outputs_are_the_kept_files(calibrated, capsys, tmp_path):
+    page = tmp_path / 'page.md'
+    kept = (DOCS / 'calibration.md').read_text(encoding='utf-8')
+    page.write_text(kept.replace('0.524', '0.999'), encoding='utf-8')
+    scenario = tmp_path / 'thesis.yaml'
+    assert reproduce.main(['calibration', '--write', str(scenario), '--write-doc', str(page)]) == 0
+    assert page.read_text(encoding='utf-8') == kept
+    assert load_scenario(str(scenario)) == load_scenario('thesis')
+    assert 'One row left out' in capsys.readouterr().out
+
+
+def test_ensemble_is_written_with_what_it_predicts_and_with_progress(
+    monkeypatch, capsys, tmp_path
+):
+    def search(frozen, progress):
+        progress('centre: score window to 1.7 s')
+        return [dataclasses.replace(frozen, name='member', description='Centre of the region')]
+
+    monkeypatch.setattr(command, 'find_members', search)
+    assert reproduce.main(['calibration', '--ensemble', str(tmp_path)]) == 0
+    assert load_scenario(str(tmp_path / 'member.yaml')).engine == load_scenario('thesis').engine
+    record = json.loads((tmp_path / 'predictions.json').read_text())
+    for name, one in record['predictions'].items():
+        assert one['members'] == {'member': one['frozen']}, name
+    assert capsys.readouterr().err.splitlines() == [
+        'reproduce calibration: centre: score window to 1.7 s',
+        'reproduce calibration: predictions of thesis',
+        'reproduce calibration: predictions of member',
+        f'reproduce calibration: 1 admissible scenarios and predictions.json are in {tmp_path}',
+    ]
+
+
+@pytest.mark.parametrize('option', ['--ensemble', '--predict'])
+def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, capsys, option):
+    monkeypatch.setattr(command, 'find_members', None)
+    assert reproduce.main(['calibration', option, '/nowhere/folder']) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('reproduce: /nowhere/folder is no folder')
+    assert len(error.splitlines()) == 1
+
+
+def test_no_scenario_is_written_when_a_residual_is_outside_its_tolerance(
+    monkeypatch, capsys, tmp_path
+):
+    record = json.loads(json.dumps(RECORD))
+    record['residuals'][4]['deviation'] = 0.2
+    monkeypatch.setattr(command, 'calibrate', lambda progress: record)
+    scenario = tmp_path / 'thesis.yaml'
+    assert reproduce.main(['calibration', '--write', str(scenario)]) == 1
+    assert not scenario.exists()
+    error = capsys.readouterr().err
+    assert 'hinf1 torsion_speed_std_rpm +20.0 % is outside the tolerance' in error
+
+
+@pytest.mark.parametrize('option', ['--json', '--write', '--write-doc'])
+def test_file_that_cannot_be_written_is_refused_before_the_work(monkeypatch, capsys, option):
+    def no_work(progress):
+        raise AssertionError('the calibration ran')
+
+    monkeypatch.setattr(command, 'calibrate', no_work)
+    assert reproduce.main(['calibration', option, '/nowhere/file']) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('reproduce: ') and '/nowhere/file' in error
+    assert len(error.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['--quick', '--write', 'a.yaml'],
+        ['--json', '-', '--write', '-'],
+        ['--ensemble', '.', '--json', '-'],
+    ],
+)
+def test_options_that_contradict_each_other_are_refused(capsys, arguments):
+    with pytest.raises(SystemExit) as end:
+        reproduce.main(['calibration', *arguments])
+    assert end.value.code == 2

@@ -1,0 +1,96 @@
+"""The kept record, the scenario file, the page and the simulation tell the same."""
+
+import importlib.resources
+import json
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.reproduction.calibration.files import fill_page, scenario_text
+from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.problem import Problem, row_figures
+from ddct_bringup.reproduction.calibration.record import NAMES, outside_tolerance, residual_rows
+from ddct_bringup.reproduction.calibration.search import rounded
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+
+DOCS = Path(__file__).resolve().parents[4] / 'docs'
+RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
+PAGE = (DOCS / 'calibration.md').read_text(encoding='utf-8')
+SCENARIO = load_scenario('thesis')
+
+
+def values(entry: dict) -> list[float]:
+    return [entry['values'][name] for name in NAMES]
+
+
+def test_nine_residuals_are_as_recorded_and_within_five_and_ten_percent():
+    rows = residual_rows({row: row_figures(SCENARIO, row) for row in ('ls8', 'hinf1', 'pi')})
+    assert len(rows) == 9
+    for computed, recorded in zip(rows, RECORD['residuals'], strict=True):
+        assert computed['computed'] == pytest.approx(recorded['computed'], rel=1e-6)
+        limit = 0.05 if computed['figure'] == 'engagement_time_s' else 0.10
+        assert abs(computed['computed'] / recorded['printed'] - 1.0) <= limit
+
+
+def test_residual_outside_its_tolerance_is_named():
+    rows = [dict(row) for row in RECORD['residuals']]
+    assert outside_tolerance(rows) == []
+    rows[0]['deviation'] = -0.051
+    assert outside_tolerance(rows) == ['ls8 engagement_time_s -5.1 %']
+
+
+def test_scenario_file_is_what_the_record_writes():
+    kept = importlib.resources.files('ddct_plant.scenario') / 'packaged' / 'thesis.yaml'
+    assert kept.read_text(encoding='utf-8') == scenario_text(RECORD)
+    optimum = [entry['value'] for entry in RECORD['parameters']]
+    assert Problem(RECORD['score_window_s'][1]).scenario(rounded(optimum)) == SCENARIO
+
+
+def test_page_has_the_numbers_of_the_record():
+    assert fill_page(PAGE, RECORD) == PAGE
+
+
+def test_page_that_lacks_a_table_is_refused():
+    with pytest.raises(DdctError, match='must have these tables'):
+        fill_page(PAGE.replace('<!-- calibration: fit -->', ''), RECORD)
+
+
+def test_chosen_optimum_is_the_lowest_with_a_stable_pi():
+    stable = [
+        one
+        for one in RECORD['windows'] + RECORD['starts']
+        if pi_growth_rate(SCENARIO.driveline, *values(one)[4:]) < 0.0
+    ]
+    best = min(stable, key=lambda one: one['objective'])
+    assert best['window_end_s'] == RECORD['score_window_s'][1]
+    assert best['objective'] == pytest.approx(RECORD['objective']['value'], rel=1e-4)
+
+
+@pytest.mark.parametrize('row', ['ls8', 'hinf1'])
+def test_row_left_out_took_no_part_in_the_fit_that_predicts_it(row):
+    """Its parameters beat the frozen ones on the other two rows, and predict what is recorded."""
+    one = next(entry for entry in RECORD['left_out'] if entry['row'] == row)
+    problem = Problem(RECORD['score_window_s'][1])
+    predicted = row_figures(problem.scenario(values(one)), row)
+    assert [predicted[entry['figure']] for entry in one['figures']] == pytest.approx(
+        [entry['computed'] for entry in one['figures']], rel=1e-6
+    )
+    kept = Problem(problem.window_end_s, rows=tuple({'ls8', 'hinf1', 'pi'} - {row}))
+    frozen = [entry['frozen'] for entry in RECORD['parameters']]
+    objective = 0.5 * sum(kept.residuals(values(one)) ** 2)
+    assert objective == pytest.approx(one['objective'], rel=1e-5)
+    assert objective < 0.5 * sum(kept.residuals(frozen) ** 2)
+
+
+def test_only_the_pi_row_is_marked_as_not_predictable():
+    assert [one['row'] for one in RECORD['left_out'] if one['gains_from_row']] == ['pi']
+
+
+def test_longer_windows_leave_a_sigma_of_ls8_out_of_tolerance_as_the_page_says():
+    beyond = [one for one in RECORD['windows'] if one['pi_stable'] and one['window_end_s'] > 1.85]
+    assert len(beyond) >= 12
+    assert all(one['worst_residual'] < -1.0 for one in beyond)
+    longest = max(beyond, key=lambda one: one['window_end_s'])
+    figures = row_figures(Problem(longest['window_end_s']).scenario(values(longest)), 'ls8')
+    assert figures['torsion_speed_std_rpm'] < 0.9 * 1.15

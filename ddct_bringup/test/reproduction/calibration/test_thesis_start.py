@@ -1,0 +1,29 @@
+"""What docs/calibration.md says of the start of the thesis's scenario."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
+
+PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'calibration.md'
+SETTINGS = RunSettings(load_scenario('thesis'))
+
+
+def test_page_states_the_acceleration_and_the_slip_that_the_start_makes():
+    start = initial_state(SETTINGS)
+    model = driveline_matrices(SETTINGS.scenario.driveline)
+    state = [start.engine_speed, start.shaft_speed, start.wheel_speed, start.twist]
+    torques = [start.engine_torque, start.clutch_torque, start.load_torque]
+    shaft = (model.a @ np.array(state) + model.b @ np.array(torques))[1]
+    run = run_headless(SETTINGS, 'pi')
+    slip = rpm_from_rad_s(run.slip_speed[1])
+    twist = rpm_from_rad_s(run.joint_speed[1, 3])
+    text = ' '.join(PAGE.read_text(encoding='utf-8').split())
+    assert f'dw_p/dt = {shaft:.0f} rad/s²'.replace('-', '−') in text
+    assert f'w_d is {slip:.0f} rpm and w_sr {twist:.0f} rpm'.replace('-', '−') in text

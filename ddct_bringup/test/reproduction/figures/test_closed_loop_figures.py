@@ -1,0 +1,181 @@
+"""Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from tight_tolerance import tight_tolerance_run
+
+from ddct_bringup.reproduction.figures.collect import collect_figures, figures_not_drawn
+from ddct_bringup.reproduction.figures.figure_tables import page_tables
+from ddct_bringup.reproduction.figures.thesis_figure import (
+    Drawing,
+    DrawnFigure,
+    figure_order,
+)
+from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.program.page_tables import fill_tables, read_page
+from ddct_plant.scenario.settings import RunSettings
+
+FIGURES = {figure.number: figure for figure in collect_figures()}
+LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
+PAGE = Path(__file__).parents[4] / 'docs' / 'figures.md'
+
+
+def drawing(number: str) -> Drawing:
+    return FIGURES[number].draw(FIGURES[number].heading)
+
+
+def lines(axes: Axes) -> dict[str, np.ndarray]:
+    """Return x and y, (2, n), by label."""
+    return {line.get_label(): np.array(line.get_data()) for line in axes.get_lines()}
+
+
+@pytest.mark.parametrize(
+    ('number', 'architecture', 'shown', 'unit'),
+    [
+        ('2.26', 'detailed', (*LS4_TO_9, 'pi'), 'w_d, rpm'),
+        ('2.15', 'feedforward', LS4_TO_9, 'w_sr, rpm'),
+        ('2.22', 'feedforward_tanh', LS4_TO_9, 'A_x, m/s²'),
+        ('4.3', 'detailed', ('mpc3', 'mpc2', 'mpc1'), 'w_d, rpm'),
+        ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
+    ],
+)
+def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
+    axes = drawing(number).figure.axes[0]
+    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
+    signals = {
+        'w_d, rpm': rpm_from_rad_s(run.slip_speed),
+        'w_sr, rpm': rpm_from_rad_s(run.joint_speed[:, 3]),
+        'A_x, m/s²': run.vehicle_accel,
+    }
+    drawn = lines(axes)[shown[0].upper()]
+    np.testing.assert_array_equal(drawn, (run.time_s[50:], signals[unit][50:]))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ('Time, s', unit)
+    names = {name.upper() for name in shown}
+    assert set(lines(axes)) == names | ({'reference'} if unit == 'w_d, rpm' else set())
+
+
+def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
+    drawn = drawing('5.1')
+    shown = lines(drawn.figure.axes[0])
+    for wear in (0.7, 1.3):
+        run = run_headless(RunSettings(THESIS_SCENARIO, 'feedforward', wear_gain=wear), 'hinf2')
+        label = f'H∞2 (K_usura = {wear:g})'
+        np.testing.assert_array_equal(shown[label][1], rpm_from_rad_s(run.slip_speed[50:]))
+        assert abs(shown[label][1][-1]) < 1.0
+
+
+def torsion_std_rpm(controller: str, architecture: str) -> float:
+    run = thesis_run(controller, architecture, 1.0)
+    return thesis_metrics(run).torsion_speed_std_rpm
+
+
+def test_verdicts_on_the_h_infinity_figures_hold():
+    by_loop = {
+        architecture: [torsion_std_rpm(f'hinf{number}', architecture) for number in (1, 3, 2)]
+        for architecture in ('feedforward', 'feedforward_tanh', 'detailed')
+    }
+    for architecture, from_slow_to_fast in by_loop.items():
+        assert from_slow_to_fast == sorted(from_slow_to_fast), architecture
+    assert by_loop['feedforward_tanh'][-1] == pytest.approx(
+        by_loop['feedforward'][-1] / 2.0, rel=0.1
+    )
+    assert by_loop['detailed'] < by_loop['feedforward']
+
+
+def test_verdicts_on_the_loop_shaping_figures_hold():
+    lowest_rpm = {
+        name: rpm_from_rad_s(thesis_run(name, 'detailed', 1.0).slip_speed.min())
+        for name in ('ls1', 'pi')
+    }
+    assert lowest_rpm['ls1'] < -100.0 < -20.0 < lowest_rpm['pi']
+    pi = torsion_std_rpm('pi', 'detailed')
+    assert all(torsion_std_rpm(name, 'detailed') > pi for name in ('ls2', 'ls3', 'ls8', 'ls9'))
+
+
+def metrics(controller: str) -> Metrics:
+    return thesis_metrics(thesis_run(controller, 'detailed', 1.0))
+
+
+def test_verdicts_on_the_predictive_figures_hold():
+    previous = [metrics(name) for name in ('ls8', 'hinf1')]
+    for name in ('mpc1', 'mpc2', 'mpc3'):
+        for other in previous:
+            assert metrics(name).slip_rmse_rpm < other.slip_rmse_rpm
+            assert metrics(name).torsion_speed_std_rpm > other.torsion_speed_std_rpm
+            assert metrics(name).acceleration_std_m_s2 > other.acceleration_std_m_s2
+    mpc3, hinf1 = thesis_row('mpc3'), thesis_row('hinf1')
+    assert mpc3.torsion_speed_std_rpm > hinf1.torsion_speed_std_rpm
+    assert mpc3.acceleration_std_m_s2 > hinf1.acceleration_std_m_s2
+
+
+def test_verdict_on_the_figures_of_mpc4_holds():
+    run = thesis_run('mpc4', 'detailed', 1.0)
+    controlled = rpm_from_rad_s(run.slip_speed[THESIS_SCENARIO.control_start_step :])
+    assert controlled.min() > 0.0
+    near = np.flatnonzero(controlled < 10.0)
+    integrated = tight_tolerance_run(RunSettings(THESIS_SCENARIO), 'mpc4')['w_d']
+    from_scipy = rpm_from_rad_s(integrated[THESIS_SCENARIO.control_start_step :])
+    assert near[0] == np.argmax(from_scipy < 10.0)
+    share, first_s = 1000.0 / from_scipy[0], near[0] / 100.0
+    said = f'comes down to 10 rpm, {share:.0f} % of where it began, in {first_s:.2f} s'
+    assert said in (PAGE.parent / 'mpc4.md').read_text(encoding='utf-8')
+    np.testing.assert_array_equal(np.diff(near), 1)
+    times = [metrics(name).engagement_time_s for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
+    assert min(times) > 0.46
+    torsion = rpm_from_rad_s(run.joint_speed[:, 3])
+    assert np.abs(torsion[np.isclose(run.time_s, 0.8).argmax() :]).max() < 0.25
+    assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6').remark
+
+
+def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():
+    assert drawing('2.27').remark.endswith('used in the calibration: LS8 1.15, PI 0.70.')
+    assert drawing('4.4').remark.endswith('not used in the calibration: MPC3 0.90.')
+
+
+def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():
+    time, values = lines(drawing('1.12').figure.axes[0])['reference']
+    run = run_headless(RunSettings(THESIS_SCENARIO), 'pi')
+    np.testing.assert_array_equal(values, rpm_from_rad_s(run.slip_reference[: len(time), 0]))
+
+
+def test_plant_figure_has_all_models_on_one_curve():
+    shown = lines(drawing('1.23').figure.axes[0])
+    detailed = shown.pop('detailed model')[1]
+    printed = shown.pop('LTI, coefficients as printed')[1]
+    assert len(shown) == 3
+    for name, (_, slip) in shown.items():
+        assert np.abs(slip - detailed).max() < 1e-9 * detailed.max(), name
+    assert np.abs(printed - detailed).max() < 0.01 * detailed.max()
+
+
+def test_tanh_figure_reaches_zero_at_the_chosen_times():
+    shown = lines(drawing('1.27').figure.axes[0])
+    for end_s in (1.2, 1.6, 2.0):
+        time, values = shown[f'tanh, zero at {end_s:.1f} s']
+        assert values[np.isclose(time, end_s)] == 0.0
+        assert values[np.isclose(time, end_s - 0.01)] > 0.0
+
+
+def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
+    counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
+    every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
+    assert sorted([*FIGURES, *figures_not_drawn()], key=figure_order) == every
+
+
+def test_page_of_the_documentation_is_what_the_command_writes():
+    drawn = [DrawnFigure(figure, drawing(number).remark) for number, figure in FIGURES.items()]
+    page = read_page(str(PAGE))
+    written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn()))
+    number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')
+    assert number.sub('#', page) == number.sub('#', written)
+    values = [[float(text) for text in number.findall(text)] for text in (page, written)]
+    # Another processor may round the last printed digit the other way.
+    np.testing.assert_allclose(*values, rtol=0.02, atol=0.011)

@@ -1,0 +1,89 @@
+"""Our H-infinity controllers in the frozen scenario, beside the thesis's Hinf1 (Table 5.1)."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tight_tolerance import tight_tolerance_run
+
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics, compute_metrics
+from ddct_bringup.thesis.table_5_1 import FIGURES, thesis_row
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SCENARIO = load_scenario('thesis')
+PAGE = Path(__file__).parents[3] / 'docs' / 'h_infinity.md'
+
+
+def metrics(controller: str, wear_gain: float = 1.0) -> Metrics:
+    settings = RunSettings(SCENARIO, wear_gain=wear_gain)
+    return compute_metrics(
+        run_headless(settings, controller),
+        control_start_s=SCENARIO.control_start_s,
+        score_window_s=SCENARIO.score_window_s,
+    )
+
+
+@pytest.fixture(scope='module')
+def sampled() -> Metrics:
+    return metrics('hinf_sampled')
+
+
+@pytest.mark.parametrize('figure', FIGURES)
+def test_hinf_sampled_dominates_hinf1_as_computed_by_at_least_4_percent(sampled, figure):
+    assert getattr(sampled, figure) < 0.96 * getattr(metrics('hinf1'), figure)
+
+
+@pytest.mark.parametrize('figure', FIGURES)
+def test_hinf_sampled_dominates_hinf1_as_printed_by_at_least_2_percent(sampled, figure):
+    assert getattr(sampled, figure) < 0.98 * getattr(thesis_row('hinf1'), figure)
+
+
+@pytest.fixture(scope='module', params=['hinf_sampled', 'hinf1'])
+def integrated(request):
+    """Return the name of a controller and the signals of its run as scipy integrates it."""
+    return request.param, tight_tolerance_run(RunSettings(SCENARIO), request.param)
+
+
+def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
+    """Those of docs/h_infinity.md and Table 5.1, signals and formulas from another source."""
+    name, signals = integrated
+    time = np.arange(len(signals['w_d'])) / 100.0
+    after = time >= SCENARIO.control_start_s - 1e-9
+    crossing = np.flatnonzero(after & (signals['w_d'] <= 0.0))[0]
+    zero = np.interp(0.0, signals['w_d'][[crossing, crossing - 1]], time[[crossing, crossing - 1]])
+    first, last = SCENARIO.score_window_s
+    window = (time >= first - 1e-9) & (time <= last + 1e-9)
+    expected = [
+        zero - SCENARIO.control_start_s,
+        signals['w_sr'][window].std() * 30.0 / np.pi,
+        signals['A_x'][window].std(),
+    ]
+    found = [getattr(metrics(name), figure) for figure in FIGURES]
+    assert found == pytest.approx(expected, rel=2e-3)
+    row = f'| `{name}` | ' + ' | '.join(f'{figure:.3f}' for figure in found) + ' |'
+    assert row in PAGE.read_text(encoding='utf-8')
+
+
+def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):
+    name, signals = integrated
+    lowest = run_headless(RunSettings(SCENARIO), name).slip_speed.min()
+    assert lowest == pytest.approx(signals['w_d'].min(), rel=2e-3)
+
+
+def test_it_goes_further_through_zero_than_hinf1():
+    """The price of a slower, smoother loop."""
+    sampled, hinf1 = (
+        run_headless(RunSettings(SCENARIO), name).slip_speed.min()
+        for name in ('hinf_sampled', 'hinf1')
+    )
+    assert sampled < 1.3 * hinf1 < 0.0
+
+
+@pytest.mark.parametrize('name', ['hinf_thesis', 'hinf_fitted'])
+def test_designs_without_hold_and_delay_are_fast_and_shake_the_driveline(name):
+    """Faster than Hinf1, at twice its torsion speed or more."""
+    found, printed = metrics(name), metrics('hinf1')
+    assert found.engagement_time_s < 0.8 * printed.engagement_time_s
+    assert found.torsion_speed_std_rpm > 1.9 * printed.torsion_speed_std_rpm

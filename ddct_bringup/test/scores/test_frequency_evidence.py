@@ -1,0 +1,104 @@
+"""The frequency-domain evidence is of the loop that runs, and `compare` leaves it in a file."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from ddct_bringup.programs import compare
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.step_response import step_response
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+pytestmark = pytest.mark.slow
+
+STEP_RPM = 1.0
+AT_STEP = 100
+"""After control has started, at 0.6 s; the run has 200 steps and more from there."""
+SCENARIO = load_scenario('thesis')
+LINEAR = [
+    name
+    for name in controller_names()
+    if make_controller(name, RunSettings(SCENARIO)).linear_model() is not None
+]
+
+
+class SteppedError(Controller):
+    """
+    A controller that sees its slip error raised by `step_rpm` from `AT_STEP` on.
+
+    For the feedback that is a step of the reference; a filter of the reference does not see it.
+    """
+
+    def __init__(self, inner: Controller, step_rpm: float) -> None:
+        self._inner, self._step = inner, rad_s_from_rpm(step_rpm)
+        self.preview_steps = inner.preview_steps
+
+    def reset(self) -> None:
+        self._inner.reset()
+
+    def update(self, measurement: Measurement) -> Command:
+        if measurement.step >= AT_STEP:
+            lowered = measurement.engine_speed - self._step
+            measurement = dataclasses.replace(measurement, engine_speed=lowered)
+        return self._inner.update(measurement)
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+@pytest.mark.parametrize('name', LINEAR)
+def test_a_small_step_of_the_slip_error_moves_the_run_as_the_sampled_loop_says(name, wear_gain):
+    """
+    The change of w_d between two runs, whole classes of the graph, within 1e-3 of its peak.
+
+    That holds the sampling, the delay, the wear gain, every sign and unit.
+    """
+    settings = RunSettings(SCENARIO, wear_gain=wear_gain)
+    without, stepped = (
+        run_headless(settings, SteppedError(make_controller(name, settings), step_rpm))
+        for step_rpm in (0.0, STEP_RPM)
+    )
+    change = stepped.slip_speed[AT_STEP:] - without.slip_speed[AT_STEP:]
+    found = rpm_from_rad_s(change) / STEP_RPM
+    model = make_controller(name, settings).linear_model()
+    loop = sampled_loop(model, SCENARIO.driveline, wear_gain)
+    _, expected = step_response(loop, 0.01 * (len(found) - 1))
+    assert found == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+
+
+def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
+    out = tmp_path / 'out'
+    arguments = ['--controllers', 'ls8,pi', '--wear-gain', '0.8', '--headless', '--out', str(out)]
+    assert compare.main(arguments) == 0
+    document = json.loads((out / FREQUENCY_FILE).read_text(encoding='utf-8'))
+    assert [entry['controller'] for entry in document['controllers']] == ['ls8', 'pi']
+    for entry in document['controllers']:
+        assert entry['linear']
+        assert [point['wear_gain'] for point in entry['wear']] == [0.7, 0.8, 1.0, 1.3]
+        assert entry['nominal']['stable']
+
+
+@pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
+def test_a_predictive_controller_has_no_frequency_response(name):
+    (entry,) = frequency_evidence([name], RunSettings(SCENARIO))['controllers']
+    assert entry == {
+        'controller': name,
+        'linear': False,
+        **dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners')),
+    }
+
+
+def test_the_evidence_of_a_repeated_run_is_the_same(tmp_path):
+    texts = []
+    for name in ('first', 'second'):
+        out = tmp_path / name
+        assert compare.main(['--controllers', 'ls2', '--headless', '--out', str(out)]) == 0
+        texts.append((out / FREQUENCY_FILE).read_bytes())
+    assert texts[0] == texts[1]

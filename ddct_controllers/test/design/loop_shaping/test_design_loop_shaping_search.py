@@ -1,0 +1,140 @@
+"""A user's specifications give a controller that meets them in the sampled loop, or an error."""
+
+import numpy as np
+import pytest
+
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
+from ddct_controllers.design.loop_shaping.specifications import (
+    SpecificationError,
+    TimeSpecifications,
+)
+from ddct_controllers.design.state_space import close_loop
+from ddct_controllers.design.verified_design import verify
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
+
+pytestmark = pytest.mark.slow
+
+DRIVELINE = DrivelineParameters()
+
+
+def independent_figures(controller: FactoredTransferFunction) -> tuple[float, float]:
+    """Return the first sample above 1 in s and the highest, by stepping the closed loop."""
+    closed = close_loop(sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S)))
+    assert np.abs(np.linalg.eigvals(closed.a)).max() < 1.0
+    powers = [closed.b[:, 0]]
+    for _ in range(6000):
+        powers.append(closed.a @ powers[-1])
+    output = np.concatenate([[0.0], np.cumsum(np.array(powers) @ closed.c[0])])
+    return PERIOD_S * float(np.argmax(output >= 1.0)), float(output.max())
+
+
+@pytest.mark.parametrize(
+    ('rise_time', 'overshoot', 'integrators', 'structure'),
+    [
+        (0.6, 0.14, 1, 'networks'),
+        (0.25, 0.14, 1, 'placement'),
+        (0.3, 0.08, 1, 'placement'),
+        (1.0, 0.05, 1, 'networks'),
+        (0.15, 0.20, 1, 'placement'),
+        (0.6, 0.14, 2, 'networks'),
+        (0.6, 0.14, 0, 'placement'),
+    ],
+)
+def test_specifications_are_met_in_the_loop_as_it_runs(
+    rise_time, overshoot, integrators, structure
+):
+    design = design_loop_shaping(TimeSpecifications(rise_time, overshoot), integrators, DRIVELINE)
+    first_above, highest = independent_figures(design.controller)
+    assert first_above <= rise_time + PERIOD_S
+    assert highest <= 1.0 + overshoot
+    assert design.verification.complaints == ()
+    assert design.verification.margins.sensitivity_peak <= 2.0
+    assert design.structure == structure
+    assert np.count_nonzero(design.controller.poles == 0.0) == integrators
+
+
+def test_a_loop_that_can_stays_out_of_both_curves():
+    found = design_loop_shaping(TimeSpecifications(0.6, 0.14), 1, DRIVELINE).verification
+    assert found.respects_contours
+    assert found.margins.complementary_peak <= found.specifications.complementary_peak
+
+
+def test_the_time_specifications_come_first_where_both_curves_cannot_be_kept_out_of():
+    """Two integrators in the loop make |T| exceed 1, the T_p of 2 % overshoot."""
+    found = design_loop_shaping(TimeSpecifications(0.6, 0.02), 1, DRIVELINE).verification
+    assert found.complaints == ()
+    assert not found.respects_contours
+
+
+@pytest.mark.parametrize('structure', STRUCTURES)
+def test_one_structure_can_be_asked_for(structure):
+    design = design_loop_shaping(TimeSpecifications(0.6, 0.14), 1, DRIVELINE, (structure,))
+    assert design.structure == structure
+
+
+def test_networks_alone_cannot_have_0_2_s_and_14_percent_as_the_thesis_found():
+    specifications = TimeSpecifications(0.2, 0.14)
+    with pytest.raises(SpecificationError, match=r'the fastest has 0\.\d+ s: allow that or more'):
+        design_loop_shaping(specifications, 1, DRIVELINE, ('networks',))
+    assert design_loop_shaping(specifications, 1, DRIVELINE).structure == 'placement'
+
+
+def test_what_the_actuator_forbids_is_refused_at_once():
+    with pytest.raises(SpecificationError, match=r'right-half-plane zeros allow 24\.5 rad/s'):
+        design_loop_shaping(TimeSpecifications(0.05, 0.14), 1, DRIVELINE)
+
+
+def test_between_bound_and_structure_the_error_says_what_can_be_had_and_it_can():
+    with pytest.raises(SpecificationError, match=r'the fastest has 0\.104 s: allow that'):
+        design_loop_shaping(TimeSpecifications(0.1, 0.14), 1, DRIVELINE)
+    design = design_loop_shaping(TimeSpecifications(0.104, 0.14), 1, DRIVELINE)
+    assert design.verification.complaints == ()
+
+
+@pytest.mark.parametrize(
+    ('rise_time', 'overshoot', 'structures', 'reachable'),
+    [
+        (0.6, 0.0005, STRUCTURES, r'15\.\d+'),
+        (0.05, 0.9, STRUCTURES, r'0\.0\d+'),
+        (4.0, 1e-6, ('networks',), 'nor a slower one'),  # one structure: it tries every crossover
+    ],
+)
+def test_what_no_loop_so_fast_can_have_is_named_with_what_can_be_had(
+    rise_time, overshoot, structures, reachable
+):
+    """Two integrators overshoot; 0.05 s would need an M_s above 2."""
+    with pytest.raises(SpecificationError, match=f'{reachable}.*more overshoot'):
+        design_loop_shaping(TimeSpecifications(rise_time, overshoot), 1, DRIVELINE, structures)
+
+
+@pytest.mark.parametrize(
+    ('name', 'complaint'),
+    [
+        ('ls1', 'rise time 0.5'),
+        ('ls3', 'overshoot above 20 %'),
+        ('hinf2', 'sensitivity peak M_s above 2'),
+    ],
+)
+def test_a_controller_that_fails_is_told_why(name, complaint):
+    found = verify(PRINTED_CONTROLLERS[name], TimeSpecifications(0.3, 0.2), DRIVELINE)
+    assert any(text.startswith(complaint) for text in found.complaints)
+
+
+def test_an_unstable_loop_is_never_accepted():
+    flipped = FactoredTransferFunction(0.01, (0.8,), (0.0,))
+    found = verify(flipped, TimeSpecifications(5.0, 0.9), DRIVELINE)
+    assert found.complaints == ('the closed loop is unstable',)
+    assert not found.respects_contours
+
+
+def test_a_loop_that_wear_makes_unstable_is_not_accepted():
+    """LS2 with 2.7 times its gain: 1.2 dB of gain margin are less than a wear gain of 1.3."""
+    g_c = PRINTED_CONTROLLERS['ls2']
+    strong = FactoredTransferFunction(2.7 * g_c.gain, g_c.numerator, g_c.denominator)
+    found = verify(strong, TimeSpecifications(5.0, 0.99), DRIVELINE)
+    assert found.margins.stable
+    assert 'unstable with wear gain 1.3' in found.complaints

@@ -1,0 +1,127 @@
+"""The worst corner is the worst: of the corners, over the wear range, and of what is inside."""
+
+import itertools
+from types import SimpleNamespace
+
+import control
+import numpy as np
+import pytest
+
+from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
+from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
+from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
+from ddct_controllers.design.state_space import frequency_response, scaled
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.parameters import DrivelineParameters
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope='module')
+def corners() -> PlantCorners:
+    return PlantCorners()
+
+
+def sampled(name: str) -> StateSpace:
+    return discretise_zoh(PRINTED_CONTROLLERS[name].to_state_space(), PERIOD_S)
+
+
+def test_there_is_a_corner_for_every_combination_of_the_seven_parameters(corners):
+    assert len(corners.plants) == 2**7
+    assert 'engine_damping' not in corners.varied
+    assert len(set(corners.parameters)) == 2**7
+    ratios = {
+        round(getattr(p, name) / getattr(IDENTIFIED_DRIVELINE, name), 12)
+        for p in corners.parameters
+        for name in corners.varied
+    }
+    assert ratios == {1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD}
+
+
+@pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1', 'hinf3'])
+def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
+    controller = sampled(name)
+    found = worst_corner(controller, corners)
+    loop = sampled_loop(controller, corners.parameters[found.index], found.wear_gain)
+    assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
+
+
+@pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
+def test_no_corner_and_wear_gain_is_worse(name, corners):
+    """Every eighth corner, and four wear gains."""
+    controller = sampled(name)
+    worst = worst_corner(controller, corners).sensitivity_peak
+    for parameters, gain in itertools.product(corners.parameters[::8], (0.7, 0.9, 1.1, 1.3)):
+        margins = loop_margins(sampled_loop(controller, parameters, gain))
+        assert margins.stable
+        assert margins.sensitivity_peak <= worst * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
+def test_nothing_inside_the_corners_is_worse(name, corners):
+    """100 random drivelines and wear gains; no proof, the corners need not hold the worst."""
+    controller = sampled(name)
+    worst = worst_corner(controller, corners).sensitivity_peak
+    random = np.random.default_rng(1)
+    for _ in range(100):
+        factors = random.uniform(1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD, 7)
+        parameters = DrivelineParameters(
+            **{
+                name: factor * getattr(IDENTIFIED_DRIVELINE, name)
+                for name, factor in zip(corners.varied, factors, strict=True)
+            }
+        )
+        loop = sampled_loop(controller, parameters, random.uniform(0.7, 1.3))
+        assert loop_margins(loop).sensitivity_peak <= worst
+
+
+@pytest.mark.parametrize('name', ['ls2', 'ls9', 'hinf2'])
+def test_unstable_corners_are_those_with_an_unstable_pole_at_some_wear_gain(name, corners):
+    controller = sampled(name)
+    found = worst_corner(controller, corners)
+    unstable = sum(
+        not all(
+            closed_loop_stable(sampled_loop(controller, parameters, gain))
+            for gain in np.linspace(0.7, 1.3, 7)
+        )
+        for parameters in corners.parameters
+    )
+    assert found.unstable_corners == unstable > 0
+    assert found.sensitivity_peak is None
+    worst = sampled_loop(controller, corners.parameters[found.index], found.wear_gain)
+    assert not closed_loop_stable(worst)
+
+
+@pytest.mark.parametrize(('gain', 'unstable'), [(1.0, 1), (1.5, 0)])
+def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, unstable):
+    """
+    L = (s^2 + s + 1.7)/(s^3 - 0.72): stable at the wear gains 0.7, 1 and 1.3.
+
+    s^3 + k s^2 + k s + 1.7 k - 0.72 is stable where (k - 0.8)(k - 0.9) > 0, by Routh. The bilinear
+    map keeps that; 1.5 times the gain moves the gap out of the range.
+    """
+    loop = control.c2d(
+        control.ss(control.tf([1.0, 1.0, 1.7], [1.0, 0.0, 0.0, -0.72])), 0.1, 'tustin'
+    )
+    plant = StateSpace(loop.A, loop.B, loop.C, loop.D, PERIOD_S)
+    response = frequency_response(plant, PlantCorners.omega)
+    one_corner = SimpleNamespace(
+        plants=[plant],
+        omega=PlantCorners.omega,
+        responses=response[None, :],
+        parameters=[IDENTIFIED_DRIVELINE],
+    )
+    empty = np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0))
+    controller = StateSpace(*empty, np.array([[gain]]), PERIOD_S)
+    for wear_gain in WEAR_GAINS:
+        assert closed_loop_stable(scaled(plant, gain * wear_gain))
+    assert worst_corner(controller, one_corner).unstable_corners == unstable
+
+
+def test_the_least_damping_of_the_mode_turns_negative_where_it_grows(corners):
+    assert worst_corner(sampled('ls9'), corners).least_mode_damping < 0.0
+    assert worst_corner(sampled('ls1'), corners).least_mode_damping > 0.4

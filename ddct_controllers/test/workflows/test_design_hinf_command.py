@@ -1,0 +1,106 @@
+"""`design h-infinity`: tables, JSON, files, and errors in one line."""
+
+import json
+
+import numpy as np
+import pytest
+
+from ddct_controllers.design.h_infinity.weights import WeightError
+from ddct_controllers.designed import BILINEAR, DesignedController, load_designed
+from ddct_controllers.registry import make_controller
+from ddct_controllers.synthesised import synthesised_controller
+from ddct_controllers.workflows.design_program import main
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+pytestmark = pytest.mark.slow
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+
+
+def test_it_prints_the_workflow(capsys):
+    assert main(['h-infinity']) == 0
+    text = capsys.readouterr().out
+    for expected in (
+        *('Specifications', 'Weights', 'Synthesis', 'Cleaning', 'Controllers', 'Loops', 'Worst'),
+        *('2.977', '1.10500', 'poles at -epsilon', '(s^2 + 134.1 s + 4.27e+04)', 'G_c(z)'),
+    ):
+        assert expected in text
+
+
+def test_the_json_has_every_figure(capsys):
+    assert main(['h-infinity', '--weights', 'sampled', '--json', '-']) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found['weights']['hold_and_delay_in_plant'] is True
+    assert found['continuous_loop'] is None
+    assert found['sampled_loop']['stable'] is True
+    assert found['corners']['unstable'] == 0
+    assert found['corners']['sensitivity_peak'] < 2.0
+    assert found['uncertainty']['largest_error'] == pytest.approx(0.3)
+    assert found['synthesis']['gamma'] >= found['synthesis']['lower_bound']
+    assert len(found['pulse_transfer_function']['denominator']) > 5
+
+
+@pytest.mark.parametrize('weights', ['fitted', 'sampled'])
+def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
+    """The same G_c(z) as the registry's to the last bit, and three charts."""
+    options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(tmp_path)]
+    assert main(options) == 0
+    path = tmp_path / 'mine.yaml'
+    assert f'bringup --controller {path}' in capsys.readouterr().out
+    built = make_controller(str(path), SETTINGS).linear_model()
+    expected = synthesised_controller(f'hinf_{weights}')
+    for part in 'abcd':
+        assert np.array_equal(getattr(built, part), getattr(expected, part))
+    assert load_designed(str(path)).provenance['weights']['recipe'] == weights
+    assert len(list(tmp_path.glob('mine_*.png'))) == 3
+
+
+def test_a_bilinear_controller_comes_back_from_its_file(tmp_path):
+    g_c = FactoredTransferFunction(-0.1, (1.0,), (0.0, 5.0))
+    path = tmp_path / 'mine.yaml'
+    text = DesignedController('mine', g_c, {}, BILINEAR).to_yaml()
+    path.write_text(text, encoding='utf-8')
+    assert load_designed(str(path)) == DesignedController('mine', g_c, {}, BILINEAR)
+    path.write_text(text.replace('bilinear', 'guess'), encoding='utf-8')
+    with pytest.raises(ParameterError, match="unknown discretisation 'guess': choose from hold"):
+        load_designed(str(path))
+
+
+def test_the_lmi_method_gives_nearly_the_same_level(capsys):
+    pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
+    levels = []
+    for method in ('lmi', 'riccati'):
+        assert main(['h-infinity', '--method', method, '--json', '-']) == 0
+        levels.append(json.loads(capsys.readouterr().out)['synthesis']['optimum'])
+    assert levels[0] == pytest.approx(levels[1], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        (['--rise-time', '0.02'], 'no controller meets the bounds on S and T'),
+        (['--rise-time', '0.05'], 'makes the loop with hold and delay unstable'),
+        (['--rise-time', '-1'], 'rise time is -1 s'),
+        (['--overshoot', '100'], 'overshoot is 100 %'),
+        (['--low-frequency-gain', '0'], 'K, the low-frequency gain of S, is 0'),
+        (['--bandwidth', 'nan'], 'w_2 is nan: give a finite number'),
+        (['--effort', '0.1'], 'only the sampled design weighs the torque'),
+        (['--back-off', '0.5'], 'back-off from the optimum is 0.5'),
+        (['--method', 'lmi', '--back-off', '1.1'], '--back-off is for --method riccati'),
+        (['--name', 'hinf_sampled'], '--name hinf_sampled is taken'),
+        (['--write-doc', '/no/such/page.md'], '--write-doc /no/such/page.md: cannot be read'),
+    ],
+)
+def test_a_users_mistake_is_one_line(capsys, options, complaint):
+    assert main(['h-infinity', *options]) == 1
+    error = capsys.readouterr().err
+    assert complaint in error
+    assert error.startswith('design: ')
+    assert error.count('\n') == 1
+
+
+def test_weight_errors_are_parameter_errors():
+    assert issubclass(WeightError, ParameterError)

@@ -1,0 +1,43 @@
+"""The page docs/h_infinity.md says what the program computes."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_controllers.workflows.h_infinity_command import page_tables
+from ddct_plant.linear.lti import discretise_zoh
+from ddct_plant.program.page_tables import fill_tables
+
+pytestmark = pytest.mark.slow
+
+PAGE = Path(__file__).parents[3] / 'docs' / 'h_infinity.md'
+NOT_TO_THE_DIGIT = {'cleaning', 'controllers'}
+"""Where the fast pole at the optimum is, and how double roots split, is up to rounding."""
+BLOCK = re.compile(r'<!-- h-infinity: (\w+) -->\n.*?<!-- end -->', re.DOTALL)
+
+
+def blocks(page: str) -> dict[str, str]:
+    return {match[1]: match[0] for match in BLOCK.finditer(page)}
+
+
+def test_its_tables_are_those_of_the_program():
+    """After a change: design h-infinity --write-doc docs/h_infinity.md."""
+    page = PAGE.read_text(encoding='utf-8')
+    written, computed = blocks(page), blocks(fill_tables(page, 'h-infinity', page_tables()))
+    for name in written.keys() - NOT_TO_THE_DIGIT:
+        assert written[name] == computed[name]
+    for name in NOT_TO_THE_DIGIT:
+        assert written[name].count('hinf_') == computed[name].count('hinf_')
+
+
+def test_hinf1_has_the_worst_sensitivity_that_the_page_says():
+    sampled = discretise_zoh(H_INFINITY_CONTROLLERS['hinf1'].to_state_space(), 0.01)
+    worst = worst_corner(sampled, PlantCorners()).sensitivity_peak
+    row = next(
+        line for line in PAGE.read_text('utf-8').split('\n') if line.startswith('| `hinf1` |')
+    )
+    assert float(row.split('|')[-2]) == pytest.approx(worst, abs=0.005)

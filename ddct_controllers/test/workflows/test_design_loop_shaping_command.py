@@ -1,0 +1,112 @@
+"""`design loop-shaping`: the thesis's workflow, a controller of one's own, and what it refuses."""
+
+import argparse
+import json
+
+import pytest
+
+from ddct_controllers.designed import load_designed
+from ddct_controllers.registry import make_controller
+from ddct_controllers.workflows import loop_shaping_command
+from ddct_plant.program.command_line import run_program
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+pytestmark = pytest.mark.slow
+
+OWN = ['loop-shaping', '--rise-time', '0.6', '--overshoot', '14']
+
+
+def main(argv: list[str]) -> int:
+    """Run the subcommand as `design` does."""
+
+    def run(arguments: list[str]) -> int:
+        parser = argparse.ArgumentParser(prog='design')
+        loop_shaping_command.add_parser(parser.add_subparsers(required=True))
+        options = parser.parse_args(arguments)
+        return options.run(options)
+
+    return run_program('design', run, argv)
+
+
+def test_without_options_it_prints_the_thesis_workflow(capsys):
+    assert main(['loop-shaping']) == 0
+    printed = capsys.readouterr().out
+    assert '|K_c| = 0.3: G_c1  0               7.08       55.0    13.0' in printed
+    assert '2.2, G_c1  0.25   14    0.5305  1.427  1.112' in printed
+
+
+def test_json_on_standard_output_is_alone(capsys):
+    assert main(['loop-shaping', '--json', '-']) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert set(record) == {'network_steps', 'placement', 'loops'}
+    assert [row['unstable_poles'] for row in record['network_steps']] == [2, 0, 2, 0, 0]
+
+
+def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
+    pytest.importorskip('matplotlib')
+    assert main([*OWN, '--name', 'calm', '--out', str(tmp_path / 'new')]) == 0
+    path = tmp_path / 'new' / 'calm.yaml'
+    assert f'bringup --controller {path}' in capsys.readouterr().out
+    names = {'calm.yaml', 'calm_nyquist.png', 'calm_nichols.png', 'calm_step.png'}
+    assert {file.name for file in path.parent.iterdir()} == names
+    designed = load_designed(str(path))
+    assert designed.provenance['specifications']['rise_time_s'] == 0.6
+    assert designed.provenance['sampled_loop']['rise_time_s'] <= 0.6
+    assert designed.provenance['sampled_loop']['stable']
+    make_controller(str(path), RunSettings(load_scenario('thesis')))
+
+
+def test_an_earlier_design_is_replaced_only_when_asked(tmp_path, capsys):
+    pytest.importorskip('matplotlib')
+    command = [*OWN, '--out', str(tmp_path)]
+    assert main(command) == 0
+    assert main(command) == 1
+    assert 'exists already: choose another --name or add --overwrite' in capsys.readouterr().err
+    assert main([*command, '--overwrite']) == 0
+
+
+def test_overwrite_does_not_touch_what_is_no_controller(tmp_path, capsys):
+    (tmp_path / 'mine.yaml').write_text('something: else\n', encoding='utf-8')
+    assert main([*OWN, '--out', str(tmp_path), '--overwrite']) == 1
+    assert 'key format is missing' in capsys.readouterr().err
+    assert (tmp_path / 'mine.yaml').read_text(encoding='utf-8') == 'something: else\n'
+
+
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        (['--rise-time', '0.6'], '--overshoot is missing'),
+        (['--overshoot', '14'], '--rise-time is missing'),
+        (['--out', 'x'], '--out needs specifications'),
+        (['--name', 'x'], '--name needs specifications'),
+        (['--rise-time', '-1', '--overshoot', '14'], 'rise time is -1 s: it must be above 0'),
+        (['--rise-time', '0.6', '--overshoot', '0'], 'overshoot is 0 %'),
+        (['--rise-time', '0.6', '--overshoot', '140'], 'overshoot is 140 %'),
+        (['--rise-time', '0.05', '--overshoot', '14'], 'allow 24.5 rad/s'),
+        ([*OWN[1:], '--name', 'ls8'], '--name ls8 is taken'),
+        ([*OWN[1:], '--name', 'No Name'], "controller name 'No Name'"),
+        ([*OWN[1:], '--write-doc', 'x.md'], '--write-doc is for the thesis'),
+        (['--write-doc', 'none.md'], '--write-doc none.md: cannot be read'),
+    ],
+)
+def test_a_users_mistake_is_one_line(options, complaint, capsys):
+    assert main(['loop-shaping', *options]) == 1
+    lines = [line for line in capsys.readouterr().err.splitlines() if 'searching' not in line]
+    assert len(lines) == 1
+    assert lines[0].startswith('design: ')
+    assert complaint in lines[0]
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path, capsys):
+    (tmp_path / 'file').write_text('', encoding='utf-8')
+    assert main([*OWN, '--out', str(tmp_path / 'file' / 'x')]) == 1
+    assert 'cannot be made (Not a directory)' in capsys.readouterr().err
+
+
+def test_a_ramp_disturbance_asks_for_two_integrators_and_none_for_none(capsys):
+    for disturbance, integrators in (('ramp', 2), ('none', 0)):
+        assert main([*OWN, '--disturbance', disturbance, '--json', '-']) == 0
+        record = json.loads(capsys.readouterr().out)
+        assert record['integrators'] == integrators
+        assert record['controller']['denominator'].count(0.0) == integrators

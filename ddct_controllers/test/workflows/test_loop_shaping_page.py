@@ -1,0 +1,32 @@
+"""The page docs/loop_shaping.md says what the program computes."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from ddct_controllers.design.loop_shaping.report import thesis_record
+from ddct_controllers.design.loop_shaping.tables import thesis_tables
+from ddct_controllers.designed import load_designed
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.program.page_tables import fill_tables
+
+PAGE = Path(__file__).parents[3] / 'docs' / 'loop_shaping.md'
+
+
+@pytest.fixture
+def page() -> str:
+    return PAGE.read_text(encoding='utf-8')
+
+
+def test_its_tables_are_those_of_the_program(page):
+    """After a change: design loop-shaping --write-doc docs/loop_shaping.md."""
+    assert fill_tables(page, 'loop-shaping', thesis_tables(thesis_record())) == page
+
+
+def test_its_example_of_a_file_is_ls7(page, tmp_path):
+    text = page.split('```yaml\n')[1].split('```')[0]
+    assert yaml.safe_load(text)['name'] == 'mine'
+    path = tmp_path / 'mine.yaml'
+    path.write_text(text, encoding='utf-8')
+    assert load_designed(str(path)).transfer_function == PRINTED_CONTROLLERS['ls7']

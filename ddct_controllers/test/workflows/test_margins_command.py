@@ -1,0 +1,182 @@
+"""Program `design margins`: its table, its JSON, its page, and how it refuses."""
+
+import argparse
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.registry import controller_names
+from ddct_controllers.workflows import evidence, margins_command
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.program.command_line import run_program
+
+pytestmark = pytest.mark.slow
+
+PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'frequency_evidence.md'
+
+
+def run(*arguments: str) -> int:
+    def main(argv: list[str]) -> int:
+        parser = argparse.ArgumentParser(prog='design')
+        margins_command.add_parser(parser.add_subparsers())
+        options = parser.parse_args(argv)
+        return options.run(options)
+
+    return run_program('design', main, ['margins', *arguments])
+
+
+def rows(text: str) -> dict[str, list[str]]:
+    """Return the cells of every line that starts with a controller's name."""
+    cells = [re.split(r'\s+', line.strip()) for line in text.splitlines()]
+    return {row[0]: row[1:] for row in cells if row[0] in controller_names()}
+
+
+@pytest.fixture
+def stub(monkeypatch):
+    """Put a controller with the given linear model in the place of every other."""
+
+    def install(model: StateSpace | None) -> None:
+        class Stub(Controller):
+            def reset(self):
+                pass
+
+            def update(self, measurement):
+                return Command(0.0)
+
+            def linear_model(self):
+                return model
+
+        monkeypatch.setattr(evidence, 'make_controller', lambda name, settings: Stub())
+
+    return install
+
+
+def test_the_page_shows_what_the_program_prints(capsys):
+    """To one unit of the last digit shown; paste the table of `design margins` to mend it."""
+    assert run() == 0
+    printed, kept = rows(capsys.readouterr().out), rows(PAGE.read_text(encoding='utf-8'))
+    assert kept.keys() == printed.keys()
+    for name, cells in printed.items():
+        assert len(kept[name]) == len(cells)
+        for found, shown in zip(cells, kept[name], strict=True):
+            if '.' not in found:
+                assert shown == found
+            else:
+                unit = 10.0 ** -len(found.partition('.')[2])
+                assert float(shown) == pytest.approx(float(found), abs=1.01 * unit)
+
+
+def test_json_has_nominal_wear_and_corner_figures_and_stands_alone(capsys):
+    assert run('--controller', 'ls8', '--wear-gain', '0.9', '--json', '-') == 0
+    document = json.loads(capsys.readouterr().out)
+    (entry,) = document['controllers']
+    assert document['conditions']['corners'] == 128
+    assert entry['controller'] == 'ls8'
+    assert entry['nominal']['wear_gain'] == 1.0
+    assert [point['wear_gain'] for point in entry['wear']] == [0.7, 0.9, 1.0, 1.3]
+    assert entry['nominal'] == entry['wear'][2]
+    worst = entry['corners']['worst']
+    assert worst['sensitivity_peak'] == pytest.approx(entry['corners']['sensitivity_peak'])
+    assert set(worst['factors']) == set(document['conditions']['corner_parameters'])
+
+
+def test_the_stable_wear_gains_end_where_the_loop_becomes_unstable(capsys):
+    """Hinf2: 1.45; printed with the table of a wear gain on either side."""
+    run('--controller', 'hinf2', '--json', '-')
+    stable = json.loads(capsys.readouterr().out)['controllers'][0]['stable_wear_gain']
+    assert stable['lowest'] == 0.0
+    assert stable['highest'] == pytest.approx(1.4505, abs=0.001)
+    for factor, answer in ((0.999, 'yes'), (1.001, 'no')):
+        run('--controller', 'hinf2', '--wear-gain', repr(factor * stable['highest']))
+        assert rows(capsys.readouterr().out)['hinf2'][0] == answer
+
+
+def test_an_unstable_loop_has_null_margins_and_dashes(capsys):
+    run('--controller', 'ls3', '--wear-gain', '1.6', '--json', '-')
+    point = json.loads(capsys.readouterr().out)['controllers'][0]['wear'][-1]
+    assert point['stable'] is False
+    assert point['gain_margin_db'] is point['sensitivity_peak'] is None
+    run('--controller', 'ls3', '--wear-gain', '1.6')
+    assert rows(capsys.readouterr().out)['ls3'][1:9] == ['-'] * 8
+
+
+def test_a_loop_that_is_unstable_with_a_new_clutch_has_no_stable_wear_gains(capsys):
+    run('--controller', 'pi', '--set', 'controllers.pi.proportional_gain=5', '--json', '-')
+    entry = json.loads(capsys.readouterr().out)['controllers'][0]
+    assert entry['nominal']['stable'] is False
+    assert entry['stable_wear_gain'] is None
+    assert entry['corners']['unstable'] == 128
+
+
+def test_the_driveline_is_the_scenarios(capsys):
+    run('--controller', 'ls8', '--set', 'driveline.halfshaft_stiffness=12000', '--json', '-')
+    stiff = json.loads(capsys.readouterr().out)['controllers'][0]
+    run('--controller', 'ls8', '--json', '-')
+    usual = json.loads(capsys.readouterr().out)['controllers'][0]
+    assert stiff['nominal']['gain_margin_db'] != usual['nominal']['gain_margin_db']
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (['--controller', 'ls10'], "unknown controller 'ls10': choose from"),
+        (['--wear-gain', '0'], 'wear_gain is 0'),
+        (['--scenario', 'none'], 'none'),
+    ],
+)
+def test_bad_input_is_named_in_one_line(arguments, message, capsys):
+    assert run(*arguments) == 1
+    errors = capsys.readouterr().err.splitlines()
+    assert len(errors) == 1
+    assert message in errors[0]
+
+
+def test_a_controller_that_is_not_linear_is_refused_with_the_reason(stub, capsys):
+    stub(None)
+    assert run('--controller', 'ls1') == 1
+    assert 'ls1 is not linear: it has no frequency response' in capsys.readouterr().err
+
+
+def test_controllers_that_are_not_linear_are_named_below_the_table(monkeypatch, capsys):
+    monkeypatch.setattr(margins_command, 'controller_names', lambda: ['ls8', 'mpc3', 'mpc4'])
+    assert run() == 0
+    *_, last = capsys.readouterr().out.splitlines()
+    assert last == 'Not linear, without a frequency response: mpc3, mpc4'
+
+
+def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
+    one = [[1.0]]
+    stub(StateSpace(one, one, one, one))
+    assert run('--controller', 'ls1') == 1
+    message = "controller 'ls1': its linear_model cannot be used: controller is continuous"
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('model', 'complaint'),
+    [
+        ('text', 'it is of type str'),
+        ([[1.0]], 'it is of type list'),
+        (StateSpace([[0.0]], [[1.0, 1.0]], [[1.0]], [[0.0, 0.0]], 0.01), 'it has 2 inputs'),
+        (StateSpace([[0.0]], [[1.0]], [[1.0], [1.0]], [[0.0], [0.0]], 0.01), '2 outputs'),
+        (StateSpace([[0.0]], [[1.0]], [[1.0]], [[0.0]], 0.02), 'controller is sampled at 0.02 s'),
+    ],
+)
+def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, complaint):
+    stub(model)
+    assert run('--controller', 'ls1') == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("design: controller 'ls1': its linear_model cannot be used: ")
+    assert complaint in line
+
+
+def test_a_linear_model_that_fails_is_one_line(stub, monkeypatch, capsys):
+    stub(None)
+    broken = evidence.make_controller('ls1', None)
+    monkeypatch.setattr(type(broken), 'linear_model', lambda self: 1 / 0)
+    assert run('--controller', 'ls1') == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'cannot be used: ZeroDivisionError: division by zero' in line
