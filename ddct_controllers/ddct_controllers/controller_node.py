@@ -3,12 +3,8 @@
 import time
 from typing import Any, ClassVar
 
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import TwistStamped, WrenchStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.controller_info import controller_info
@@ -16,17 +12,21 @@ from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import controller_label, controller_names, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.graph.arrivals import (
-    read_joint_speeds,
-    read_slip_reference,
-    read_torque,
-    read_vehicle_speed,
-)
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import StatusMessage, status_message, torque_message
-from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import (
+    CONTROLLER_STATUS,
+    CONTROLLER_TIMING,
+    ENGINE_REQUEST,
+    ENGINE_TORQUE,
+    JOINT_STATES,
+    SLIP_REFERENCE,
+    TORQUE_DEMAND,
+    TORQUE_REQUEST,
+    VEHICLE_SPEED,
+)
 
 TIMING_BATCH = 20
 """Update times are published in batches of this many steps."""
@@ -53,29 +53,23 @@ class ControllerNode(FollowerNode):
         name = declare(self, 'controller', 'pi', f'One of: {", ".join(controller_names())}')
         self._controller = make_controller(name, self.settings)
         self._architecture = make_architecture(self.settings, self._controller)
-        self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
+        self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
-            self._engine_request = self.create_publisher(
-                WrenchStamped, 'engine/torque_request', LOOP_QOS
-            )
-            self._engine_request_message = WrenchStamped()
-            self._engine_topic = 'engine/torque_demand'
+            self._engine_request = Output(self, ENGINE_REQUEST)
+            self._engine_topic = TORQUE_DEMAND
         else:
-            self._engine_topic = 'engine/torque'
-        self._status = self.create_publisher(DiagnosticArray, 'controller/status', LOOP_QOS)
-        self._timing = self.create_publisher(DiagnosticArray, 'controller/timing', LOOP_QOS)
-        self._request_message = WrenchStamped()
-        self._status_message = StatusMessage(self.get_name())
+            self._engine_topic = ENGINE_TORQUE
+        self._status = Output(self, CONTROLLER_STATUS)
+        self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
         self._declare_gains()
         self.publish_run_info(controller_info(controller_label(name), self._controller))
         self.follow(
-            [
-                (JointState, 'driveline/joint_states', read_joint_speeds),
-                (TwistStamped, 'vehicle/twist', read_vehicle_speed),
-                (WrenchStamped, self._engine_topic, read_torque),
-                (JointTrajectory, 'clutch/slip_reference', self._read_reference),
-            ]
+            JOINT_STATES,
+            VEHICLE_SPEED,
+            self._engine_topic,
+            SLIP_REFERENCE,
+            readers={SLIP_REFERENCE: self._read_reference},
         )
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
@@ -85,37 +79,31 @@ class ControllerNode(FollowerNode):
         request = self._architecture.update(measurement)
         self._note_update_time(step, 1e6 * (time.perf_counter() - started))
         reply = (
-            (
-                self._request,
-                torque_message(stamp_ns, request.torque, reuse=self._request_message),
-            ),
-            (self._status, self._status_message.fill(stamp_ns, request.status)),
+            self._request.fill(stamp_ns, request.torque),
+            self._status.fill(stamp_ns, request.status, name=self.get_name()),
         )
         if request.engine_torque is None:
             return reply
-        engine_request = torque_message(
-            stamp_ns, request.engine_torque, reuse=self._engine_request_message
-        )
-        return ((self._engine_request, engine_request), *reply)
+        return (self._engine_request.fill(stamp_ns, request.engine_torque), *reply)
 
     def close(self) -> None:
         """Publish the update times that no batch has carried yet."""
         if self._update_times_us and self.join.last_step is not None:
             self._publish_timing(self.join.last_step)
 
-    def _read_reference(self, topic: str, message: Any) -> tuple[list[float], list[float]]:
-        return read_slip_reference(topic, message, self._controller.preview_steps)
+    def _read_reference(self, message: Any) -> tuple[list[float], list[float]]:
+        return SLIP_REFERENCE.read(message, preview_steps=self._controller.preview_steps)
 
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
-        engine, shaft, wheel = inputs['driveline/joint_states']
-        speeds, rates = inputs['clutch/slip_reference']
+        engine, shaft, wheel, _ = inputs[JOINT_STATES.name]
+        speeds, rates = inputs[SLIP_REFERENCE.name]
         return Measurement(
             step=step,
             engine_speed=engine,
             shaft_speed=shaft,
             wheel_speed=wheel,
-            vehicle_speed=inputs['vehicle/twist'],
-            engine_torque=inputs[self._engine_topic],
+            vehicle_speed=inputs[VEHICLE_SPEED.name],
+            engine_torque=inputs[self._engine_topic.name],
             slip_reference=speeds,
             slip_reference_rate=rates,
         )
@@ -129,7 +117,7 @@ class ControllerNode(FollowerNode):
         times = ' '.join(f'{value:.3f}' for value in self._update_times_us)
         self._update_times_us = []
         pairs = [('update_times_us', times)]
-        self._timing.publish(status_message(stamp_of_step(step), self.get_name(), pairs))
+        self._timing.fill(stamp_of_step(step), pairs, name=self.get_name()).publish()
 
     def _declare_gains(self) -> None:
         for name, value in self._controller.gains().items():

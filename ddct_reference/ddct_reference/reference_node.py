@@ -2,15 +2,11 @@
 
 from typing import Any, ClassVar
 
-from geometry_msgs.msg import TwistStamped
-from trajectory_msgs.msg import JointTrajectory
-
-from ddct_plant.graph.arrivals import read_slip
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import SlipReferenceMessage
-from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import SLIP, SLIP_REFERENCE
 from ddct_reference.factory import make_reference
 
 
@@ -26,15 +22,14 @@ class ReferenceNode(FollowerNode):
             self, 'preview_steps', 0, 'Periods to look ahead, as the controller needs', 0, 1000
         )
         self._reference = make_reference(self.settings, preview_steps)
-        self._publisher = self.create_publisher(JointTrajectory, 'clutch/slip_reference', LOOP_QOS)
-        self._message = SlipReferenceMessage(preview_steps)
+        self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info({'preview_steps': str(preview_steps)})
-        self.follow([(TwistStamped, 'clutch/slip', read_slip)])
+        self.follow(SLIP)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
-        speeds, rates = self._reference.update(step, inputs['clutch/slip'])
-        return ((self._publisher, self._message.fill(stamp_ns, speeds, rates)),)
+        speeds, rates = self._reference.update(step, inputs[SLIP.name])
+        return (self._output.fill(stamp_ns, speeds, rates),)
 
 
 def main() -> int:

@@ -1,6 +1,5 @@
 """Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
 
-import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +8,9 @@ import pytest
 from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.bag.topics import TOPICS
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.graph.topics import TOPICS, all_signals
 
 RUN_INFO = {'load': [('version', '1.0')], 'engine': [('version', '1.0'), ('seed', '0')]}
 
@@ -48,15 +47,15 @@ def random_trajectory(steps, preview_steps=2):
         'clutch_torque': (11,),
     }
     arrays = {
-        field.name: random.normal(0.0, 100.0, (steps + 1, *widths.get(field.name, ())))
-        for field in dataclasses.fields(Trajectory)
-        if field.name not in ('status', 'engine_torque_request')
+        signal.name: random.normal(0.0, 100.0, (steps + 1, *widths.get(signal.name, ())))
+        for signal in all_signals()
+        if signal.name not in ('status', 'engine_torque_request')
     }
     status = tuple(
         (('part_n_m', repr(float(value))), ('saturated', 'true' if value < 0.0 else 'false'))
         for value in random.normal(0.0, 100.0, steps + 1)
     )
-    return Trajectory(status=status, **arrays)
+    return Trajectory({**arrays, 'status': status})
 
 
 class Bags:

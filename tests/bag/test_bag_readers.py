@@ -7,7 +7,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_bringup.bag.topics import recorded_topics
+from ddct_plant.graph.topics import RunKind, recorded_topics
 
 rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
 rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')
@@ -115,7 +115,7 @@ def test_metadata_has_what_rosbag2_asks_for(bag, trajectory):
     assert information['duration'] == {'nanoseconds': trajectory.steps * 10_000_000}
     topics = information['topics_with_message_count']
     assert [topic['topic_metadata']['name'] for topic in topics] == [
-        topic.resolved_name for topic in recorded_topics(lockstep=True)
+        topic.resolved_name for topic in recorded_topics(RunKind())
     ]
     assert sum(topic['message_count'] for topic in topics) == information['message_count']
     for topic in topics:

@@ -23,8 +23,8 @@ COPY_BAG = """
     from pathlib import Path
     from ddct_bringup.bag.file.records import read_records
     from ddct_bringup.bag.writer import BagWriter
-    from ddct_bringup.bag.topics import TOPICS
     from ddct_plant.base.errors import DdctError
+    from ddct_plant.graph.topics import TOPICS
 
     source, folder = map(Path, sys.argv[1:3])
     last_step, limit = map(int, sys.argv[3:])

@@ -6,11 +6,11 @@ import pytest
 
 from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.bag.topics import recorded_topics
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.graph.topics import DIAGNOSTICS, RunKind, recorded_topics
 
 STEPS = 60
 COUNTS = {'steps': STEPS, 'resends': 0, 'late_messages': 0, 'worst_tick_lateness_us': 1234}
@@ -24,17 +24,16 @@ def leave(bags, trajectory, monkeypatch):
     pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from rclpy.serialization import serialize_message
 
-    from ddct_plant.graph.messages import status_message
-
     def diagnostics(name, pairs):
         stamp = stamp_of_step(STEPS)
         texts = [(key, str(value)) for key, value in pairs.items()]
-        return '/diagnostics', stamp, serialize_message(status_message(stamp, name, texts))
+        message = DIAGNOSTICS.message(stamp, texts, name=name)
+        return '/diagnostics', stamp, serialize_message(message)
 
     def write(folder, missed, safe):
         records = read_records(mcap_of(bags.write(trajectory, folder='source')))
         facts = {**records.custom_data, 'mode': 'realtime'}
-        topics = recorded_topics(lockstep=False)
+        topics = recorded_topics(RunKind(lockstep=False))
         with BagWriter(folder, 'pi', topics, facts) as bag:
             for message in records.messages:
                 bag.write(*message)

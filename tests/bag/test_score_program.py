@@ -1,7 +1,6 @@
 """The program `score`: what it prints, writes and returns."""
 
 import csv
-import dataclasses
 import io
 import json
 import math
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.reader import mcap_of
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.run_timing import RunTiming
 
@@ -123,7 +123,7 @@ def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
 def test_a_non_finite_value_is_not_valid_and_named(bags, trajectory, capsys):
     spoiled = trajectory.joint_speed.copy()
     spoiled[30, 3] = math.nan
-    bag = bags.write(dataclasses.replace(trajectory, joint_speed=spoiled))
+    bag = bags.write(Trajectory({**trajectory.signals, 'joint_speed': spoiled}))
     assert main([str(bag), '--json', '-']) == 1
     (run,) = runs_in(capsys.readouterr().out)
     assert run['reason'] == 'non-finite value in joint_speed at 0.3 s'

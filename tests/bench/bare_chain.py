@@ -10,6 +10,7 @@ per step. Nothing is sent twice, so no node may miss the first message: see `_sa
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import rclpy
@@ -19,31 +20,32 @@ from rclpy.task import Future
 from std_msgs.msg import Header
 
 from ddct_plant.base.timebase import START_NS
-from ddct_plant.graph import messages
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.spin import SLICE_S, make_executor
+from ddct_plant.graph.topics import RunKind, Topic, recorded_topics
 
 TICK = ('/clock', 'clutch/slip', 'driveline/joint_states', 'vehicle/twist', 'vehicle/accel')
 STATUS = tuple((f'a_key_of_the_status_{i}', '123.4567890123456') for i in range(4))
 POINTS = [1.0] * 11
 
+VALUES: dict[str, tuple[Any, ...]] = {
+    'driveline/joint_states': ([1.0] * 4, [1.0] * 4, [1.0] * 4),
+    'clutch/slip_reference': ([1.0], [1.0]),
+    'controller/status': (STATUS,),
+    'actuator/torque': (POINTS,),
+    'clutch/torque': (POINTS,),
+}
+"""What a topic carries; one number per signal where nothing is said."""
+
+
+def _example(topic: Topic) -> Any:
+    return topic.message(START_NS, *VALUES.get(topic.name, [1.0] * len(topic.signals)))
+
+
 EXAMPLES: dict[str, Callable[[], Any]] = {
-    '/clock': lambda: messages.clock_message(START_NS),
-    'clutch/slip': lambda: messages.slip_message(START_NS, 1.0),
-    'driveline/joint_states': lambda: messages.joint_states_message(
-        START_NS, [1.0] * 4, [1.0] * 4, [1.0] * 4
-    ),
-    'vehicle/twist': lambda: messages.twist_message(START_NS, 1.0),
-    'vehicle/accel': lambda: messages.accel_message(START_NS, 1.0),
-    'engine/torque_demand': lambda: messages.torque_message(START_NS, 1.0),
-    'engine/torque': lambda: messages.torque_message(START_NS, 1.0),
-    'load/torque': lambda: messages.torque_message(START_NS, 1.0),
-    'clutch/slip_reference': lambda: messages.slip_reference_message(START_NS, [1.0], [1.0]),
-    'clutch/torque_request': lambda: messages.torque_message(START_NS, 1.0),
-    'controller/status': lambda: messages.status_message(START_NS, 'controller', STATUS),
-    'actuator/torque': lambda: messages.torque_points_message(START_NS, POINTS),
-    'clutch/torque': lambda: messages.torque_points_message(START_NS, POINTS),
-    'recorder/ack': lambda: messages.ack_message(START_NS),
+    topic.name: partial(_example, topic)
+    for topic in recorded_topics(RunKind())
+    if topic.every_tick
 }
 """One message of each topic of a tick, of the size that the real graph sends."""
 

@@ -19,15 +19,9 @@ from ddct_bringup.run.timing_file import read_timing
 from ddct_bringup.scores.scoring import score_recording
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.messages import (
-    clock_message,
-    joint_states_message,
-    torque_message,
-    torque_points_message,
-    twist_message,
-)
-from ddct_plant.ticks.tick_owner import CLUTCH, LOAD
+from ddct_plant.graph.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
 
+CLUTCH, LOAD = CLUTCH_TORQUE.name, LOAD_TORQUE.name
 FROM_STEP = 20
 FAIL_SAFE = FailSafeSettings()
 LATEST_STEP = (2_147_483_640 - 1) * 100
@@ -84,14 +78,14 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     assert entry['safe_state'] in entry['reason']
 
 
-FALSE_MESSAGES: dict[str, Callable[[int], Any]] = {
-    '/clock': clock_message,
-    '/driveline/joint_states': lambda stamp: joint_states_message(stamp, *[[0.0] * 4] * 3),
-    '/vehicle/twist': lambda stamp: twist_message(stamp, 0.0),
-    '/engine/torque': lambda stamp: torque_message(stamp, 0.0),
-    '/clutch/torque_request': lambda stamp: torque_message(stamp, 1e4),
-    '/actuator/torque': lambda stamp: torque_points_message(stamp, [1e4] * 11),
-    '/clutch/torque': lambda stamp: torque_points_message(stamp, [1e4] * 11),
+FALSE_VALUES: dict[str, tuple[Any, ...]] = {
+    '/clock': (),
+    '/driveline/joint_states': ([0.0] * 4, [0.0] * 4, [0.0] * 4),
+    '/vehicle/twist': (0.0,),
+    '/engine/torque': (0.0,),
+    '/clutch/torque_request': (1e4,),
+    '/actuator/torque': ([1e4] * 11,),
+    '/clutch/torque': ([1e4] * 11,),
 }
 
 
@@ -108,8 +102,9 @@ def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: 
         for publisher in node.publishers
     }
     graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
-    for topic, message in FALSE_MESSAGES.items():
-        publishers[topic].publish(message(stamp_of_step(step)))
+    topics = {topic.resolved_name: topic for topic in TOPICS}
+    for name, values in FALSE_VALUES.items():
+        publishers[name].publish(topics[name].message(stamp_of_step(step), *values))
     graph.run()
     recording = read_bag(graph.folder)
     assert recording.missed == {}
@@ -117,7 +112,7 @@ def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: 
     assert recording.trajectory.sha256() == expected(run).sha256()
     timing = read_timing(graph.folder)
     assert timing is not None
-    assert timing.refused_messages == len(FALSE_MESSAGES)
+    assert timing.refused_messages == len(FALSE_VALUES)
 
 
 def _stop_when_answered(graph: InProcessGraph, clock: PatientClock, node: str) -> int:

@@ -10,11 +10,9 @@ from support.processes import START_S, Programs
 from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.bag.topics import TOPICS, TopicSpec
-from ddct_bringup.bag.wire import message_type
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.graph.sole_publishers import LOOP_TOPICS
+from ddct_plant.graph.topics import TOPICS, RunKind, Topic
 from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
@@ -24,13 +22,13 @@ LOOP = [topic for topic in TOPICS if topic.every_tick]
 class Echo(Node):
     """Publishes the last message of a topic again and again."""
 
-    def __init__(self, topic: TopicSpec, **options: Any) -> None:
+    def __init__(self, topic: Topic, **options: Any) -> None:
         """Listen to `topic` and repeat it."""
         super().__init__('echo', **options)
-        self._publisher = self.create_publisher(message_type(topic), topic.name, RECORDER_QOS)
+        self._publisher = self.create_publisher(topic.message_class, topic.name, RECORDER_QOS)
         self._last: bytes | None = None
         self.create_subscription(
-            message_type(topic), topic.name, self._keep, RECORDER_QOS, raw=True
+            topic.message_class, topic.name, self._keep, RECORDER_QOS, raw=True
         )
         self.create_timer(0.02, self._repeat, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
@@ -61,15 +59,17 @@ def _clutch_torque(graph: InProcessGraph) -> float:
     return _owner(graph)._driveline.outputs().efforts[1]
 
 
-def test_every_topic_of_a_tick_is_looked_at() -> None:
-    assert sorted(LOOP_TOPICS) == sorted(topic.name for topic in LOOP)
+def test_every_topic_of_a_tick_is_looked_at(graph_of: GraphOf) -> None:
+    driveline = graph_of(plan()).add('driveline')
+    assert isinstance(driveline, DrivelineNode)
+    assert sorted(driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
 
 
 @pytest.mark.parametrize('topic', LOOP, ids=lambda topic: topic.name)
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
-    graph_of: GraphOf, topic: TopicSpec
+    graph_of: GraphOf, topic: Topic
 ) -> None:
-    controller = 'mpc4' if topic.two_input_only else 'ls8'
+    controller = 'mpc4' if not topic.in_run(RunKind()) else 'ls8'
     recorded = topic.name in ('recorder/ack', 'engine/torque')
     graph = graph_of(plan(controller, duration_s=0.3))
     graph.add_other(Echo(topic, context=graph.context))

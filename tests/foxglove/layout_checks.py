@@ -10,8 +10,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from message_path import parse
 
-from ddct_bringup.bag.topics import TOPICS
-from ddct_plant.graph.message_values import stamp_ns
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.topics import TOPICS
 
 LAYOUT = Path(__file__).parents[2] / 'ddct_bringup' / 'foxglove' / 'ddct_layout.json'
 
@@ -22,9 +22,7 @@ NOT_FOR_PANELS = {
 }
 """Why a recorded topic need not be in the layout."""
 
-SOMETIMES = {
-    topic.resolved_name for topic in TOPICS if topic.two_input_only or topic.realtime_only
-}
+SOMETIMES = {topic.resolved_name for topic in TOPICS if topic.when or topic.wall_clock}
 """Topics that not every bag has."""
 
 Messages = dict[str, list[tuple[int, Any]]]

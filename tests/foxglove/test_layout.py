@@ -1,7 +1,6 @@
 """No panel of the Foxglove layout stays empty, whatever bag of ours it shows."""
 
 from collections.abc import Callable
-from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,14 +16,14 @@ from layout_checks import (
 from message_path import parse
 from support.runs import expected, plan
 
-from ddct_bringup.bag.topics import TOPICS
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.graph.message_values import status_pairs_of
+from ddct_plant.graph.topics import RUN_INFO, TOPICS
 
 Record = Callable[[RunPlan], Messages]
 
-
+FACTS = custom_data(plan('pi').settings, 'made-up', 70)
 SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!slip', 'slip w_d'): lambda run: run.slip_speed,
     ('Plot!slip', 'reference'): lambda run: run.slip_reference[:, 0],
@@ -60,16 +59,16 @@ def _made_up_run() -> Trajectory:
     run = expected(plan('pi', duration_s=0.7))
     random = np.random.default_rng(1)
     arrays = {
-        field.name: random.normal(0.0, 100.0, np.shape(getattr(run, field.name)))
-        for field in fields(run)
-        if field.name not in ('status', 'engine_torque_request')
+        name: random.normal(0.0, 100.0, np.shape(values))
+        for name, values in run.signals.items()
+        if name != 'status'
     }
     status = tuple(
         tuple((key, str(1000.0 * place + step)) for place, (key, _) in enumerate(pairs))
         for step, pairs in enumerate(run.status)
     )
     torques = random.normal(0.0, 100.0, run.steps + 1)
-    return Trajectory(**arrays, status=status, engine_torque_request=torques)
+    return Trajectory({**arrays, 'status': status, 'engine_torque_request': torques})
 
 
 def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
@@ -77,7 +76,7 @@ def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     run = _made_up_run()
-    write_trajectory(run, tmp_path, 'made-up', {}, {'controller': [('two_input', 'true')]})
+    write_trajectory(run, tmp_path, 'made-up', FACTS, {'controller': [('two_input', 'true')]})
     bag = read_messages(tmp_path)
     drawn = {
         (panel, series['label']): series['value']
@@ -108,9 +107,11 @@ def test_no_panel_is_empty_in_the_bag_of_a_two_input_controller(tmp_path: Path) 
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     trajectory = expected(plan('pi', duration_s=0.7))
-    two_input = replace(trajectory, engine_torque_request=trajectory.engine_torque)
+    two_input = Trajectory(
+        {**trajectory.signals, 'engine_torque_request': trajectory.engine_torque}
+    )
     run_info = {'controller': [('controller', 'made-up'), ('two_input', 'true')]}
-    write_trajectory(two_input, tmp_path, 'made-up', {}, run_info)
+    write_trajectory(two_input, tmp_path, 'made-up', FACTS, run_info)
     bag = read_messages(tmp_path)
     assert '/engine/torque_request' in bag
     assert problems(read_layout(), bag) == []
@@ -118,7 +119,7 @@ def test_no_panel_is_empty_in_the_bag_of_a_two_input_controller(tmp_path: Path) 
 
 def test_the_table_of_the_run_names_the_controller(record: Record) -> None:
     *_, (_, last) = record(plan('ls8', 'headless'))['/run_info']
-    assert dict(status_pairs_of(last))['controller'] == 'ls8'
+    assert RUN_INFO.read(last)[1]['controller'] == 'ls8'
 
 
 def test_every_topic_is_in_a_panel_or_has_a_reason_not_to_be() -> None:

@@ -1,6 +1,5 @@
 """Lost, doubled and late messages change nothing in lock-step."""
 
-import importlib
 import json
 import os
 import signal
@@ -15,8 +14,8 @@ from support.runs import expected, plan, record
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.bag.topics import TOPICS
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_plant.graph.topics import TOPICS, RunKind, recorded_topics
 
 INPUTS = {
     'engine': ['driveline/joint_states'],
@@ -33,16 +32,15 @@ INPUTS = {
     'driveline': ['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'],
     'recorder': [
         topic.name
-        for topic in TOPICS
-        if topic.every_tick and not topic.two_input_only and topic.name != 'recorder/ack'
+        for topic in recorded_topics(RunKind())
+        if topic.every_tick and topic.name != 'recorder/ack'
     ],
 }
 """Every message of the loop on its way to a node."""
 
 
 def _type_of(topic: str) -> type:
-    package, kind, name = next(spec.type for spec in TOPICS if spec.name == topic).split('/')
-    return getattr(importlib.import_module(f'{package}.{kind}'), name)
+    return next(each.message_class for each in TOPICS if each.name == topic)
 
 
 def _add_lossy(graph: InProcessGraph, lost: float, doubled: float) -> list[Relay]:

@@ -17,9 +17,9 @@ from trajectory_msgs.msg import JointTrajectory
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
-from ddct_plant.graph.message_values import stamp_ns, torque_of, torque_points_of
-from ddct_plant.graph.messages import clock_message, torque_message
+from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
@@ -49,10 +49,10 @@ class _Listener(Node):
         return step in self.torques
 
     def _on_request(self, message: WrenchStamped) -> None:
-        self.requests[step_of_stamp(stamp_ns(message))] = torque_of(message)
+        self.requests[step_of_stamp(stamp_ns(message))] = TORQUE_REQUEST.read(message)
 
     def _on_torque(self, message: JointTrajectory) -> None:
-        self.torques[step_of_stamp(stamp_ns(message))] = torque_points_of(message)[0]
+        self.torques[step_of_stamp(stamp_ns(message))] = ACTUATOR_TORQUE.read(message)[0]
 
 
 @pytest.mark.parametrize(
@@ -122,11 +122,11 @@ class _Bench(_Listener):
 
     def tell_time(self, step: int) -> None:
         """Publish the time of a step."""
-        self._clock.publish(clock_message(stamp_of_step(step)))
+        self._clock.publish(CLOCK.message(stamp_of_step(step)))
 
     def ask(self, step: int, torque: float = 200.0) -> None:
         """Publish a request for a step."""
-        self._request.publish(torque_message(stamp_of_step(step), torque))
+        self._request.publish(TORQUE_REQUEST.message(stamp_of_step(step), torque))
 
     def _on_clock(self, message: Clock) -> None:
         self.time = step_of_stamp(stamp_ns(message))

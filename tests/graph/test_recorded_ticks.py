@@ -9,7 +9,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from support.runs import plan, record
 
-from ddct_bringup.bag.topics import recorded_topics
+from ddct_plant.graph.topics import RunKind, recorded_topics
 
 STEPS = 300
 STAMPS = [1_000_000_000 + step * 10_000_000 for step in range(STEPS + 1)]
@@ -31,7 +31,7 @@ def test_every_topic_holds_every_stamp_once_and_in_order(tmp_path: Path, layout:
         for _, channel, entry, message in reader.iter_decoded_messages(log_time_order=False):
             assert _stamp(message) == entry.log_time == entry.publish_time
             stamps[channel.topic].append(entry.log_time)
-    topics = recorded_topics(lockstep=True)
+    topics = recorded_topics(RunKind())
     assert set(stamps) == {topic.resolved_name for topic in topics}
     for topic in topics:
         if topic.every_tick:

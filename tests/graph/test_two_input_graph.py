@@ -19,9 +19,9 @@ from support.silent_controller import run_until_silent
 from ddct_bringup.run.plan import LAYOUTS
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
-from ddct_plant.graph.message_values import stamp_ns, torque_of
-from ddct_plant.graph.messages import joint_states_message, torque_message
+from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
 
 SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
@@ -48,7 +48,7 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
         recording = record(run, folder)
         trajectory = recording.trajectory
         assert trajectory.sha256() == expected(run).sha256(), layout
-        assert trajectory.engine_torque_request is not None
+        assert trajectory.two_input
         assert np.ptp(trajectory.engine_torque - trajectory.torque_demand) > 10.0
         bags.append(bag_bytes(folder))
     assert all(bag == bags[0] for bag in bags)
@@ -98,7 +98,7 @@ class _Listener(Node):
 
     @staticmethod
     def _keep(torques: dict[int, float], message: WrenchStamped) -> None:
-        torques[step_of_stamp(stamp_ns(message))] = torque_of(message)
+        torques[step_of_stamp(stamp_ns(message))] = ENGINE_TORQUE.read(message)
 
 
 @pytest.mark.parametrize(
@@ -150,11 +150,11 @@ class _Driver(Node):
     def tick(self, step: int) -> None:
         """Publish the tick of a step."""
         zero = [0.0] * 4
-        self._joints.publish(joint_states_message(stamp_of_step(step), zero, zero, zero))
+        self._joints.publish(JOINT_STATES.message(stamp_of_step(step), zero, zero, zero))
 
     def ask(self, step: int, torque: float) -> None:
         """Publish the request of a step."""
-        self._request.publish(torque_message(stamp_of_step(step), torque))
+        self._request.publish(ENGINE_REQUEST.message(stamp_of_step(step), torque))
 
     def connected(self) -> bool:
         """Say whether the engine is there."""
@@ -163,7 +163,7 @@ class _Driver(Node):
         return heard and self.count_publishers('engine/torque') > 0
 
     def _on_torque(self, message: WrenchStamped) -> None:
-        self.answers.append((step_of_stamp(stamp_ns(message)), torque_of(message)))
+        self.answers.append((step_of_stamp(stamp_ns(message)), ENGINE_TORQUE.read(message)))
 
 
 def _driven(graph_of: GraphOf) -> tuple[InProcessGraph, _Driver]:

@@ -17,10 +17,9 @@ from viewer import Viewer
 
 from ddct_bringup.live import live_node
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.graph.message_values import status_name_of
-from ddct_plant.graph.messages import clock_message, status_message
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.spin import make_executor
+from ddct_plant.graph.topics import CLOCK, RUN_INFO
 
 pytestmark = pytest.mark.usefixtures('extras')
 
@@ -69,7 +68,7 @@ def test_the_time_goes_back_when_the_next_run_begins() -> None:
             wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
             for step in (0, 100, 200, 0, 1):
                 stamp = stamp_of_step(step)
-                clock.publish(clock_message(stamp))
+                clock.publish(CLOCK.message(stamp))
                 wait_until(
                     lambda stamp=stamp: both.spin() and viewer.times[-1:] == [stamp], f'{stamp} ns'
                 )
@@ -86,16 +85,16 @@ def test_a_late_viewer_gets_the_time_and_what_is_latched_the_controller_last() -
         latched = []
         for name in ('engine', 'controller', 'recorder'):
             latched.append(both.graph.create_publisher(DiagnosticArray, 'run_info', LATCHED_QOS))
-            latched[-1].publish(status_message(START_NS, name, [('version', '1')]))
+            latched[-1].publish(RUN_INFO.message(START_NS, [('version', '1')], name=name))
         with Viewer(both.url) as early:
             wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
-            clock.publish(clock_message(now))
+            clock.publish(CLOCK.message(now))
             wait_until(lambda: both.spin() and len(early.messages['/run_info']) >= 3, 'run_info')
             wait_until(lambda: both.spin() and early.times[-1:] == [now], 'the time')
         with Viewer(both.url) as late:
             wait_until(lambda: both.spin() and len(late.messages['/run_info']) >= 3, 'run_info')
     assert late.times[0] == now
-    seen = [(stamp, status_name_of(message)) for stamp, message in late.decoded('/run_info')]
+    seen = [(stamp, RUN_INFO.read(message)[0]) for stamp, message in late.decoded('/run_info')]
     assert seen == [(START_NS, name) for name in ('engine', 'recorder', 'controller')]
 
 

@@ -12,12 +12,12 @@ from support.waiting import wait_until
 from viewer import Viewer, address_in
 
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.topics import TOPICS, recorded_topics
 from ddct_plant.base.timebase import START_NS
-from ddct_plant.graph.message_values import stamp_ns
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.topics import TOPICS, RunKind, recorded_topics
 
 Start = Callable[..., tuple[Program, str]]
-TICK_TOPICS = [topic.resolved_name for topic in recorded_topics(lockstep=True) if topic.every_tick]
+TICK_TOPICS = [topic.resolved_name for topic in recorded_topics(RunKind()) if topic.every_tick]
 
 
 def _decoded_bag(folder: Path) -> dict[tuple[str, int], str]:

@@ -88,10 +88,10 @@ def test_package_xml_names_exactly_what_is_imported_and_has_a_key(package: str) 
 
 def implied_by_ros(package: str) -> set[str]:
     """Return what is imported by a name that is made when the program runs."""
-    # `wire.message_type` imports the package of each recorded topic's type.
-    if package != 'ddct_bringup':
+    # `message_class` imports the package of each topic's type, `load_definition` finds its text.
+    if package not in ('ddct_plant', 'ddct_bringup'):
         return set()
-    from ddct_bringup.bag.topics import TOPICS
+    from ddct_plant.graph.topics import TOPICS
 
     return {topic.type.partition('/')[0] for topic in TOPICS} | {'builtin_interfaces'}
 

@@ -13,9 +13,10 @@ from trajectory_msgs.msg import JointTrajectory
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.message_values import stamp_ns, torque_points_of
+from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.spin import make_executor
+from ddct_plant.graph.topics import CLUTCH_TORQUE
 
 
 class Observer(Node):
@@ -35,7 +36,7 @@ class Observer(Node):
         self.joints[step_of_stamp(stamp_ns(message))] = message
 
     def _on_torque(self, message: JointTrajectory) -> None:
-        self.clutch_torque[step_of_stamp(stamp_ns(message))] = torque_points_of(message)
+        self.clutch_torque[step_of_stamp(stamp_ns(message))] = CLUTCH_TORQUE.read(message)
 
     def require_same(self, trajectory: Trajectory) -> None:
         """Require the end of the run, and each tick that was heard, to the last bit."""

@@ -6,7 +6,7 @@ from typing import Any
 from rclpy.node import Node
 
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.message_values import stamp_ns
+from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import RECORDER_QOS
 
 

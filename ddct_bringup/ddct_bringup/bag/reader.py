@@ -6,20 +6,26 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info_of_nodes import RunInfoOfNodes, note_run_info
-from ddct_bringup.bag.signals import ENGINE_REQUEST, SIGNALS, Signal
 from ddct_bringup.bag.ticks import check_ticks
-from ddct_bringup.bag.topics import TOPICS, resolved_name
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.graph.message_values import stamp_ns, status_name_of, status_pairs_of
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.topics import (
+    DIAGNOSTICS,
+    ENGINE_REQUEST,
+    JOINT_STATES,
+    RUN_INFO,
+    Topic,
+    all_topics,
+    recorded_topics,
+)
 
 
 @dataclass(frozen=True)
@@ -61,26 +67,27 @@ def recording_of(records: BagRecords) -> Recording:
     facts = _facts(records)
     messages = _decode(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
-    last = check_ticks(stamps, lockstep=facts.lockstep)
+    run = facts.kind(two_input=ENGINE_REQUEST.resolved_name in messages)
+    last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}
-    two_input = resolved_name(ENGINE_REQUEST.topic) in messages
-    for signal in (*SIGNALS, ENGINE_REQUEST) if two_input else SIGNALS:
-        rows, held = _rows(signal, messages, last)
-        columns.update(zip(signal.fields, zip(*rows, strict=True), strict=True))
+    for topic in recorded_topics(run):
+        if not topic.signals:
+            continue
+        rows, held = _rows(topic, messages.get(topic.resolved_name, []), last)
+        for signal, column in zip(topic.signals, zip(*rows, strict=True), strict=True):
+            columns[signal.name] = column
         if held:
-            missed[signal.topic] = held
-    status = columns.pop('status')
-    arrays = {name: _array(name, column) for name, column in columns.items()}
+            missed[topic.name] = held
     return Recording(
         path=records.path,
-        trajectory=Trajectory(status=tuple(status), **arrays),
+        trajectory=Trajectory.of_columns(columns),
         facts=facts,
         custom_data=records.custom_data,
-        run_info=_run_info(messages.get(resolved_name('run_info'), [])),
+        run_info=_run_info(messages.get(RUN_INFO.resolved_name, [])),
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
-        realtime=_realtime(messages.get('/diagnostics', [])),
+        realtime=_realtime(messages.get(DIAGNOSTICS.resolved_name, [])),
     )
 
 
@@ -88,15 +95,13 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
     facts = RealtimeFacts()
     for _, message in messages:
         if message.status:
-            facts.hear(status_name_of(message), dict(status_pairs_of(message)))
+            facts.hear(*DIAGNOSTICS.read(message))
     return facts
 
 
 def _facts(records: BagRecords) -> RunFacts:
-    topics = {channel.topic for channel in records.channels.values()}
-    joint_states = resolved_name('driveline/joint_states')
-    if joint_states not in topics:
-        raise DdctError(f'no topic {joint_states}: not a recording of this project')
+    if JOINT_STATES.resolved_name not in records.topics:
+        raise DdctError(f'no topic {JOINT_STATES.resolved_name}: not a recording of this project')
     return RunFacts.from_custom_data(records.custom_data)
 
 
@@ -121,7 +126,7 @@ def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
 def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
     """Return a decoder for each topic of ours; raise DdctError for one of another type."""
     factory = DecoderFactory()
-    ours = {topic.resolved_name: topic.type for topic in TOPICS}
+    ours = {topic.resolved_name: topic.type for topic in all_topics()}
     decoders = {}
     for channel in records.channels.values():
         if (type_name := ours.get(channel.topic)) is None:
@@ -138,21 +143,19 @@ def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
 
 
 def _rows(
-    signal: Signal, messages: dict[str, list[tuple[int, Any]]], last: int
+    topic: Topic, messages: list[tuple[int, Any]], last: int
 ) -> tuple[list[tuple[Any, ...]], int]:
     """
     Return the values at t_0..t_N, and at how many of these stamps there was no message.
 
     There the last message before counts; before the first message, the first one.
     """
-    topic = resolved_name(signal.topic)
-    held_messages = dict(messages.get(topic, ()))
-    if not held_messages:
-        raise DdctError(f'no message on {topic}')
+    if not messages:
+        raise DdctError(f'no message on {topic.resolved_name}')
     try:
-        values = {stamp: signal.values(message) for stamp, message in held_messages.items()}
+        values = {stamp: topic.values(message) for stamp, message in messages}
     except (LookupError, AttributeError) as error:
-        raise DdctError(f'{topic}: a message lacks a value ({error})') from error
+        raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
     row = values[min(values)]
     rows, held = [], 0
     for step in range(last + 1):
@@ -166,12 +169,5 @@ def _rows(
 def _run_info(messages: list[tuple[int, Any]]) -> RunInfoOfNodes:
     said: RunInfoOfNodes = {}
     for _, message in messages:
-        note_run_info(said, status_name_of(message), dict(status_pairs_of(message)))
+        note_run_info(said, *RUN_INFO.read(message))
     return said
-
-
-def _array(name: str, column: Any) -> np.ndarray:
-    try:
-        return np.array(column, dtype=float)
-    except ValueError as error:
-        raise DdctError(f'{name} does not have the same size at every stamp') from error

@@ -3,9 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ddct_plant.graph.message_values import SAFE_STATE, SINCE
-
-_TICKS = 'driveline: ticks'
+from ddct_plant.graph.topics import SAFE_STATE, SINCE, TICKS_STATUS
 
 
 @dataclass
@@ -28,7 +26,7 @@ class RealtimeFacts:
             if name.endswith(SAFE_STATE):
                 self.safe_states[name.removesuffix(SAFE_STATE)] = int(pairs[SINCE])
                 return True
-            if name != _TICKS:
+            if name != TICKS_STATUS:
                 return False
             self.steps = int(pairs['steps'])
             self.missed_steps = int(pairs['missed_steps'])

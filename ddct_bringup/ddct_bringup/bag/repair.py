@@ -13,6 +13,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.ticks import complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
+from ddct_plant.graph.topics import ENGINE_REQUEST
 
 REPAIRED_KEY = 'repaired'
 """Custom data of a repaired bag has this key, with 'true'."""
@@ -102,8 +103,8 @@ def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int
     stamps: dict[str, list[int]] = defaultdict(list)
     for topic, stamp, _ in records.messages:
         stamps[topic].append(stamp)
-    recorded = [channel.topic for channel in records.channels.values()]
-    count = complete_ticks(stamps, tick_topics(recorded, lockstep=facts.lockstep))
+    run = facts.kind(two_input=ENGINE_REQUEST.resolved_name in records.topics)
+    count = complete_ticks(stamps, tick_topics(run, replies=run.lockstep))
     if not count:
         raise DdctError('it holds no complete tick')
     last_ns = stamp_of_step(count - 1)

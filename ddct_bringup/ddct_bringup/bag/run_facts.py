@@ -9,6 +9,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.names import require_name
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
+from ddct_plant.graph.topics import RunKind
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names: they go into tables, labels and names of files."""
@@ -51,6 +52,10 @@ class RunFacts:
     def lockstep(self) -> bool:
         """Whether every tick had to be complete."""
         return self.mode == 'lockstep'
+
+    def kind(self, *, two_input: bool) -> RunKind:
+        """Return what decides which topics the run has; only the bag's topics say `two_input`."""
+        return RunKind(lockstep=self.lockstep, two_input=two_input, clutch=self.clutch)
 
     def to_custom_data(self) -> dict[str, str]:
         """Return the facts as text; numbers as JSON, which gives them back to the last bit."""

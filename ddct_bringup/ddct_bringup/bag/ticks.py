@@ -1,31 +1,22 @@
 """Which ticks of a recording are complete, judged by the stamps of its messages alone."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
-from ddct_bringup.bag.topics import TOPICS, resolved_name
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, step_of_stamp, time_of_step
-from ddct_plant.ticks.stamp_limit import PLANT_TOPICS
+from ddct_plant.graph.topics import JOINT_STATES, RunKind, recorded_topics
 
 Stamps = Mapping[str, Sequence[int]]
 """Per resolved topic name the stamps in ns of its messages."""
 
 
-def tick_topics(recorded: Iterable[str], *, lockstep: bool) -> list[str]:
-    """
-    Return the resolved names of the topics that every tick must have, in writing order.
-
-    In lock-step these are all topics of a tick; in real time replies may be missing. `recorded`
-    tells whether `engine/torque_request` is among them.
-    """
-    present = set(recorded)
+def tick_topics(run: RunKind, *, replies: bool) -> list[str]:
+    """Return the resolved names of the topics of a tick, with or without the `replies` to it."""
     return [
         topic.resolved_name
-        for topic in TOPICS
-        if topic.every_tick
-        and (lockstep or topic.name in PLANT_TOPICS)
-        and (not topic.two_input_only or topic.resolved_name in present)
+        for topic in recorded_topics(run)
+        if topic.is_tick or (topic.every_tick and replies)
     ]
 
 
@@ -38,19 +29,21 @@ def complete_ticks(stamps: Stamps, topics: Sequence[str]) -> int:
     return count
 
 
-def check_ticks(stamps: Stamps, *, lockstep: bool) -> int:
+def check_ticks(stamps: Stamps, run: RunKind) -> int:
     """
     Return N when the topics that every tick must have hold t_0..t_N, as the joint states do.
 
+    In lock-step these are all topics of a tick; in real time replies may be missing.
+
     Raise DdctError that names the topic and stamp of a missing, doubled or misplaced message.
     """
-    joint_states = resolved_name('driveline/joint_states')
+    joint_states = JOINT_STATES.resolved_name
     if not stamps.get(joint_states):
         raise DdctError(f'no message on {joint_states}: not a recording of this project')
-    for topic in tick_topics(stamps, lockstep=True):
+    for topic in tick_topics(run, replies=True):
         _check_single(topic, stamps.get(topic, ()))
     last = step_of_stamp(max(stamps[joint_states]))
-    for topic in tick_topics(stamps, lockstep=lockstep):
+    for topic in tick_topics(run, replies=run.lockstep):
         held = set(stamps.get(topic, ()))
         if not held:
             raise DdctError(f'no message on {topic}')

@@ -1,10 +1,14 @@
 """One closed-loop run as plain arrays: the headless loop makes it, a bag holds it."""
 
-import dataclasses
 import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.topics import ENGINE_REQUEST, Signal, all_signals
 
 
 @dataclass(frozen=True)
@@ -12,43 +16,42 @@ class Trajectory:
     """
     Every signal of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
 
-    States, slip and vehicle signals hold at t_k (efforts and `vehicle_accel` are left limits);
-    torques, reference and request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept
-    although nothing applied them.
+    A signal of `ddct_plant.graph.topics` is an attribute of its name. States, slip and vehicle
+    signals hold at t_k (efforts and `vehicle_accel` are left limits); torques, reference and
+    request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept although nothing
+    applied them.
     """
 
-    joint_position: np.ndarray
-    """(N+1, 4) rad; driveshaft is theta_sr, the others integrate from 0."""
-    joint_speed: np.ndarray
-    """(N+1, 4) rad/s: w_m, w_p, w_r, w_sr."""
-    joint_effort: np.ndarray
-    """(N+1, 4) N m: C_m, transmitted C_f, C_load, shaft torque."""
-    slip_speed: np.ndarray
-    """(N+1,) rad/s, w_d = w_m - w_p."""
-    vehicle_speed: np.ndarray
-    """(N+1,) m/s, V_x."""
-    vehicle_accel: np.ndarray
-    """(N+1,) m/s^2, A_x."""
-    torque_demand: np.ndarray
-    """(N+1,) N m, the driver's demand at t_k."""
-    engine_torque: np.ndarray
-    """(N+1,) N m, C_m held over the period."""
-    load_torque: np.ndarray
-    """(N+1,) N m, C_load held over the period."""
-    slip_reference: np.ndarray
-    """(N+1, P+1) rad/s, column i is i x 10 ms ahead."""
-    slip_reference_rate: np.ndarray
-    """(N+1, P+1) rad/s^2."""
-    torque_request: np.ndarray
-    """(N+1,) N m, before saturation."""
-    actuator_torque: np.ndarray
-    """(N+1, 11) N m at 0, 1, ..., 10 ms after t_k."""
-    clutch_torque: np.ndarray
-    """(N+1, 11) N m, as `actuator_torque`, after wear."""
-    status: tuple[tuple[tuple[str, str], ...], ...]
-    """Per step the (key, value) pairs of `controller/status`."""
-    engine_torque_request: np.ndarray | None = None
-    """(N+1,) N m asked of the engine; None with a controller that does not command it."""
+    signals: Mapping[str, Any]
+    """By name, (N+1,) or (N+1, n) numbers or N + 1 texts; without what the run does not have."""
+
+    @classmethod
+    def of_columns(cls, columns: Mapping[str, Sequence[Any]]) -> 'Trajectory':
+        """Take the values per signal, in any order; raise DdctError where their size changes."""
+        return cls(
+            {
+                signal.name: _column(signal, columns[signal.name])
+                for signal in all_signals()
+                if signal.name in columns
+            }
+        )
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        """Return a signal; raise AttributeError where the run has none of this name."""
+        try:
+            return self.__dict__['signals'][name]
+        except KeyError:
+            raise AttributeError(f'the run has no signal {name}') from None
+
+    @property
+    def status(self) -> tuple[tuple[tuple[str, str], ...], ...]:
+        """Per step the (key, value) pairs of `controller/status`."""
+        return self.signals['status']
+
+    @property
+    def two_input(self) -> bool:
+        """Whether the controller commanded the engine too, by `engine_torque_request`."""
+        return all(signal.name in self.signals for signal in ENGINE_REQUEST.signals)
 
     @property
     def steps(self) -> int:
@@ -63,14 +66,20 @@ class Trajectory:
     def sha256(self) -> str:
         """Return the hash over every array to the last bit and every status pair."""
         digest = hashlib.sha256()
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
-            if value is None:
-                continue
-            digest.update(field.name.encode())
+        for name, value in self.signals.items():
+            digest.update(name.encode())
             if isinstance(value, np.ndarray):
                 digest.update(repr(value.shape).encode())
                 digest.update(np.ascontiguousarray(value, dtype='<f8').tobytes())
             else:
                 digest.update(repr(value).encode())
         return digest.hexdigest()
+
+
+def _column(signal: Signal, values: Sequence[Any]) -> Any:
+    if not signal.unit:
+        return tuple(values)
+    try:
+        return np.array(values, dtype=float)
+    except ValueError as error:
+        raise DdctError(f'{signal.name} does not have the same size at every stamp') from error

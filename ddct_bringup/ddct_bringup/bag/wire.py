@@ -1,10 +1,8 @@
 """What can be told of a recorded topic's messages while they are still serialised."""
 
-import importlib
 import struct
 
-from ddct_bringup.bag.topics import TopicSpec
-from ddct_plant.graph.message_values import NS_PER_S
+from ddct_plant.graph.message_kinds import NS_PER_S
 
 _STAMP = struct.Struct('<iI')
 _STAMP_AT = 4
@@ -20,9 +18,3 @@ def stamp_of_cdr(cdr: bytes) -> int:
 def set_stamp_of_cdr(cdr: bytearray, stamp_ns: int) -> None:
     """Stamp a serialised message anew, in place."""
     _STAMP.pack_into(cdr, _STAMP_AT, *divmod(stamp_ns, NS_PER_S))
-
-
-def message_type(topic: TopicSpec) -> type:
-    """Return the ROS class of the topic's messages."""
-    package, kind, name = topic.type.split('/')
-    return getattr(importlib.import_module(f'{package}.{kind}'), name)

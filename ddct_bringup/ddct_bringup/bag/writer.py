@@ -8,8 +8,8 @@ from ddct_bringup.bag.file.cdr import CdrNormaliser
 from ddct_bringup.bag.file.mcap_file import Channel, McapFile
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.file.metadata import offered_qos
-from ddct_bringup.bag.topics import TopicSpec
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.topics import Topic
 
 
 def bag_file(folder: Path, name: str) -> Path:
@@ -30,7 +30,7 @@ class BagWriter:
         self,
         folder: Path,
         name: str,
-        topics: Sequence[TopicSpec],
+        topics: Sequence[Topic],
         custom_data: Mapping[str, str],
     ) -> None:
         """Create the bag; raise DdctError where that is impossible or it is already there."""

@@ -4,24 +4,26 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
 from ddct_bringup.bag.run_info_order import run_info_order
-from ddct_bringup.bag.topics import TOPICS, recorded_topics
-from ddct_bringup.bag.wire import message_type, stamp_of_cdr
+from ddct_bringup.bag.wire import stamp_of_cdr
 from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import HEARS_ALL, VIEWER_CAME
 from ddct_plant.base.timebase import START_NS
-from ddct_plant.graph.message_values import status_name_of
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_LATCHED_QOS
-from ddct_plant.graph.run_info import RUN_INFO_TOPIC
-
-CLOCK = '/clock'
-ACK = 'recorder/ack'
+from ddct_plant.graph.topics import (
+    CLOCK,
+    RECORDER_ACK,
+    RUN_INFO,
+    RunKind,
+    Topic,
+    all_topics,
+    recorded_topics,
+)
 
 LIVE_QOS = QoSProfile(
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -54,8 +56,8 @@ class LiveNode(GraphNode):
         self._say = say
         self._stamp_ns = self._told_ns = START_NS
         self._run_info: dict[str, bytes] = {}
-        tick_topics = {topic.name for topic in recorded_topics(lockstep=True) if topic.every_tick}
-        self._unheard = tick_topics - {ACK}
+        tick_topics = {topic for topic in recorded_topics(RunKind()) if topic.every_tick}
+        self._unheard = tick_topics - {RECORDER_ACK}
         # Counted in a thread of the server's; what each beat has already done is beside it.
         self._views = self._views_timed = self._views_greeted = 0
         self._server = LiveServer(host, port, self._on_view)
@@ -70,22 +72,22 @@ class LiveNode(GraphNode):
         self._server.stop()
 
     def _subscribe(self, *, latched: bool) -> None:
-        for topic in TOPICS:
+        for topic in all_topics():
             if topic.latched == latched:
                 self.create_subscription(
-                    message_type(topic),
+                    topic.message_class,
                     topic.name,
-                    self.guarded(self._receiver(topic.name)),
+                    self.guarded(self._receiver(topic)),
                     RECORDER_LATCHED_QOS if latched else LIVE_QOS,
                     raw=True,
                 )
 
-    def _receiver(self, topic: str) -> Callable[[bytes], None]:
-        special = {CLOCK: self._on_clock, RUN_INFO_TOPIC: self._on_run_info}
+    def _receiver(self, topic: Topic) -> Callable[[bytes], None]:
+        special = {CLOCK: self._on_clock, RUN_INFO: self._on_run_info}
         return special.get(topic, partial(self._pass_on, topic))
 
-    def _pass_on(self, topic: str, cdr: bytes) -> None:
-        self._server.send(topic, stamp_of_cdr(cdr), cdr)
+    def _pass_on(self, topic: Topic, cdr: bytes) -> None:
+        self._server.send(topic.name, stamp_of_cdr(cdr), cdr)
         if topic in self._unheard:
             self._unheard.remove(topic)
             if not self._unheard:
@@ -100,7 +102,8 @@ class LiveNode(GraphNode):
         self._pass_on(CLOCK, cdr)
 
     def _on_run_info(self, cdr: bytes) -> None:
-        self._run_info[status_name_of(deserialize_message(cdr, DiagnosticArray))] = cdr
+        node, _ = RUN_INFO.read(deserialize_message(cdr, RUN_INFO.message_class))
+        self._run_info[node] = cdr
         self._views_greeted = -1
 
     def _on_view(self, topic: str) -> None:
@@ -120,7 +123,7 @@ class LiveNode(GraphNode):
             self._views_timed = views
         if not came and views != self._views_greeted:
             for node in run_info_order(self._run_info):
-                self._pass_on(RUN_INFO_TOPIC, self._run_info[node])
+                self._pass_on(RUN_INFO, self._run_info[node])
             self._views_greeted = views
 
     def _tell_time(self, stamp_ns: int) -> None:
@@ -129,7 +132,7 @@ class LiveNode(GraphNode):
 
     def _look_for_graph(self) -> None:
         self._search.cancel()
-        if not self.count_publishers(CLOCK):
+        if not self.count_publishers(CLOCK.name):
             self._say(
                 f'no graph in ROS domain {self._domain} so far: '
                 'start one with the same ROS_DOMAIN_ID'

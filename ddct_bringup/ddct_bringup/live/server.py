@@ -5,8 +5,8 @@ from typing import Any
 
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.file.metadata import SERIALIZATION
-from ddct_bringup.bag.topics import TOPICS
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.topics import all_topics
 
 _BACKLOG = 65_536
 """Messages kept for a viewer that reads slowly, about 40 s of a run; then the oldest go."""
@@ -37,7 +37,7 @@ class LiveServer:
                 ),
                 context=self._context,
             )
-            for topic in TOPICS
+            for topic in all_topics()
         }
         try:
             self._server = foxglove.start_server(

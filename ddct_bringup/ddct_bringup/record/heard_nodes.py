@@ -5,7 +5,8 @@ from collections.abc import Collection, Mapping
 from ddct_bringup.bag.run_info_of_nodes import RunInfoOfNodes, note_run_info
 from ddct_bringup.bag.run_info_order import run_info_order
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
+from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.graph.topics import RUN_INFO
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -60,7 +61,7 @@ class HeardNodes:
         steps = self._said('driveline', 'steps')
         if not steps.isdecimal():
             raise DdctError(
-                f'{RUN_INFO_TOPIC} of node driveline has steps {steps!r}: give a whole number'
+                f'{RUN_INFO.name} of node driveline has steps {steps!r}: give a whole number'
             )
         return int(steps)
 
@@ -68,7 +69,7 @@ class HeardNodes:
         pairs = self._said_by.get(node, {})
         if key not in pairs:
             raise DdctError(
-                f'{RUN_INFO_TOPIC} of node {node} has no {key}, which the bag needs: whoever '
+                f'{RUN_INFO.name} of node {node} has no {key}, which the bag needs: whoever '
                 f'stands in for {node} must publish it'
             )
         return pairs[key]

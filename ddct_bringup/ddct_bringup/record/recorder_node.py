@@ -2,19 +2,17 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.clock import Clock, ClockType
 from rclpy.serialization import deserialize_message, serialize_message
-from std_msgs.msg import Header
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.topics import TOPICS, TopicSpec, recorded_topics
-from ddct_bringup.bag.wire import message_type, set_stamp_of_cdr, stamp_of_cdr
+from ddct_bringup.bag.wire import set_stamp_of_cdr, stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_bringup.record.heard_nodes import HeardNodes
@@ -24,22 +22,28 @@ from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.names import require_name
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.graph.message_values import status_name_of, status_pairs_of
-from ddct_plant.graph.messages import ack_message
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
-from ddct_plant.graph.refusals import Refusals
-from ddct_plant.graph.run_info import RUN_INFO_TOPIC
+from ddct_plant.graph.reports import Refusals
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import (
+    CONTROLLER_TIMING,
+    DIAGNOSTICS,
+    JOINT_STATES,
+    RECORDER_ACK,
+    RUN_INFO,
+    RunKind,
+    Topic,
+    all_topics,
+    recorded_topics,
+    tick_names,
+)
 from ddct_plant.ticks.stamp_limit import StampLimit
 
-ACK = 'recorder/ack'
-ASKS_AGAIN = 'driveline/joint_states'
+ASKS_AGAIN = JOINT_STATES
 """A message of this topic that comes again after the acknowledgement says that it was lost."""
-TIMING = 'controller/timing'
-DIAGNOSTICS = '/diagnostics'
 PATIENCE_S = 5.0
 """How long to wait for the other nodes before saying for whom."""
 _STEADY = Clock(clock_type=ClockType.STEADY_TIME)
@@ -70,25 +74,25 @@ class RecorderNode(GraphNode):
         )
         nodes = declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
         self._nodes = HeardNodes(self.settings, self._two_input, nodes)
-        topics = recorded_topics(lockstep=self.settings.lockstep, two_input=self._two_input)
-        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
-        self._topics = topics
+        self._run = RunKind(self.settings.lockstep, self._two_input, self.settings.clutch)
+        self._topics = recorded_topics(self._run)
+        self._tick_topics = [topic.name for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(
-            [name for name in self._tick_topics if name != ACK],
+            [name for name in self._tick_topics if name != RECORDER_ACK.name],
             self._same_message,
             wait_for_all=self.settings.lockstep,
         )
         self._held: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
-        self._limit = None if self.settings.lockstep else StampLimit(from_t0=True)
+        self._limit = None if self.settings.lockstep else StampLimit(tick_names(), from_t0=True)
         self._refusals = Refusals(self)
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
-        self._ack = self.create_publisher(Header, ACK, LOOP_QOS)
+        self._ack = self.create_publisher(RECORDER_ACK.message_class, RECORDER_ACK.name, LOOP_QOS)
         # Acknowledgements differ in nothing but the stamp.
-        self._ack_cdr = bytearray(serialize_message(ack_message(START_NS)))
+        self._ack_cdr = bytearray(serialize_message(RECORDER_ACK.message(START_NS)))
         self._acknowledged = 0
         self._second_node: DdctError | None = None
         self._subscribe_all()
@@ -115,39 +119,39 @@ class RecorderNode(GraphNode):
             self.finish(error)
 
     def _subscribe_all(self) -> None:
-        for topic in TOPICS:
-            if topic.name == ACK or (topic.two_input_only and not self._two_input):
+        for topic in all_topics():
+            if topic is RECORDER_ACK or not topic.in_run(self._run):
                 continue
             qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
             self.create_subscription(
-                message_type(topic), topic.name, self._receiver(topic), qos, raw=True
+                topic.message_class, topic.name, self._receiver(topic), qos, raw=True
             )
 
-    def _receiver(self, topic: TopicSpec) -> Callable[[bytes], None]:
+    def _receiver(self, topic: Topic) -> Callable[[bytes], None]:
         if topic.every_tick:
-            return self.guarded(self._tick_receiver(topic.name))
-        receive = {
-            RUN_INFO_TOPIC: self._on_run_info,
-            TIMING: self._on_timing,
+            return self.guarded(self._tick_receiver(topic))
+        special = {
+            RUN_INFO: self._on_run_info,
+            CONTROLLER_TIMING: self._on_timing,
             DIAGNOSTICS: self._on_diagnostics,
-        }[topic.name]
-        return self.guarded(receive)
+        }
+        return self.guarded(special.get(topic, partial(self._record_unordered, topic)))
 
-    def _tick_receiver(self, topic: str) -> Callable[[bytes], None]:
-        offer, limit = self._buffer.offer, self._limit
-        asks_again = topic == ASKS_AGAIN
+    def _tick_receiver(self, topic: Topic) -> Callable[[bytes], None]:
+        offer, limit, name = self._buffer.offer, self._limit, topic.name
+        asks_again = topic is ASKS_AGAIN
 
         def receive(cdr: bytes) -> None:
             stamp = stamp_of_cdr(cdr)
-            reason = limit.why_refused(topic, stamp) if limit else ''
+            reason = limit.why_refused(name, stamp) if limit else ''
             if reason:
                 self._refusals.add(reason)
                 return
             try:
-                ready = offer(topic, stamp, cdr)
+                ready = offer(name, stamp, cdr)
             except TwoMessagesError as error:
-                names = publishers_of(self, topic)
-                self._on_second_node(DdctError(f'{error}; publishers: {names}'))
+                publishers = publishers_of(self, name)
+                self._on_second_node(DdctError(f'{error}; publishers: {publishers}'))
                 return
             if ready:
                 self._write_ticks(ready)
@@ -157,9 +161,9 @@ class RecorderNode(GraphNode):
         return receive
 
     def _on_run_info(self, cdr: bytes) -> None:
-        message = deserialize_message(cdr, DiagnosticArray)
+        node, pairs = RUN_INFO.read(_message(RUN_INFO, cdr))
         try:
-            self._nodes.hear(status_name_of(message), dict(status_pairs_of(message)), cdr)
+            self._nodes.hear(node, pairs, cdr)
         except DdctError as error:
             self._on_second_node(error)
         self._write_ticks([])
@@ -173,17 +177,15 @@ class RecorderNode(GraphNode):
             self.get_logger().error(str(error))
 
     def _on_timing(self, cdr: bytes) -> None:
-        message = deserialize_message(cdr, DiagnosticArray)
-        times = dict(status_pairs_of(message)).get('update_times_us', '')
+        _, pairs = CONTROLLER_TIMING.read(_message(CONTROLLER_TIMING, cdr))
+        times = pairs.get('update_times_us', '')
         self._timing.update_times_us += [float(value) for value in times.split()]
-        self._record_unordered(TIMING, cdr)
+        self._record_unordered(CONTROLLER_TIMING, cdr)
 
     def _on_diagnostics(self, cdr: bytes) -> None:
-        message = deserialize_message(cdr, DiagnosticArray)
+        message = _message(DIAGNOSTICS, cdr)
         facts = self._realtime
-        if not message.status:
-            return
-        if not facts.hear(status_name_of(message), dict(status_pairs_of(message))):
+        if not message.status or not facts.hear(*DIAGNOSTICS.read(message)):
             return
         self._timing.resends = facts.resends
         self._timing.missed_steps = facts.missed_steps
@@ -192,13 +194,13 @@ class RecorderNode(GraphNode):
         self._timing.safe_states = facts.safe_states
         self._record_unordered(DIAGNOSTICS, cdr)
 
-    def _record_unordered(self, topic: str, cdr: bytes) -> None:
-        if self.settings.lockstep:
+    def _record_unordered(self, topic: Topic, cdr: bytes) -> None:
+        if topic not in self._topics:
             return
         if self._bag is None:
-            self._unordered.append((topic, stamp_of_cdr(cdr), cdr))
+            self._unordered.append((topic.name, stamp_of_cdr(cdr), cdr))
         else:
-            self._bag.write(topic, stamp_of_cdr(cdr), cdr)
+            self._bag.write(topic.name, stamp_of_cdr(cdr), cdr)
 
     def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
         self._held += ticks
@@ -218,7 +220,7 @@ class RecorderNode(GraphNode):
         self._ack.publish(ack)
         self._acknowledged = stamp
         for topic in self._tick_topics:
-            cdr = ack if topic == ACK else tick.get(topic)
+            cdr = ack if topic == RECORDER_ACK.name else tick.get(topic)
             if cdr is not None:
                 self._bag.write(topic, stamp, cdr)
 
@@ -228,7 +230,7 @@ class RecorderNode(GraphNode):
         facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
         self._bag = BagWriter(self._folder, self._bag_name, self._topics, facts)
         for cdr in self._nodes.messages():
-            self._bag.write(RUN_INFO_TOPIC, START_NS, cdr)
+            self._bag.write(RUN_INFO.name, START_NS, cdr)
         for topic, stamp, cdr in self._unordered:
             self._bag.write(topic, stamp, cdr)
         self._first_tick_at = time.monotonic()
@@ -255,6 +257,10 @@ class RecorderNode(GraphNode):
         self._patience.cancel()
         if self._nodes.silent():
             self.get_logger().warning(self._waiting_for())
+
+
+def _message(topic: Topic, cdr: bytes) -> Any:
+    return deserialize_message(cdr, topic.message_class)
 
 
 def main() -> int:

@@ -9,8 +9,6 @@ The result equals that of the graph, in any process layout, to the last bit.
 
 import time
 
-import numpy as np
-
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.closed_loop import ClosedLoop
 from ddct_bringup.run.run_timing import RunTiming
@@ -45,9 +43,5 @@ def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> T
         timing.update_times_us.append(loop.update_time_us)
     timing.steps = steps
     timing.wall_time_s = time.perf_counter() - started
-    columns = {
-        name: np.array([row[name] for row in rows])
-        for name, first in rows[0].items()
-        if name != 'status' and first is not None
-    }
-    return Trajectory(**columns, status=tuple(row['status'] for row in rows))
+    present = [name for name, first in rows[0].items() if first is not None]
+    return Trajectory.of_columns({name: [row[name] for row in rows] for name in present})

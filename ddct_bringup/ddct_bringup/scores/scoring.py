@@ -94,13 +94,12 @@ def why_invalid(recording: Recording) -> str:
     reasons = [] if facts.lockstep else why_not_real_time(recording)
     if trajectory.steps < facts.steps:
         reasons.insert(0, _why_early(recording))
-    for field in dataclasses.fields(trajectory):
-        values = getattr(trajectory, field.name)
+    for name, values in trajectory.signals.items():
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():
             continue
         rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
         first = time_of_step(int(np.flatnonzero(~rows)[0]))
-        reasons.append(f'non-finite value in {field.name} at {first:g} s')
+        reasons.append(f'non-finite value in {name} at {first:g} s')
     return '; '.join(reasons)
 
 

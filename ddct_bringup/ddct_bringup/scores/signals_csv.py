@@ -7,14 +7,28 @@ import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.graph.message_values import JOINTS
+from ddct_plant.graph.topics import (
+    JOINT_STATES,
+    JOINTS,
+    SLIP,
+    SLIP_REFERENCE,
+    Signal,
+    all_signals,
+)
 
 
 def signals_csv(recording: Recording) -> str:
     """Return the text; of previews and torques within the period the value at the tick."""
-    columns = _columns(recording.trajectory)
-    if recording.trajectory.engine_torque_request is not None:
-        columns['engine_torque_request_n_m'] = recording.trajectory.engine_torque_request
+    trajectory = recording.trajectory
+    columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
+    for signal in sorted(all_signals(), key=_place):
+        if (
+            signal.unit
+            and signal.name in trajectory.signals
+            and signal not in JOINT_STATES.signals
+        ):
+            values = trajectory.signals[signal.name]
+            columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator='\n')
     writer.writerow(columns)
@@ -23,23 +37,15 @@ def signals_csv(recording: Recording) -> str:
     return text.getvalue()
 
 
-def _columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
-    columns = {'time_s': trajectory.time_s}
-    for index, joint in enumerate(JOINTS):
-        columns[f'{joint}_position_rad'] = trajectory.joint_position[:, index]
-        columns[f'{joint}_speed_rad_s'] = trajectory.joint_speed[:, index]
-        columns[f'{joint}_effort_n_m'] = trajectory.joint_effort[:, index]
+def _joint_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     return {
-        **columns,
-        'slip_speed_rad_s': trajectory.slip_speed,
-        'slip_reference_rad_s': trajectory.slip_reference[:, 0],
-        'slip_reference_rate_rad_s2': trajectory.slip_reference_rate[:, 0],
-        'vehicle_speed_m_s': trajectory.vehicle_speed,
-        'vehicle_accel_m_s2': trajectory.vehicle_accel,
-        'torque_demand_n_m': trajectory.torque_demand,
-        'engine_torque_n_m': trajectory.engine_torque,
-        'load_torque_n_m': trajectory.load_torque,
-        'torque_request_n_m': trajectory.torque_request,
-        'actuator_torque_n_m': trajectory.actuator_torque[:, 0],
-        'clutch_torque_n_m': trajectory.clutch_torque[:, 0],
+        signal.column.replace('joint', joint): trajectory.signals[signal.name][:, index]
+        for index, joint in enumerate(JOINTS)
+        for signal in JOINT_STATES.signals
     }
+
+
+def _place(signal: Signal) -> int:
+    """Return where a column stands: the slip and its reference first, beside each other."""
+    first = (*SLIP.signals, *SLIP_REFERENCE.signals)
+    return first.index(signal) if signal in first else len(first)

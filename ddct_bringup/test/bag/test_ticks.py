@@ -3,19 +3,20 @@
 import pytest
 
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
-from ddct_bringup.bag.topics import TOPICS, recorded_topics, resolved_name
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.ticks.stamp_limit import PLANT_TOPICS
+from ddct_plant.graph.topics import CLOCK, SLIP, TOPICS, RunKind, recorded_topics, tick_names
+
+LOCKSTEP, REALTIME = RunKind(), RunKind(lockstep=False)
 
 
 def stamps_of(steps=5):
-    topics = tick_topics([], lockstep=True)
+    topics = tick_topics(LOCKSTEP, replies=True)
     return {topic: [stamp_of_step(k) for k in range(steps + 1)] for topic in topics}
 
 
 def test_a_whole_recording_has_no_complaint():
-    assert check_ticks(stamps_of(5), lockstep=True) == 5
+    assert check_ticks(stamps_of(5), LOCKSTEP) == 5
 
 
 @pytest.mark.parametrize('step', [0, 2, 5])
@@ -23,13 +24,13 @@ def test_a_missing_reply_is_named_with_its_step(step):
     stamps = stamps_of(5)
     stamps['/load/torque'].remove(stamp_of_step(step))
     with pytest.raises(DdctError, match=f'/load/torque has no message at step {step} '):
-        check_ticks(stamps, lockstep=True)
+        check_ticks(stamps, LOCKSTEP)
 
 
 def test_a_missing_reply_is_no_error_in_real_time():
     stamps = stamps_of(5)
     stamps['/load/torque'].remove(stamp_of_step(2))
-    assert check_ticks(stamps, lockstep=False) == 5
+    assert check_ticks(stamps, REALTIME) == 5
 
 
 @pytest.mark.parametrize('lockstep', [True, False])
@@ -38,7 +39,7 @@ def test_a_gap_in_the_states_is_an_error_in_every_mode(lockstep):
     for topic in stamps:
         stamps[topic].remove(stamp_of_step(3))
     with pytest.raises(DdctError, match='no message at step 3 '):
-        check_ticks(stamps, lockstep=lockstep)
+        check_ticks(stamps, RunKind(lockstep))
 
 
 @pytest.mark.parametrize('lockstep', [True, False])
@@ -46,52 +47,55 @@ def test_a_doubled_message_is_an_error_in_every_mode(lockstep):
     stamps = stamps_of(5)
     stamps['/clutch/torque'].append(stamp_of_step(4))
     with pytest.raises(DdctError, match='/clutch/torque has 2 messages at step 4 '):
-        check_ticks(stamps, lockstep=lockstep)
+        check_ticks(stamps, RunKind(lockstep))
 
 
 def test_a_reply_after_the_last_tick_is_an_error():
     stamps = stamps_of(5)
     stamps['/clutch/torque'].append(stamp_of_step(6))
     with pytest.raises(DdctError, match='/clutch/torque goes on after the last tick at step 5 '):
-        check_ticks(stamps, lockstep=True)
+        check_ticks(stamps, LOCKSTEP)
 
 
 def test_a_stamp_off_the_grid_is_an_error():
     stamps = stamps_of(5)
     stamps['/clutch/torque'][2] += 1
     with pytest.raises(DdctError, match='/clutch/torque: stamp 1020000001 ns'):
-        check_ticks(stamps, lockstep=True)
+        check_ticks(stamps, LOCKSTEP)
 
 
 def test_a_topic_without_any_message_is_an_error():
     stamps = stamps_of(5)
     del stamps['/clutch/torque']
     with pytest.raises(DdctError, match='no message on /clutch/torque'):
-        check_ticks(stamps, lockstep=True)
+        check_ticks(stamps, LOCKSTEP)
 
 
 def test_complete_ticks_end_at_the_first_hole():
     stamps = stamps_of(5)
     stamps['/recorder/ack'].remove(stamp_of_step(3))
-    assert complete_ticks(stamps, tick_topics(stamps, lockstep=True)) == 3
-    assert complete_ticks(stamps, tick_topics(stamps, lockstep=False)) == 6
+    assert complete_ticks(stamps, tick_topics(LOCKSTEP, replies=True)) == 3
+    assert complete_ticks(stamps, tick_topics(REALTIME, replies=False)) == 6
 
 
 def test_engine_torque_request_is_needed_once_it_was_recorded():
-    assert '/engine/torque_request' not in tick_topics([], lockstep=True)
-    assert '/engine/torque_request' in tick_topics(['/engine/torque_request'], lockstep=True)
+    assert '/engine/torque_request' not in tick_topics(LOCKSTEP, replies=True)
+    two_input = RunKind(two_input=True)
+    assert '/engine/torque_request' in tick_topics(two_input, replies=True)
+    with pytest.raises(DdctError, match='no message on /engine/torque_request'):
+        check_ticks(stamps_of(5), two_input)
 
 
 def test_a_lock_step_recording_holds_no_wall_clock_topic():
-    names = {topic.name for topic in recorded_topics(lockstep=True, two_input=True)}
+    names = {topic.name for topic in recorded_topics(RunKind(two_input=True))}
     assert names.isdisjoint({'controller/timing', '/diagnostics'})
-    assert {topic.name for topic in recorded_topics(lockstep=False, two_input=True)} == {
+    assert {topic.name for topic in recorded_topics(RunKind(lockstep=False, two_input=True))} == {
         topic.name for topic in TOPICS
     }
 
 
 def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
-    names = [topic.name for topic in recorded_topics(lockstep=True) if topic.every_tick]
+    names = [topic.name for topic in recorded_topics(LOCKSTEP) if topic.every_tick]
     assert names == [
         '/clock',
         'driveline/joint_states',
@@ -108,6 +112,6 @@ def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
         'clutch/torque',
         'recorder/ack',
     ]
-    assert set(PLANT_TOPICS) < set(names)
-    assert resolved_name('clutch/slip') == '/clutch/slip'
-    assert resolved_name('/clock') == '/clock'
+    assert tick_names() == set(names[:5])
+    assert SLIP.resolved_name == '/clutch/slip'
+    assert CLOCK.resolved_name == '/clock'

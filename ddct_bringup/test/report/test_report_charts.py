@@ -1,6 +1,5 @@
 """Each chart of the report draws the signal that its title names, with its sign and unit."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -12,6 +11,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.charts import QUANTITIES, ChartRun, chart_document
 from ddct_bringup.report.line_looks import LineLook
+from ddct_plant.graph.topics import all_signals
 
 STEPS = 20
 RPM = 30.0 / math.pi
@@ -42,11 +42,11 @@ def random_run() -> Trajectory:
     """Return a run with another number in every place."""
     random = np.random.default_rng(1)
     arrays = {
-        field.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(field.name, ())))
-        for field in dataclasses.fields(Trajectory)
-        if field.name not in ('status', 'engine_torque_request')
+        signal.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(signal.name, ())))
+        for signal in all_signals()
+        if signal.name not in ('status', 'engine_torque_request')
     }
-    return Trajectory(status=((),) * (STEPS + 1), **arrays)
+    return Trajectory({**arrays, 'status': ((),) * (STEPS + 1)})
 
 
 RUN = random_run()

@@ -1,6 +1,5 @@
 """What a bag says is text on the page, never a part of it."""
 
-import dataclasses
 import json
 import re
 from html.parser import HTMLParser
@@ -11,6 +10,7 @@ import pytest
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.page import report_page, symbols
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
@@ -68,7 +68,7 @@ def recording(text: str) -> Recording:
     status = tuple((*pairs, (text, text)) for pairs in trajectory.status)
     return Recording(
         path=Path('/nowhere') / text.replace('/', '_') / 'pi_0.mcap',
-        trajectory=dataclasses.replace(trajectory, status=status),
+        trajectory=Trajectory({**trajectory.signals, 'status': status}),
         facts=facts,
         custom_data={'commit': text, 'version': text, 'scenario_yaml': text},
         run_info={text: {text: text}},

@@ -10,6 +10,7 @@ import pytest
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
+from ddct_plant.graph.topics import all_signals
 
 STEPS = 300
 TIME = np.arange(STEPS + 1) / 100.0
@@ -30,12 +31,12 @@ def trajectory(steps=STEPS, **signals):
         'clutch_torque': (11,),
     }
     arrays = {
-        field.name: signals.get(field.name, np.zeros((STEPS + 1, *shapes.get(field.name, ()))))
-        for field in dataclasses.fields(Trajectory)
-        if field.name != 'status'
+        each.name: signals.get(each.name, np.zeros((STEPS + 1, *shapes.get(each.name, ()))))
+        for each in all_signals()
+        if each.name != 'status'
     }
     rows = {name: np.asarray(value, float)[: steps + 1] for name, value in arrays.items()}
-    return Trajectory(status=((),) * (steps + 1), **rows)
+    return Trajectory({**rows, 'status': ((),) * (steps + 1)})
 
 
 def columns(index, values, width=4):

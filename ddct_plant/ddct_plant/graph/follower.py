@@ -1,26 +1,23 @@
 """Base of the nodes that answer ticks: engine, load, clutch, actuator, reference, controller."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
-
-from rclpy.publisher import Publisher
-from rosgraph_msgs.msg import Clock
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.messages import stamp_ns
-from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.refusals import Refusals
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.node import GraphNode, Output
+from ddct_plant.graph.reports import Refusals
 from ddct_plant.graph.sole_publishers import publishers_of
+from ddct_plant.graph.topics import CLOCK, Topic, tick_names
 from ddct_plant.ticks.join import StampJoin, Verdict
-from ddct_plant.ticks.stamp_limit import PLANT_TOPICS, StampLimit
+from ddct_plant.ticks.stamp_limit import StampLimit
 
-Reply = Sequence[tuple[Publisher, Any]]
-"""Messages in the order in which they are published."""
-Read = Callable[[str, Any], Any]
-"""Gives the checked values of a message on a topic; raises DdctError for bad ones."""
+Reply = Sequence[Output]
+"""Filled, in the order in which they are published."""
+Read = Callable[[Any], Any]
+"""Gives the checked values of a message; raises DdctError for bad ones."""
 
 
 class FollowerNode(GraphNode):
@@ -33,20 +30,24 @@ class FollowerNode(GraphNode):
     `StampLimit` refuses.
     """
 
-    def follow(self, inputs: Sequence[tuple[type, str, Read]]) -> None:
-        """Subscribe to (type, topic, reader) inputs; the first is the trigger of `StampJoin`."""
+    def follow(self, *inputs: Topic, readers: Mapping[Topic, Read] | None = None) -> None:
+        """
+        Subscribe to the inputs; the first is the trigger of `StampJoin`.
+
+        Each is read as its topic says, unless `readers` has another way.
+        """
         lockstep = self.settings.lockstep
-        self.join = StampJoin([topic for _, topic, _ in inputs], allow_gaps=not lockstep)
-        self.limit = None if lockstep else StampLimit()
+        self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
+        self.limit = None if lockstep else StampLimit(tick_names())
         self.refusals = Refusals(self)
         self._reply: Reply = ()
         self._answered: Any = None
         self._disputed = False
-        for message_type, topic, read in inputs:
-            receive = self._receiver(topic, read)
-            self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
-        if not lockstep and not {topic for _, topic, _ in inputs} & set(PLANT_TOPICS):
-            self.create_subscription(Clock, '/clock', self.guarded(self._on_clock), LOOP_QOS)
+        for topic in inputs:
+            read = (readers or {}).get(topic, topic.read)
+            self.listen(topic, self._receiver(topic.name, read))
+        if not lockstep and not any(topic.is_tick for topic in inputs):
+            self.listen(CLOCK, self._on_clock)
 
     @abstractmethod
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
@@ -72,7 +73,7 @@ class FollowerNode(GraphNode):
             if self.limit is not None and not self.admits(topic, stamp):
                 return
             try:
-                values = read(topic, message)
+                values = read(message)
             except DdctError as error:
                 self._on_bad_values(stamp, error)
                 return
@@ -94,9 +95,9 @@ class FollowerNode(GraphNode):
             raise DdctError(reason) from error
         self.refusals.add(reason)
 
-    def _on_clock(self, message: Clock) -> None:
+    def _on_clock(self, message: Any) -> None:
         stamp = stamp_ns(message)
-        if self.admits('/clock', stamp):
+        if self.admits(CLOCK.name, stamp):
             self.on_tick(step_of_stamp(stamp), stamp)
 
     def _answer(self, stamp: int) -> None:
@@ -120,5 +121,5 @@ class FollowerNode(GraphNode):
 
     def publish_reply(self) -> None:
         """Publish the reply to the last stamp, again if it was published before."""
-        for publisher, message in self._reply:
-            publisher.publish(message)
+        for output in self._reply:
+            output.publish()

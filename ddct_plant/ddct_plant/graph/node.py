@@ -3,19 +3,37 @@
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 from rclpy.task import Future
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.graph.messages import status_message
-from ddct_plant.graph.qos import LATCHED_QOS
-from ddct_plant.graph.run_info import RUN_INFO_TOPIC, run_info_pairs
+from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
+from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
+from ddct_plant.graph.topics import RUN_INFO, Topic
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """Parameters that rclpy declares itself begin with one of these."""
+
+
+class Output:
+    """The publisher of a topic, with the one message that it sends again and again."""
+
+    def __init__(self, node: Node, topic: Topic) -> None:
+        qos = LATCHED_QOS if topic.latched else LOOP_QOS
+        self._publisher = node.create_publisher(topic.message_class, topic.name, qos)
+        self._write = topic.writer()
+        self._message: Any = None
+
+    def fill(self, stamp: int, *values: Any, **options: Any) -> 'Output':
+        """Put a stamp in ns and the topic's values into the message; return itself."""
+        self._message = self._write(stamp, *values, **options)
+        return self
+
+    def publish(self) -> None:
+        """Send the message as it was filled last."""
+        self._publisher.publish(self._message)
 
 
 class GraphNode(Node):
@@ -39,9 +57,13 @@ class GraphNode(Node):
 
     def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
         """Latch this node's settings, stamped t_0."""
-        publisher = self.create_publisher(DiagnosticArray, RUN_INFO_TOPIC, LATCHED_QOS)
         pairs = run_info_pairs(self.settings, extra)
-        publisher.publish(status_message(stamp_of_step(0), self.get_name(), pairs))
+        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=self.get_name()).publish()
+
+    def listen(self, topic: Topic, receive: Callable[[Any], None]) -> None:
+        """Call `receive` with every message of a topic of the loop; a DdctError ends the node."""
+        guarded = self.guarded(receive)
+        self.create_subscription(topic.message_class, topic.name, guarded, LOOP_QOS)
 
     def own_parameters(self) -> list[str]:
         """Return the names of the parameters that the node itself declares."""

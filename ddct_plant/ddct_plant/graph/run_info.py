@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
-RUN_INFO_TOPIC = 'run_info'
-
 
 def package_version() -> str:
     """Return the version of the installed packages, or 'unknown' in a bare source tree."""

@@ -1,6 +1,5 @@
 """See to it that each topic of the loop has one live publisher."""
 
-import importlib
 import time
 from collections.abc import Callable
 
@@ -9,28 +8,12 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.message_kinds import message_class
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.topics import all_topics
 from ddct_plant.ticks.sequence import SequenceWatch
 
-LOOP_TOPICS = (
-    '/clock',
-    'driveline/joint_states',
-    'clutch/slip',
-    'vehicle/twist',
-    'vehicle/accel',
-    'engine/torque_demand',
-    'engine/torque',
-    'load/torque',
-    'clutch/slip_reference',
-    'controller/status',
-    'clutch/torque_request',
-    'engine/torque_request',
-    'actuator/torque',
-    'clutch/torque',
-    'recorder/ack',
-)
-"""Every topic of a tick: each has one publisher, or none."""
 LOOK_S = 0.2
 """How often the graph is looked at, and a doubtful end asks for the last replies again."""
 PROOF_S = 1.0
@@ -52,13 +35,8 @@ class _Probe:
 
     def __init__(self, node: Node, topic: str, type_name: str) -> None:
         self.since = time.monotonic()
-        package, kind, name = type_name.split('/')
         self.subscription: Subscription = node.create_subscription(
-            getattr(importlib.import_module(f'{package}.{kind}'), name),
-            topic,
-            lambda _: None,
-            RECORDER_QOS,
-            raw=True,
+            message_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
         )
         self._watch = SequenceWatch()
 
@@ -84,7 +62,11 @@ class SolePublishers:
         self.found: DdctError | None = None
         """The second publisher, once there is one."""
         self._found_at = 0.0
-        self._topics = {topic: node.resolve_topic_name(topic) for topic in LOOP_TOPICS}
+        self._topics = {
+            topic.name: node.resolve_topic_name(topic.name)
+            for topic in all_topics()
+            if topic.every_tick
+        }
         self._ask_again = ask_again
         self._listener: Node | None = None
         self._probes: dict[str, _Probe] = {}

@@ -2,22 +2,18 @@
 
 from typing import Any, ClassVar
 
-from geometry_msgs.msg import WrenchStamped
-from trajectory_msgs.msg import JointTrajectory
-
 from ddct_plant.base.errors import DdctError
 from ddct_plant.fail_safe.guarded_actuator import GuardedActuator
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
-from ddct_plant.graph.arrivals import read_torque
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import TorquePointsMessage
-from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.node import Output
+from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_timeout
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.scenario.initial import initial_state
 
-REQUEST = 'clutch/torque_request'
+REQUEST = TORQUE_REQUEST.name
 
 
 class ActuatorNode(FollowerNode):
@@ -39,18 +35,17 @@ class ActuatorNode(FollowerNode):
             declare_request_timeout(self, 'the clutch opens'), declare_fail_safe_ramp(self)
         )
         self._actuator = GuardedActuator(initial_state(self.settings).torque_request, fail_safe)
-        self._torque = self.create_publisher(JointTrajectory, 'actuator/torque', LOOP_QOS)
-        self._message = TorquePointsMessage()
+        self._torque = Output(self, ACTUATOR_TORQUE)
         self._requests_without_clock = 0
         self.publish_run_info(fail_safe.info())
-        self.follow([(WrenchStamped, REQUEST, read_torque)])
+        self.follow(TORQUE_REQUEST)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the torque over the period of step k, after any steps that had no request."""
         torques = self._actuator.request(step, inputs[REQUEST])
-        return () if torques is None else self._reply_at(stamp_ns, torques)
+        return () if torques is None else (self._torque.fill(stamp_ns, torques),)
 
     def publish_reply(self) -> None:
         """Publish the torque, in real time once the fail-safe sees the time pass."""
@@ -64,9 +59,9 @@ class ActuatorNode(FollowerNode):
             self._requests_without_clock += 1
             if self._actuator.too_long(0, 1 + self._requests_without_clock):
                 raise DdctError(
-                    f'at stamp {stamp} ns: {REQUEST} comes without /clock, by which the fail-safe '
-                    'sees that requests stop: publish /clock (rosgraph_msgs/Clock) with the stamp '
-                    'of every tick'
+                    f'at stamp {stamp} ns: {REQUEST} comes without {CLOCK.name}, by which the '
+                    f'fail-safe sees that requests stop: publish {CLOCK.name} '
+                    '(rosgraph_msgs/Clock) with the stamp of every tick'
                 )
         return true
 
@@ -76,11 +71,7 @@ class ActuatorNode(FollowerNode):
         if torques is None:
             return
         self._safe_state.tell(step, stamp, f'no {REQUEST} for too long: opening the clutch')
-        for publisher, message in self._reply_at(stamp, torques):
-            publisher.publish(message)
-
-    def _reply_at(self, stamp: int, torques: list[float]) -> Reply:
-        return ((self._torque, self._message.fill(stamp, torques)),)
+        self._torque.fill(stamp, torques).publish()
 
 
 def main() -> int:

@@ -2,13 +2,10 @@
 
 from typing import Any
 
-from trajectory_msgs.msg import JointTrajectory
-
-from ddct_plant.graph.arrivals import read_torque_points
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import TorquePointsMessage
-from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.node import Output
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLUTCH_TORQUE
 from ddct_plant.models.clutch import LinearClutch
 
 
@@ -19,15 +16,14 @@ class ClutchNode(FollowerNode):
         """Build the clutch with the run's wear gain."""
         super().__init__('clutch', **kwargs)
         self._clutch = LinearClutch(self.settings.wear_gain)
-        self._torque = self.create_publisher(JointTrajectory, 'clutch/torque', LOOP_QOS)
-        self._message = TorquePointsMessage()
+        self._torque = Output(self, CLUTCH_TORQUE)
         self.publish_run_info()
-        self.follow([(JointTrajectory, 'actuator/torque', read_torque_points)])
+        self.follow(ACTUATOR_TORQUE)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the transmitted torque over the period of step k."""
-        transmitted = self._clutch.transmit(inputs['actuator/torque'])
-        return ((self._torque, self._message.fill(stamp_ns, transmitted)),)
+        transmitted = self._clutch.transmit(inputs[ACTUATOR_TORQUE.name])
+        return (self._torque.fill(stamp_ns, transmitted),)
 
 
 def main() -> int:

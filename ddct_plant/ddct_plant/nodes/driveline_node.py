@@ -3,63 +3,41 @@
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import AccelStamped, TwistStamped, WrenchStamped
 from rclpy.clock import Clock, ClockType
-from rosgraph_msgs.msg import Clock as ClockMsg
-from sensor_msgs.msg import JointState
-from std_msgs.msg import Header
-from trajectory_msgs.msg import JointTrajectory
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.driveline_info import driveline_info
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.arrivals import read_torque, read_torque_points
-from ddct_plant.graph.messages import (
-    accel_message,
-    clock_message,
-    joint_states_message,
-    slip_message,
-    stamp_ns,
-    status_message,
-    twist_message,
-)
-from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.refusals import Refusals
-from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.node import GraphNode, Output
+from ddct_plant.graph.reports import Refusals, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_fail_safe_ramp, declare_timeout
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import (
+    CLOCK,
+    CLUTCH_TORQUE,
+    DIAGNOSTICS,
+    ENGINE_TORQUE,
+    JOINT_STATES,
+    LOAD_TORQUE,
+    RECORDER_ACK,
+    SLIP,
+    TICKS_STATUS,
+    VEHICLE_ACCEL,
+    VEHICLE_SPEED,
+    Topic,
+)
 from ddct_plant.models.driveline import Driveline
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
-from ddct_plant.ticks.tick_owner import (
-    CLUTCH,
-    ENGINE,
-    LOAD,
-    RECORDER_TOPIC,
-    LockstepOwner,
-    TickPlan,
-)
+from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan
 
 _STEADY = Clock(clock_type=ClockType.STEADY_TIME)
+REPLIES = Replies(ENGINE_TORQUE.name, LOAD_TORQUE.name, CLUTCH_TORQUE.name, RECORDER_ACK.name)
 WATCH_PERIOD_S = 0.02
 """How often an unanswered tick is looked at."""
-
-
-class _Output:
-    """A publisher with the one message that it sends again and again."""
-
-    def __init__(self, node: GraphNode, kind: type, topic: str, make: Callable[..., Any]) -> None:
-        self._publisher = node.create_publisher(kind, topic, LOOP_QOS)
-        self._make = make
-        self._message: Any = None
-
-    def publish(self, stamp: int, *values: Any) -> None:
-        self._message = self._make(stamp, *values, reuse=self._message)
-        self._publisher.publish(self._message)
 
 
 class DrivelineNode(GraphNode):
@@ -85,11 +63,10 @@ class DrivelineNode(GraphNode):
         self.owner = self._make_owner()
         self.refusals = Refusals(self)
         self._create_publishers()
-        self._subscribe(WrenchStamped, ENGINE, lambda m: read_torque(ENGINE, m))
-        self._subscribe(WrenchStamped, LOAD, lambda m: read_torque(LOAD, m))
-        self._subscribe(JointTrajectory, CLUTCH, lambda m: read_torque_points(CLUTCH, m))
+        for topic in (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE):
+            self.listen(topic, self._receiver(topic))
         if self.plan.require_recorder:
-            self._subscribe(Header, RECORDER_TOPIC, lambda m: m)
+            self.listen(RECORDER_ACK, self._receiver(RECORDER_ACK))
         self.publish_run_info(driveline_info(self.plan.steps, self.plan.clutch))
         self._start_timers()
 
@@ -102,6 +79,7 @@ class DrivelineNode(GraphNode):
             self, 'duration', 0.0, "Length of the run [s]; 0 is the scenario's", 0.0, 3600.0
         )
         return TickPlan(
+            REPLIES,
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
             require_recorder=declare(
                 self, 'require_recorder', False, 'Whether each tick waits for recorder/ack'
@@ -139,29 +117,27 @@ class DrivelineNode(GraphNode):
         self.create_timer(PERIOD_S, self.guarded(owner.tick), clock=_STEADY)
 
     def _create_publishers(self) -> None:
-        self._clock_out = _Output(self, ClockMsg, '/clock', clock_message)
-        self._slip_out = _Output(self, TwistStamped, 'clutch/slip', slip_message)
-        self._joints_out = _Output(
-            self, JointState, 'driveline/joint_states', joint_states_message
-        )
-        self._twist_out = _Output(self, TwistStamped, 'vehicle/twist', twist_message)
-        self._accel_out = _Output(self, AccelStamped, 'vehicle/accel', accel_message)
-        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', LOOP_QOS)
+        self._clock_out = Output(self, CLOCK)
+        self._slip_out = Output(self, SLIP)
+        self._joints_out = Output(self, JOINT_STATES)
+        self._speed_out = Output(self, VEHICLE_SPEED)
+        self._accel_out = Output(self, VEHICLE_ACCEL)
+        self._diagnostics = Output(self, DIAGNOSTICS)
         self._safe_state = SafeStateReport(self)
 
-    def _subscribe(self, message_type: type, topic: str, read: Callable[[Any], Any]) -> None:
+    def _receiver(self, topic: Topic) -> Callable[[Any], None]:
         def receive(message: Any) -> None:
-            if topic == CLUTCH and self._sole_publishers.found:
+            if topic is CLUTCH_TORQUE and self._sole_publishers.found:
                 return  # whose torque it is cannot be told: without it the clutch opens
             stamp = stamp_ns(message)
             try:
-                reply = read(message)
+                reply = topic.read(message)
             except DdctError as error:
                 self._on_bad_values(DdctError(f'at stamp {stamp} ns: {error}'))
                 return
-            self.owner.offer(topic, stamp, reply)
+            self.owner.offer(topic.name, stamp, reply)
 
-        self.create_subscription(message_type, topic, self.guarded(receive), LOOP_QOS)
+        return receive
 
     def _on_bad_values(self, error: DdctError) -> None:
         if self.settings.lockstep:
@@ -179,16 +155,16 @@ class DrivelineNode(GraphNode):
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
         now = self.driveline.outputs()
-        self._clock_out.publish(stamp)
-        self._slip_out.publish(stamp, now.slip_speed)
-        self._joints_out.publish(stamp, now.positions, now.speeds, now.efforts)
-        self._twist_out.publish(stamp, now.vehicle_speed)
-        self._accel_out.publish(stamp, now.vehicle_accel)
+        self._clock_out.fill(stamp).publish()
+        self._slip_out.fill(stamp, now.slip_speed).publish()
+        self._joints_out.fill(stamp, now.positions, now.speeds, now.efforts).publish()
+        self._speed_out.fill(stamp, now.vehicle_speed).publish()
+        self._accel_out.fill(stamp, now.vehicle_accel).publish()
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
-            why = f'no {CLUTCH} for longer than clutch_timeout_s: opening the clutch'
+            why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.tell(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.plan.steps:
-            self._diagnostics.publish(status_message(stamp, 'driveline: ticks', self._counts()))
+            self._diagnostics.fill(stamp, self._counts(), name=TICKS_STATUS).publish()
 
     def _counts(self) -> list[tuple[str, str]]:
         owner = self.owner

@@ -2,24 +2,20 @@
 
 from typing import Any, ClassVar
 
-from geometry_msgs.msg import WrenchStamped
-from sensor_msgs.msg import JointState
-
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.fail_safe.engine_info import engine_info
 from ddct_plant.fail_safe.guarded_engine import GuardedEngine
-from ddct_plant.graph.arrivals import read_stamp_only, read_torque
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.messages import stamp_ns, torque_message
-from ddct_plant.graph.qos import LOOP_QOS
-from ddct_plant.graph.safe_state import SafeStateReport
+from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.node import Output
+from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_request_timeout
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES, TORQUE_DEMAND
 from ddct_plant.models.engine import Engine
 
-JOINT_STATES = 'driveline/joint_states'
-REQUEST = 'engine/torque_request'
+REQUEST = ENGINE_REQUEST.name
 
 
 class EngineNode(FollowerNode):
@@ -44,26 +40,16 @@ class EngineNode(FollowerNode):
         self._engine = Engine(scenario.engine, scenario.engine_authority)
         timeout_s = declare_request_timeout(self, "the driver's demand takes over")
         self._commanded = GuardedEngine(self._engine, timeout_s)
-        self._demand = self.create_publisher(WrenchStamped, 'engine/torque_demand', LOOP_QOS)
-        self._torque = self.create_publisher(WrenchStamped, 'engine/torque', LOOP_QOS)
-        self._demand_message = WrenchStamped()
-        self._torque_message = WrenchStamped()
+        self._demand = Output(self, TORQUE_DEMAND)
+        self._torque = Output(self, ENGINE_TORQUE)
         self.publish_run_info(engine_info(self._two_input, timeout_s))
+        only_the_stamp = {JOINT_STATES: lambda _message: None}
         if self._two_input:
-            self.create_subscription(
-                JointState, JOINT_STATES, self.guarded(self._publish_demand), LOOP_QOS
-            )
-            self.follow(
-                [
-                    (JointState, JOINT_STATES, read_stamp_only),
-                    (WrenchStamped, REQUEST, read_torque),
-                ]
-            )
+            self.listen(JOINT_STATES, self._publish_demand)
+            self.follow(JOINT_STATES, ENGINE_REQUEST, readers=only_the_stamp)
         else:
-            self.create_subscription(
-                WrenchStamped, REQUEST, self.guarded(self._refuse_request), LOOP_QOS
-            )
-            self.follow([(JointState, JOINT_STATES, read_stamp_only)])
+            self.listen(ENGINE_REQUEST, self._refuse_request)
+            self.follow(JOINT_STATES, readers=only_the_stamp)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)
 
@@ -71,18 +57,18 @@ class EngineNode(FollowerNode):
         """Return the torque over the period of step k, and the demand if it is not out yet."""
         if self._two_input:
             torque = self._commanded.request(step, inputs[REQUEST])
-            return () if torque is None else (self._delivered(stamp_ns, torque),)
+            return () if torque is None else (self._torque.fill(stamp_ns, torque),)
         return (
-            self._delivered(stamp_ns, self._engine.torque(step)),
-            (self._demand, self._demand_at(step, stamp_ns)),
+            self._torque.fill(stamp_ns, self._engine.torque(step)),
+            self._demand.fill(stamp_ns, self._engine.demand(step)),
         )
 
-    def _publish_demand(self, message: JointState) -> None:
+    def _publish_demand(self, message: Any) -> None:
         stamp = stamp_ns(message)
-        if not self.admits(JOINT_STATES, stamp):
+        if not self.admits(JOINT_STATES.name, stamp):
             return
         step = step_of_stamp(stamp)
-        self._demand.publish(self._demand_at(step, stamp))
+        self._demand.fill(stamp, self._engine.demand(step)).publish()
         if not self.settings.lockstep:
             self._answer_alone(step, stamp)
 
@@ -95,19 +81,13 @@ class EngineNode(FollowerNode):
                 f'no {REQUEST} for too long: the demand holds until the engine is started again',
             )
         if torque is not None:
-            self._torque.publish(self._delivered(stamp, torque)[1])
+            self._torque.fill(stamp, torque).publish()
 
-    def _refuse_request(self, _message: WrenchStamped) -> None:
+    def _refuse_request(self, _message: Any) -> None:
         raise DdctError(
             f'{REQUEST} arrived, but this engine follows the demand alone: start it with '
             '--ros-args -p two_input:=true, or choose a controller with one input'
         )
-
-    def _delivered(self, stamp: int, torque: float) -> tuple[Any, WrenchStamped]:
-        return self._torque, torque_message(stamp, torque, reuse=self._torque_message)
-
-    def _demand_at(self, step: int, stamp: int) -> WrenchStamped:
-        return torque_message(stamp, self._engine.demand(step), reuse=self._demand_message)
 
 
 def main() -> int:

@@ -6,14 +6,7 @@ from typing import Any
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, stamp_of_step, time_of_step
 from ddct_plant.fail_safe.request_watch import FailSafe
-from ddct_plant.ticks.tick_owner import (
-    CLUTCH,
-    ENGINE,
-    LOAD,
-    RECORDER_TOPIC,
-    TORQUE_TOPICS,
-    TickOwner,
-)
+from ddct_plant.ticks.tick_owner import TickOwner
 
 RECORDER_PATIENCE_S = 2.0
 """How long a real-time run waits at t_N for the recorder, which may lack a reply for good."""
@@ -35,10 +28,12 @@ class RealtimeOwner(TickOwner):
         """Take what `TickOwner` takes; `on_started` is called when the 10 ms grid begins."""
         super().__init__(*arguments, **options)
         self._on_started = on_started
-        self.missed_replies = dict.fromkeys(TORQUE_TOPICS, 0)
+        self._replies = self._plan.replies
+        self.missed_replies = dict.fromkeys(self._replies.torques, 0)
         self.worst_lateness_s = 0.0
         self._held: dict[str, Any] = {}
-        self._silent_since: dict[str, int] = dict.fromkeys(TORQUE_TOPICS, 0)
+        self._held_clutch = 0.0
+        self._silent_since: dict[str, int] = dict.fromkeys(self._replies.torques, 0)
         self._clutch = FailSafe(self._plan.clutch)
         self._started_at: float | None = None
 
@@ -65,15 +60,20 @@ class RealtimeOwner(TickOwner):
             return
         waited = self._clock() - self._opened_at
         last = self._started_at is not None
-        if last and self.barrier.missing() == [RECORDER_TOPIC] and waited > RECORDER_PATIENCE_S:
+        if (
+            last
+            and self.barrier.missing() == [self._replies.recorder]
+            and waited > RECORDER_PATIENCE_S
+        ):
             self._finish(None)
         else:
             super().watch()
 
     def _awaited(self, step: int) -> tuple[str, ...]:
         if step not in (0, self._plan.steps):
-            return TORQUE_TOPICS
-        return tuple(topic for topic in self._plan.topics if topic != CLUTCH or not self.safe)
+            return self._replies.torques
+        awaited = self._plan.topics
+        return tuple(each for each in awaited if each != self._replies.clutch or not self.safe)
 
     def _on_complete(self) -> None:
         if self.step == self._plan.steps:
@@ -83,29 +83,29 @@ class RealtimeOwner(TickOwner):
             self._on_started()
 
     def _take_step(self) -> None:
-        replies = {topic: self.barrier.get(topic) for topic in TORQUE_TOPICS}
+        replies = {topic: self.barrier.get(topic) for topic in self._replies.torques}
         self.missed_steps += any(reply is None for reply in replies.values())
         for topic, reply in replies.items():
             if reply is None:
                 self._miss(topic)
             else:
                 self._silent_since[topic] = self.step
-                if topic != CLUTCH:
-                    self._held[topic] = reply
-        clutch = self._clutch_torques(replies[CLUTCH])
-        self._integrate(self._held[ENGINE], self._held[LOAD], clutch)
+                self._held[topic] = reply
+        engine, load, clutch = self._replies.torques
+        torques = self._clutch_torques(replies[clutch])
+        self._integrate(self._held[engine], self._held[load], torques)
 
     def _clutch_torques(self, reply: list[float] | None) -> list[float]:
         """Return the (11,) torques in N m of this period: the reply, the last one, or the ramp."""
         if reply is not None and not self.safe:
             self._clutch.request(self.step, reply[-1])
-            self._held[CLUTCH] = reply[-1]
+            self._held_clutch = reply[-1]
             return reply
-        held = self._held[CLUTCH]
+        held = self._held_clutch
         if not self._clutch.tick(self.step):
             return [held] * (SUBSTEPS + 1)
-        self._held[CLUTCH] = self._clutch.next_torque()
-        change = (self._held[CLUTCH] - held) / SUBSTEPS
+        self._held_clutch = self._clutch.next_torque()
+        change = (self._held_clutch - held) / SUBSTEPS
         return [held + i * change for i in range(SUBSTEPS + 1)]
 
     def _miss(self, topic: str) -> None:

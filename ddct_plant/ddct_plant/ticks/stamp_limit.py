@@ -1,19 +1,11 @@
 """Which stamps can be true in real time, by a steady clock; knows nothing of ROS."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_NS, START_NS, step_of_stamp
 
-PLANT_TOPICS = (
-    '/clock',
-    'driveline/joint_states',
-    'clutch/slip',
-    'vehicle/twist',
-    'vehicle/accel',
-)
-"""What the owner of time publishes itself at every tick; all else replies to it."""
 TICK_LEAD_NS = 300_000_000
 """How far ticks may run ahead of the time since the first one: a reader that starts late may have
 ten ticks in its queue (0.1 s), and the clocks of two machines part by 0.2 s in an hour."""
@@ -30,9 +22,19 @@ class StampLimit:
     """
 
     def __init__(
-        self, *, from_t0: bool = False, clock_ns: Callable[[], int] = time.monotonic_ns
+        self,
+        ticks: Collection[str],
+        *,
+        from_t0: bool = False,
+        clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
-        """Take a steady clock in ns; `from_t0` refuses to begin with a later tick than t_0."""
+        """
+        Take the topics that come with every tick from the owner of time, and a clock in ns.
+
+        The clock is a steady one. All other topics reply to ticks. `from_t0` refuses to begin
+        with a later tick than t_0.
+        """
+        self._ticks = ticks
         self._clock_ns = clock_ns
         self._from_t0 = from_t0
         self._first: tuple[int, int] | None = None
@@ -52,7 +54,7 @@ class StampLimit:
         except DdctError as error:
             return f'{topic}: {error}'
         now = self._clock_ns()
-        is_tick = topic in PLANT_TOPICS
+        is_tick = topic in self._ticks
         latest = self._latest_tick(now) if is_tick else self._latest_reply(now)
         if latest is not None and stamp_ns > latest:
             return (

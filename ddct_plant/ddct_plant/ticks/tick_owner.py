@@ -12,17 +12,30 @@ from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSetting
 from ddct_plant.models.driveline import Driveline
 from ddct_plant.ticks.barrier import TickBarrier
 
-ENGINE, LOAD, CLUTCH = 'engine/torque', 'load/torque', 'clutch/torque'
-TORQUE_TOPICS = (ENGINE, LOAD, CLUTCH)
-RECORDER_TOPIC = 'recorder/ack'
 RESEND_AFTER_S = 0.1
 """How long a tick may stay unanswered before it is sent again."""
+
+
+@dataclass(frozen=True)
+class Replies:
+    """The topics on which a tick is answered."""
+
+    engine: str
+    load: str
+    clutch: str
+    recorder: str
+
+    @property
+    def torques(self) -> tuple[str, str, str]:
+        """What the driveline integrates."""
+        return self.engine, self.load, self.clutch
 
 
 @dataclass(frozen=True)
 class TickPlan:
     """How far a run goes and what it waits for."""
 
+    replies: Replies
     steps: int
     """N: states run t_0..t_N."""
     require_recorder: bool
@@ -35,7 +48,8 @@ class TickPlan:
     @property
     def topics(self) -> tuple[str, ...]:
         """The replies that a whole tick has."""
-        return (*TORQUE_TOPICS, RECORDER_TOPIC) if self.require_recorder else TORQUE_TOPICS
+        torques = self.replies.torques
+        return (*torques, self.replies.recorder) if self.require_recorder else torques
 
 
 class TickOwner(ABC):
@@ -117,5 +131,4 @@ class LockstepOwner(TickOwner):
         if self.step == self._plan.steps:
             self._finish(None)
         else:
-            get = self.barrier.get
-            self._integrate(get(ENGINE), get(LOAD), get(CLUTCH))
+            self._integrate(*map(self.barrier.get, self._plan.replies.torques))

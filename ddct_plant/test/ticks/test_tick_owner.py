@@ -5,15 +5,11 @@ import pytest
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.ticks.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
-from ddct_plant.ticks.tick_owner import (
-    CLUTCH,
-    ENGINE,
-    LOAD,
-    RECORDER_TOPIC,
-    LockstepOwner,
-    TickPlan,
-)
+from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan
 
+REPLIES = Replies('engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack')
+ENGINE, LOAD, CLUTCH = REPLIES.torques
+RECORDER = REPLIES.recorder
 POINTS = [float(i) for i in range(11)]
 
 
@@ -35,14 +31,14 @@ class Harness:
         self.driveline = FakeDriveline()
         self.owner = owner_type(
             self.driveline,
-            TickPlan(steps, require_recorder, answer_timeout_s=1.0),
+            TickPlan(REPLIES, steps, require_recorder, answer_timeout_s=1.0),
             self.published.append,
             self.ends.append,
             clock=lambda: self.now,
         )
 
     def answer(self, step, engine=1.0, topics=(ENGINE, LOAD, CLUTCH)):
-        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: POINTS, RECORDER_TOPIC: None}
+        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: POINTS, RECORDER: None}
         for topic in topics:
             self.owner.offer(topic, stamp_of_step(step), replies[topic])
 
@@ -107,7 +103,7 @@ def test_the_recorder_is_part_of_the_barrier_where_required():
     harness.owner.start()
     harness.answer(0)
     assert harness.published == [0]
-    harness.answer(0, topics=(RECORDER_TOPIC,))
+    harness.answer(0, topics=(RECORDER,))
     assert harness.published == [0, 1]
 
 
@@ -147,7 +143,7 @@ def recorded():
     harness.now = 0.5
     harness.owner.tick()
     assert harness.published == [0], 't_0 waits for the recorder'
-    harness.answer(0, topics=(RECORDER_TOPIC,))
+    harness.answer(0, topics=(RECORDER,))
     harness.now = 0.511
     harness.owner.tick()
     harness.answer(1)
@@ -160,7 +156,7 @@ def recorded():
 
 
 def test_realtime_ends_when_the_recorder_has_the_last_tick(recorded):
-    recorded.answer(2, topics=(RECORDER_TOPIC,))
+    recorded.answer(2, topics=(RECORDER,))
     assert recorded.ends == [None]
 
 

@@ -52,6 +52,11 @@ class BagRecords:
     """What the last readable `rosbag2` metadata record says."""
 
     @property
+    def topics(self) -> set[str]:
+        """Resolved names of the topics that it was opened for."""
+        return {channel.topic for channel in self.channels.values()}
+
+    @property
     def custom_data(self) -> dict[str, str]:
         """What the recorder said about the run."""
         custom = self.information.get('custom_data')

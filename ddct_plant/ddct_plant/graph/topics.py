@@ -1,0 +1,244 @@
+"""
+The one table of topics, in the order in which a tick is written; imports nothing of ROS.
+
+Nodes, recorder, reader, trajectory, the tables of signals and the live view take names, types,
+values and units from here. A new topic is one entry below, and the node that publishes it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from operator import itemgetter
+from typing import Any
+
+from ddct_plant.graph.message_kinds import (
+    Joints,
+    MessageKind,
+    PreviewPoints,
+    Scalar,
+    StampOnly,
+    Status,
+    TorquePoints,
+    Write,
+    message_class,
+)
+
+JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
+"""Order of the joints in `driveline/joint_states`."""
+TICKS_STATUS = 'driveline: ticks'
+"""Name of the status by which the driveline counts its steps and what was missing."""
+SAFE_STATE = ': safe state'
+"""Ends the name of the status by which a node says that it is in its safe state."""
+SINCE = 'since_ns'
+"""Key of the stamp since when."""
+
+
+@dataclass(frozen=True)
+class RunKind:
+    """What of a run decides which topics it has: known to every node, and to who reads a bag."""
+
+    lockstep: bool = True
+    two_input: bool = False
+    """Whether the controller also commands the engine."""
+    clutch: str = 'linear'
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One quantity of a topic, one row per tick in a trajectory."""
+
+    name: str
+    unit: str
+    """SI, such as 'rad/s'; '' for text."""
+    about: str
+    """Which quantity, and its shape if it is more than one number."""
+
+    @property
+    def column(self) -> str:
+        """Name of its column in a table: name and unit."""
+        unit = self.unit.replace('/', '_').replace(' ', '_').replace('^', '').lower()
+        return f'{self.name}_{unit}'
+
+
+@dataclass(frozen=True, eq=False)
+class Topic:
+    """One topic."""
+
+    name: str
+    """As nodes name it: relative, except `/clock` and `/diagnostics`."""
+    kind: MessageKind
+    publisher: str
+    """Name of the node that publishes it."""
+    signals: tuple[Signal, ...] = ()
+    """One for each of the values of a message."""
+    every_tick: bool = True
+    """Whether a lock-step run has it exactly once per tick, from one publisher."""
+    latched: bool = False
+    """Whether it is transient local, depth 1."""
+    wall_clock: bool = False
+    """Whether it carries wall-clock figures, which a lock-step recording must not hold."""
+    when: Callable[[RunKind], bool] | None = None
+    """Says which runs have it; None for all of them."""
+
+    @property
+    def type(self) -> str:
+        """Such as 'sensor_msgs/msg/JointState'."""
+        return self.kind.type
+
+    @property
+    def message_class(self) -> Any:
+        """The ROS class of its messages."""
+        return message_class(self.kind.type)
+
+    @property
+    def resolved_name(self) -> str:
+        """The name in a bag, outside any namespace, with its leading slash."""
+        return self.name if self.name.startswith('/') else f'/{self.name}'
+
+    @property
+    def is_tick(self) -> bool:
+        """Whether it comes with every tick from the owner of time; all else replies to it."""
+        return self.every_tick and self.publisher == 'driveline'
+
+    def in_run(self, run: RunKind) -> bool:
+        """Say whether a run has it."""
+        return self.when is None or self.when(run)
+
+    def recorded_in(self, run: RunKind) -> bool:
+        """Say whether the recording of a run has it."""
+        return self.in_run(run) and not (run.lockstep and self.wall_clock)
+
+    def writer(self) -> Write:
+        """Return what fills one message again and again: `write(stamp_ns, *values)`."""
+        return self.kind.writer()
+
+    def message(self, stamp: int, *values: Any, **options: Any) -> Any:
+        """Return a new message; its values are those of `signals`."""
+        return self.writer()(stamp, *values, **options)
+
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return the values of `signals` in a message, unchecked."""
+        return self.kind.values(message)
+
+    def read(self, message: Any, **options: Any) -> Any:
+        """Return what a node takes in; raise DdctError for values that must not enter the loop."""
+        return self.kind.read(self.name, message, **options)
+
+
+def _torque(name: str, publisher: str, signal: str, about: str, **options: Any) -> Topic:
+    kind = Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x')
+    return Topic(name, kind, publisher, (Signal(signal, 'N m', about),), **options)
+
+
+def _torque_points(name: str, publisher: str, signal: str, about: str) -> Topic:
+    kind = TorquePoints('trajectory_msgs/msg/JointTrajectory', 'clutch')
+    return Topic(name, kind, publisher, (Signal(signal, 'N m', about),))
+
+
+def _status(name: str, publisher: str, **options: Any) -> Topic:
+    kind = Status('diagnostic_msgs/msg/DiagnosticArray', options.pop('status_name', ''))
+    return Topic(name, kind, publisher, **options)
+
+
+def _two_input(run: RunKind) -> bool:
+    return run.two_input
+
+
+RUN_INFO = _status('run_info', 'every node', every_tick=False, latched=True)
+CLOCK = Topic('/clock', StampOnly('rosgraph_msgs/msg/Clock'), 'driveline')
+JOINT_STATES = Topic(
+    'driveline/joint_states',
+    Joints('sensor_msgs/msg/JointState', JOINTS),
+    'driveline',
+    (
+        Signal('joint_position', 'rad', '(4,) driveshaft is theta_sr, the others begin at 0'),
+        Signal('joint_speed', 'rad/s', '(4,) w_m, w_p, w_r, w_sr'),
+        Signal('joint_effort', 'N m', '(4,) C_m, transmitted C_f, C_load, shaft torque'),
+    ),
+)
+SLIP = Topic(
+    'clutch/slip',
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
+    'driveline',
+    (Signal('slip_speed', 'rad/s', 'w_d = w_m - w_p'),),
+)
+VEHICLE_SPEED = Topic(
+    'vehicle/twist',
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
+    'driveline',
+    (Signal('vehicle_speed', 'm/s', 'V_x'),),
+)
+VEHICLE_ACCEL = Topic(
+    'vehicle/accel',
+    Scalar('geometry_msgs/msg/AccelStamped', 'accel.linear.x'),
+    'driveline',
+    (Signal('vehicle_accel', 'm/s^2', 'A_x'),),
+)
+TORQUE_DEMAND = _torque(
+    'engine/torque_demand', 'engine', 'torque_demand', "the driver's demand at t_k"
+)
+ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
+LOAD_TORQUE = _torque('load/torque', 'load', 'load_torque', 'C_load, held over the period')
+SLIP_REFERENCE = Topic(
+    'clutch/slip_reference',
+    PreviewPoints('trajectory_msgs/msg/JointTrajectory', 'clutch_slip'),
+    'reference',
+    (
+        Signal('slip_reference', 'rad/s', '(P+1,) column i is i x 10 ms ahead'),
+        Signal('slip_reference_rate', 'rad/s^2', '(P+1,) over the period that follows'),
+    ),
+)
+CONTROLLER_STATUS = _status(
+    'controller/status',
+    'controller',
+    status_name='controller',
+    signals=(Signal('status', '', 'the (key, value) pairs'),),
+)
+TORQUE_REQUEST = _torque(
+    'clutch/torque_request', 'controller', 'torque_request', 'before saturation'
+)
+ENGINE_REQUEST = _torque(
+    'engine/torque_request',
+    'controller',
+    'engine_torque_request',
+    'asked of the engine',
+    when=_two_input,
+)
+ACTUATOR_TORQUE = _torque_points(
+    'actuator/torque', 'actuator', 'actuator_torque', '(11,) at 0, 1, ..., 10 ms after t_k'
+)
+CLUTCH_TORQUE = _torque_points(
+    'clutch/torque', 'clutch', 'clutch_torque', '(11,) as actuator_torque, after wear'
+)
+RECORDER_ACK = Topic('recorder/ack', StampOnly('std_msgs/msg/Header'), 'recorder')
+CONTROLLER_TIMING = _status('controller/timing', 'controller', every_tick=False, wall_clock=True)
+DIAGNOSTICS = _status(
+    '/diagnostics', 'driveline, engine, actuator', every_tick=False, wall_clock=True
+)
+
+TOPICS = tuple(each for each in tuple(globals().values()) if isinstance(each, Topic))
+"""All of the above: `run_info`, then the topics of each tick, `recorder/ack` last of them."""
+
+
+def all_topics() -> tuple[Topic, ...]:
+    """Return the table."""
+    return TOPICS
+
+
+def recorded_topics(run: RunKind) -> tuple[Topic, ...]:
+    """Return the topics that the recording of a run has, in writing order."""
+    return tuple(topic for topic in TOPICS if topic.recorded_in(run))
+
+
+def tick_names() -> frozenset[str]:
+    """Return the names of the topics that come with every tick from the owner of time."""
+    return frozenset(topic.name for topic in TOPICS if topic.is_tick)
+
+
+def all_signals() -> tuple[Signal, ...]:
+    """Return every signal: numbers, then text, and last what only some runs have."""
+    ranked = [
+        ((topic.when is not None, not signal.unit), signal)
+        for topic in TOPICS
+        for signal in topic.signals
+    ]
+    return tuple(signal for _, signal in sorted(ranked, key=itemgetter(0)))

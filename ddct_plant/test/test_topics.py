@@ -1,0 +1,34 @@
+"""The order of signals in a run's hash and tables, and their names there."""
+
+import pytest
+
+from ddct_plant.graph.topics import Signal, all_signals
+
+
+def test_signals_are_numbers_then_text_then_what_only_some_runs_have():
+    assert [signal.name for signal in all_signals()] == [
+        'joint_position',
+        'joint_speed',
+        'joint_effort',
+        'slip_speed',
+        'vehicle_speed',
+        'vehicle_accel',
+        'torque_demand',
+        'engine_torque',
+        'load_torque',
+        'slip_reference',
+        'slip_reference_rate',
+        'torque_request',
+        'actuator_torque',
+        'clutch_torque',
+        'status',
+        'engine_torque_request',
+    ]
+
+
+@pytest.mark.parametrize(
+    ('unit', 'column'),
+    [('rad', 'x_rad'), ('rad/s^2', 'x_rad_s2'), ('N m', 'x_n_m'), ('m/s', 'x_m_s')],
+)
+def test_a_column_is_called_by_the_signal_and_its_unit(unit, column):
+    assert Signal('x', unit, '').column == column

@@ -1,0 +1,68 @@
+"""Topics are named in one table: no other module spells them, and the interfaces page agrees."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ddct_plant.graph import topics
+from ddct_plant.graph.topics import TOPICS, Topic
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+TABLE = Path(topics.__file__).name
+NAMES = {
+    *(topic.name for topic in TOPICS),
+    *(topic.resolved_name for topic in TOPICS),
+    topics.TICKS_STATUS,
+    topics.SAFE_STATE,
+}
+PAGE = (ROOT / 'docs' / 'interfaces.md').read_text(encoding='utf-8')
+
+
+def product_files() -> Iterator[Path]:
+    for package in PACKAGES:
+        yield from (ROOT / package / package).rglob('*.py')
+
+
+def test_no_name_of_a_topic_is_spelled_outside_the_table() -> None:
+    spelled = [
+        f'{file.relative_to(ROOT)}:{node.lineno}: {node.value}'
+        for file in product_files()
+        if file != ROOT / 'ddct_plant' / 'ddct_plant' / 'graph' / TABLE
+        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
+        if isinstance(node, ast.Constant) and node.value in NAMES
+    ]
+    assert spelled == []
+
+
+def test_no_two_entries_have_the_same_name_or_signal() -> None:
+    signals = [signal.name for signal in topics.all_signals()]
+    assert len({topic.name for topic in TOPICS}) == len(TOPICS)
+    assert len(set(signals)) == len(signals)
+
+
+def rows() -> dict[str, list[str]]:
+    """Return by topic the cells of its row on the page: type, who publishes it, content."""
+    table = PAGE.partition('## Topics\n')[2].partition('\n\n')[0]
+    lines = [line.strip('| ').split(' | ', 3) for line in table.splitlines()[2:]]
+    return {name.strip('`'): cells for name, *cells in lines}
+
+
+def test_the_page_has_a_row_for_each_topic_in_the_order_of_the_table() -> None:
+    assert list(rows()) == [topic.name for topic in TOPICS]
+
+
+@pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
+def test_the_row_of_a_topic_says_what_the_table_says(topic: Topic) -> None:
+    kind, publisher, content = rows()[topic.name]
+    assert kind == topic.type.replace('/msg/', '/')
+    assert publisher == topic.publisher
+    for signal in topic.signals:
+        unit = signal.unit.replace('^2', '²')
+        assert re.search(rf'\b{unit}(?!\S*[/²])', content), f'{signal.name} in {unit}'
+    assert ('latched' in content) == topic.latched
+    assert ('wall clock' in content) == topic.wall_clock
+    assert ('only with' in content) == (topic.when is not None)
