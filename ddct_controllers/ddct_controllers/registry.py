@@ -11,8 +11,8 @@ from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
+from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.names import require_name
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.scenario.settings import RunSettings
 

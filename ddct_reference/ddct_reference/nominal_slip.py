@@ -27,7 +27,7 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     slips = [now.slip_speed]
     for step in range(scenario.control_start_step):
         engine_torque, load_torque = engine.torque(step), load.torque(now.vehicle_speed)
-        engine_speed, shaft_speed = now.speeds[:2]
+        engine_speed, shaft_speed = now.joint_speed[:2]
         request = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
         transmitted = clutch.transmit(actuator.update(request))
         driveline.step(engine_torque, load_torque, transmitted)

@@ -56,7 +56,7 @@ def _owner(graph: InProcessGraph) -> RealtimeOwner:
 
 def _clutch_torque(graph: InProcessGraph) -> float:
     """Return the torque in N m that the driveline integrates last."""
-    return _owner(graph)._driveline.outputs().efforts[1]
+    return _owner(graph)._driveline.outputs().joint_effort[1]
 
 
 def test_every_topic_of_a_tick_is_looked_at(graph_of: GraphOf) -> None:

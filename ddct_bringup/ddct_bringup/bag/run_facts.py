@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.names import require_name
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
 from ddct_plant.graph.topics import RunKind

@@ -53,9 +53,9 @@ class ClosedLoop:
         actuator_torque = self._actuator.update(request.torque)
         engine_torque = self._engine.torque(step, request.engine_torque)
         return {
-            'joint_position': now.positions,
-            'joint_speed': now.speeds,
-            'joint_effort': now.efforts,
+            'joint_position': now.joint_position,
+            'joint_speed': now.joint_speed,
+            'joint_effort': now.joint_effort,
             'slip_speed': now.slip_speed,
             'vehicle_speed': now.vehicle_speed,
             'vehicle_accel': now.vehicle_accel,
@@ -85,9 +85,9 @@ def _measurement(
 ) -> Measurement:
     return Measurement(
         step=step,
-        engine_speed=now.speeds[0],
-        shaft_speed=now.speeds[1],
-        wheel_speed=now.speeds[2],
+        engine_speed=now.joint_speed[0],
+        shaft_speed=now.joint_speed[1],
+        wheel_speed=now.joint_speed[2],
         vehicle_speed=now.vehicle_speed,
         engine_torque=engine_torque,
         slip_reference=speeds,

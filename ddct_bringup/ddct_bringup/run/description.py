@@ -5,12 +5,12 @@ from ddct_bringup.run.source_commit import source_commit
 from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.fail_safe.driveline_info import driveline_info
-from ddct_plant.fail_safe.engine_info import engine_info
+from ddct_plant.fail_safe.guarded_engine import engine_info
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.run_info import package_version, run_info_pairs
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.ticks.tick_owner import driveline_info
 
 RunInfo = dict[str, tuple[tuple[str, str], ...]]
 """Per node name the (key, value) pairs that it latches on `run_info`."""

@@ -169,7 +169,9 @@ class ExactLoop(ClosedLoop):
         super().__init__(run, controller)
         start, request = self._driveline.outputs(), initial_state(run).torque_request
         self._exact = transmission_model(run.scenario.driveline)
-        self._state = self._exact.at_rest(tuple(start.speeds[:3]), start.positions[3], request)
+        self._state = self._exact.at_rest(
+            tuple(start.joint_speed[:3]), start.joint_position[3], request
+        )
 
     def advance(self, reply):
         super().advance(reply)

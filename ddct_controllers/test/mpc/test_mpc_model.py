@@ -46,7 +46,7 @@ def plant_run(rows, wear_gain=1.0):
     actuator, clutch = Actuator(START.torque_request), LinearClutch(wear_gain)
     speeds = []
     for request, engine, load in rows:
-        speeds.append(driveline.outputs().speeds)
+        speeds.append(driveline.outputs().joint_speed)
         driveline.step(engine, load, clutch.transmit(actuator.update(request)))
     return np.array(speeds)
 
@@ -118,7 +118,7 @@ def test_clutch_column_is_a_held_torque_beside_the_actuator():
     moved, still = (Driveline(DRIVELINE, VehicleParameters(), START) for _ in range(2))
     moved.step(40.0, 60.0, (steps + 1.0).tolist())
     still.step(40.0, 60.0, steps.tolist())
-    difference = np.subtract(moved.outputs().speeds, still.outputs().speeds)
+    difference = np.subtract(moved.outputs().joint_speed, still.outputs().joint_speed)
     assert MODEL.clutch[:3] == pytest.approx(difference[:3], rel=1e-9)
 
 

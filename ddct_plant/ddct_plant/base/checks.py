@@ -1,10 +1,15 @@
 """Checks of single values, used when parameters are built and when messages arrive."""
 
 import math
+import re
 from collections.abc import Sequence
 from numbers import Real
 
 from ddct_plant.base.errors import DdctError, ParameterError
+
+MOST_CHARACTERS = 64
+"""Of a name: file names are made of two names and an ending, and a file system takes 255 bytes."""
+_NAME = re.compile(rf'[A-Za-z0-9_][A-Za-z0-9._-]{{0,{MOST_CHARACTERS - 1}}}')
 
 
 def require_number(
@@ -36,6 +41,15 @@ def require_number(
     if at_most is not None and number > at_most:
         raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}')
     return number
+
+
+def require_name(what: str, name: object) -> None:
+    """Raise ParameterError unless `name` of `what` is plain: it becomes the name of a file."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise ParameterError(
+            f'{what} is {name!r}: use up to {MOST_CHARACTERS} letters (A to Z, a to z), digits, '
+            'dots, dashes and underscores, no dot or dash first'
+        )
 
 
 def require_rising(name: str, times: Sequence[float]) -> None:

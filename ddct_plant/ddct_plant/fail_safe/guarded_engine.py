@@ -1,7 +1,12 @@
 """The engine that a controller commands, on the grid of the ticks; knows nothing of ROS."""
 
-from ddct_plant.fail_safe.request_watch import RequestWatch, steps_to_make_up
+from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S, RequestWatch, steps_to_make_up
 from ddct_plant.models.engine import Engine
+
+
+def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> dict[str, str]:
+    """Return what the engine says of itself: whether it waits for requests, and how long [s]."""
+    return {'two_input': str(two_input).lower(), 'request_timeout_s': repr(request_timeout_s)}
 
 
 class GuardedEngine:

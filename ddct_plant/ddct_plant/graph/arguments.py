@@ -1,7 +1,10 @@
-"""What stands on a node's command line: help, ROS's arguments, and nothing else."""
+"""What stands on a node's command line: help, which is printed here, and ROS's arguments."""
 
 import difflib
-from collections.abc import Sequence
+import inspect
+import os
+import sys
+from collections.abc import Callable, Sequence
 
 import rclpy
 from rclpy.context import Context
@@ -65,3 +68,49 @@ def require_declared(node: GraphNode) -> None:
         close = difflib.get_close_matches(name, known, n=1)
         hint = f'did you mean {close[0]}?' if close else f'known: {", ".join(known)}'
         raise ParameterError(f'unknown parameter {name}: {hint}')
+
+
+def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[str]) -> str:
+    """
+    Return what `--help` prints: the task of a node, and the parameters that it declares.
+
+    The node is built for it as the arguments say, but nobody can discover it. Raise DdctError when
+    it cannot be built.
+    """
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+    try:
+        init_ros([argument for argument in arguments if argument not in HELP])
+        node = factory()
+        lines = _parameters(node)
+        node.destroy_node()
+    finally:
+        rclpy.try_shutdown()
+    # Run by `python -m`, the module calls itself __main__; its spec keeps the real name.
+    spec = sys.modules[type(node).__module__].__spec__
+    package = spec.name.partition('.')[0] if spec else type(node).__module__
+    program = f'ros2 run {package} {name}'
+    return '\n'.join(
+        [
+            f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',
+            '',
+            inspect.getdoc(type(node)) or '',
+            '',
+            'parameters, with their defaults or what is given:',
+            *lines,
+            '',
+            'examples:',
+            f'  {program}',
+            *(f'  {program} --ros-args {example}' for example in node.EXAMPLES),
+            '',
+            'All nodes of a graph take the same scenario, architecture, clutch, wear_gain, mode',
+            'and seed.',
+        ]
+    )
+
+
+def _parameters(node: GraphNode) -> list[str]:
+    lines = []
+    for parameter in node.get_parameters(node.own_parameters()):
+        description = node.describe_parameter(parameter.name).description
+        lines += [f'  {parameter.name}: {parameter.value!r}', f'      {description}']
+    return lines

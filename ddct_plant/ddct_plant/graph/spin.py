@@ -16,11 +16,11 @@ from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.graph.arguments import (
     help_asked,
     init_ros,
+    node_help,
     require_declared,
     require_ros_arguments,
 )
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.node_help import node_help
 from ddct_plant.program.command_line import run_program
 from ddct_plant.program.pulse import pulse
 from ddct_plant.program.stop_signals import stop_signals

@@ -158,8 +158,3 @@ def _fit(coefficients: PrintedCoefficients, kept: np.ndarray) -> np.ndarray:
     if not answer.success:
         raise DdctError(f'identification of the driveline does not converge: {answer.message}')
     return answer.x
-
-
-def round_significant(value: float, digits: int) -> float:
-    """Return `value` rounded to `digits` significant digits."""
-    return float(f'{value:.{digits - 1}e}')

@@ -15,13 +15,13 @@ from ddct_plant.models.vehicle import VehicleParameters
 
 @dataclass(frozen=True, slots=True)
 class DrivelineOutputs:
-    """What the driveline shows at a stamp; order engine, primary shaft, wheel, driveshaft."""
+    """The signals of a tick; joints in the order engine, primary shaft, wheel, driveshaft."""
 
-    positions: list[float]
+    joint_position: list[float]
     """(4,) rad; the driveshaft's is theta_sr, the others integrate from 0."""
-    speeds: list[float]
+    joint_speed: list[float]
     """(4,) rad/s: w_m, w_p, w_r, w_sr."""
-    efforts: list[float]
+    joint_effort: list[float]
     """(4,) N m, left limits: C_m, transmitted C_f, C_load, shaft torque at the wheel."""
     slip_speed: float
     """w_d = w_m - w_p in rad/s."""
@@ -65,9 +65,9 @@ class Driveline:
         engine_torque, clutch_torque, load_torque = self._torques
         wheel_accel = (shaft_torque - load_torque) / p.vehicle_inertia
         return DrivelineOutputs(
-            positions=[*angles, twist],
-            speeds=[engine, shaft, wheel, twist_speed],
-            efforts=[engine_torque, clutch_torque, load_torque, shaft_torque],
+            joint_position=[*angles, twist],
+            joint_speed=[engine, shaft, wheel, twist_speed],
+            joint_effort=[engine_torque, clutch_torque, load_torque, shaft_torque],
             slip_speed=engine - shaft,
             vehicle_speed=self._wheel_radius * wheel,
             vehicle_accel=self._wheel_radius * wheel_accel,

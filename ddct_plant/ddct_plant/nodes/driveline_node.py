@@ -7,7 +7,6 @@ from rclpy.clock import Clock, ClockType
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
-from ddct_plant.fail_safe.driveline_info import driveline_info
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import GraphNode, Output
@@ -32,10 +31,12 @@ from ddct_plant.graph.topics import (
 from ddct_plant.models.driveline import Driveline
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
-from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan
+from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
 
 _STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 REPLIES = Replies(ENGINE_TORQUE.name, LOAD_TORQUE.name, CLUTCH_TORQUE.name, RECORDER_ACK.name)
+TICK = (CLOCK, SLIP, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
+"""What makes a tick, in the order of sending: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
 """How often an unanswered tick is looked at."""
 
@@ -117,11 +118,7 @@ class DrivelineNode(GraphNode):
         self.create_timer(PERIOD_S, self.guarded(owner.tick), clock=_STEADY)
 
     def _create_publishers(self) -> None:
-        self._clock_out = Output(self, CLOCK)
-        self._slip_out = Output(self, SLIP)
-        self._joints_out = Output(self, JOINT_STATES)
-        self._speed_out = Output(self, VEHICLE_SPEED)
-        self._accel_out = Output(self, VEHICLE_ACCEL)
+        self._outputs = [(Output(self, topic), topic.signals) for topic in TICK]
         self._diagnostics = Output(self, DIAGNOSTICS)
         self._safe_state = SafeStateReport(self)
 
@@ -155,11 +152,8 @@ class DrivelineNode(GraphNode):
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
         now = self.driveline.outputs()
-        self._clock_out.fill(stamp).publish()
-        self._slip_out.fill(stamp, now.slip_speed).publish()
-        self._joints_out.fill(stamp, now.positions, now.speeds, now.efforts).publish()
-        self._speed_out.fill(stamp, now.vehicle_speed).publish()
-        self._accel_out.fill(stamp, now.vehicle_accel).publish()
+        for output, signals in self._outputs:
+            output.fill(stamp, *[getattr(now, signal.name) for signal in signals]).publish()
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.tell(step, stamp, why)

@@ -4,8 +4,7 @@ from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.fail_safe.engine_info import engine_info
-from ddct_plant.fail_safe.guarded_engine import GuardedEngine
+from ddct_plant.fail_safe.guarded_engine import GuardedEngine, engine_info
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import Output

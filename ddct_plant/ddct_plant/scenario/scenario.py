@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ddct_plant.base.checks import require_choice, require_number
+from ddct_plant.base.checks import require_choice, require_name, require_number
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.names import require_name
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.load import LoadParameters

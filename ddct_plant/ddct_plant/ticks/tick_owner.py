@@ -52,6 +52,16 @@ class TickPlan:
         return (*torques, self.replies.recorder) if self.require_recorder else torques
 
 
+def driveline_info(steps: int, clutch: FailSafeSettings | None = None) -> dict[str, str]:
+    """Return what the driveline says of itself: N, when and how fast it opens the clutch."""
+    clutch = clutch or FailSafeSettings(CLUTCH_TIMEOUT_S)
+    return {
+        'steps': str(steps),
+        'clutch_timeout_s': repr(clutch.request_timeout_s),
+        'fail_safe_ramp_n_m_s': repr(clutch.fail_safe_ramp_n_m_s),
+    }
+
+
 class TickOwner(ABC):
     """
     Common part of both modes: publish a tick, gather its replies, integrate, go on.

@@ -14,7 +14,7 @@ from ddct_plant.identification.coefficients import (
     computed_coefficients,
     with_fitted,
 )
-from ddct_plant.identification.fit import identify_driveline, predict_left_out, round_significant
+from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
 from ddct_plant.models.parameters import DEFAULT_DIGITS, DrivelineParameters
 from ddct_plant.models.printed import (
@@ -27,6 +27,11 @@ from ddct_plant.models.printed import (
 
 FIT = identify_driveline()
 COEFFICIENTS = PrintedCoefficients(CLUTCH_TO_SLIP, LOAD_TO_SLIP)
+
+
+def round_significant(value: float, digits: int) -> float:
+    """Return `value` rounded to `digits` significant digits."""
+    return float(f'{value:.{digits - 1}e}')
 
 
 def test_default_parameters_are_what_the_identification_derives():

@@ -49,20 +49,20 @@ def test_a_step_equals_a_tight_tolerance_integration():
         driveline.step(engine, load, nodes.tolist())
         state = integrated(engine, load, nodes, state)
     now = driveline.outputs()
-    found = [*now.speeds[:3], now.positions[3], *now.positions[:3]]
+    found = [*now.joint_speed[:3], now.joint_position[3], *now.joint_position[:3]]
     assert found == pytest.approx(state, rel=1e-10)
 
 
 def test_efforts_are_left_limits():
     driveline = make_driveline()
     driveline.step(100.0, 50.0, [float(torque) for torque in range(11)])
-    engine, clutch, load, _ = driveline.outputs().efforts
+    engine, clutch, load, _ = driveline.outputs().joint_effort
     assert (engine, clutch, load) == (100.0, 10.0, 50.0)
 
 
 def test_at_t0_the_clutch_transmits_the_worn_open_loop_torque_and_the_shaft_holds_the_load():
     now = make_driveline().outputs()
-    engine, clutch, load, shaft = now.efforts
+    engine, clutch, load, shaft = now.joint_effort
     expected = constant_slip_torque(SCENARIO.driveline, engine, load)
     assert clutch == pytest.approx(0.8 * expected, rel=1e-12)
     assert shaft == pytest.approx(load, rel=1e-12)
@@ -79,7 +79,7 @@ def test_acceleration_integrates_to_speed():
     before = driveline.outputs()
     driveline.step(200.0, 60.0, torques)
     after = driveline.outputs()
-    state = np.array([*before.speeds[:3], before.positions[3]])
+    state = np.array([*before.joint_speed[:3], before.joint_position[3]])
     half = solve_ivp(
         lambda _, x: model.a @ x + model.b @ [200.0, 175.0, 60.0],
         (0.0, 0.005),

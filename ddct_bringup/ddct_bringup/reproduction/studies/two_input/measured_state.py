@@ -40,4 +40,4 @@ class LoopWithMeasuredState(ClosedLoop):
     ) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
-        controller.observer.twist = lambda: float(self._driveline.outputs().positions[TWIST])
+        controller.observer.twist = lambda: float(self._driveline.outputs().joint_position[TWIST])
