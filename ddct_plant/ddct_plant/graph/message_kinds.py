@@ -12,6 +12,7 @@ from abc import ABC, abstractmethod
 from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from operator import attrgetter
 from typing import Any
 
@@ -109,13 +110,17 @@ class Scalar(MessageKind):
 
         return fill
 
+    @cached_property
+    def _get(self) -> Callable[[Any], float]:
+        return attrgetter(self.path)
+
     def values(self, message: Any) -> tuple[float]:
         """Return the number."""
-        return (attrgetter(self.path)(message),)
+        return (self._get(message),)
 
     def read(self, topic: str, message: Any) -> float:
         """Return the number; raise DdctError unless finite."""
-        return require_finite(topic, attrgetter(self.path)(message))
+        return require_finite(topic, self._get(message))
 
 
 @dataclass(frozen=True)
@@ -187,12 +192,14 @@ class Points(MessageKind):
             set_time(point.time_from_start, i * self.spacing_ns)
         return points
 
+    @cached_property
+    def _getters(self) -> list[Callable[[Any], Sequence[float]]]:
+        return [attrgetter(field) for field in self.fields]
+
     def values(self, message: Any) -> tuple[list[float], ...]:
         """Return one row of numbers per field; raise IndexError where one is missing."""
-        return tuple(
-            [numbers[0] for numbers in map(attrgetter(field), message.points)]
-            for field in self.fields
-        )
+        points = message.points
+        return tuple([[get(point)[0] for point in points] for get in self._getters])
 
 
 @dataclass(frozen=True)
