@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.linear import LinearController
-from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.pi import make_pi
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART

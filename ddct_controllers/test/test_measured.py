@@ -7,7 +7,7 @@ import pytest
 
 from ddct_controllers.interface import Measurement
 from ddct_controllers.measured import MOST, measured_speeds
-from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario

@@ -11,12 +11,12 @@ from qp_peers import bare_osqp, cvxpy_osqp_and_clarabel
 from replay import measurements_of, times_of
 
 from ddct_controllers.interface import Controller
-from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import BASIS, thesis_settings
+from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
-from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.program.settings import MpcSettings
-from ddct_controllers.mpc.qp.solution import QpSolution
-from ddct_controllers.mpc.thesis_mpc import BASIS, thesis_settings
+from ddct_controllers.mpc.qp.problem import QpSolution
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -75,8 +75,8 @@ def print_table(figures: dict[str, Any]) -> None:
         print(f'  not compared: {reason}')
 
 
-def _controller(settings: MpcSettings) -> PredictiveController:
-    return PredictiveController(MODEL, make_observer(RUN, MODEL), settings)
+def _controller(settings: MpcSettings) -> MpcController:
+    return MpcController(MODEL, make_observer(RUN, MODEL), settings)
 
 
 class _Solver:
@@ -92,13 +92,13 @@ class _Solver:
         return QpSolution(self._solve(f, lower, upper), 0, 'solved', 0.0)
 
 
-def _with_solver(settings: MpcSettings, make: Callable[..., Any]) -> PredictiveController:
+def _with_solver(settings: MpcSettings, make: Callable[..., Any]) -> MpcController:
     controller = _controller(settings)
     controller._solver = _Solver(make(controller.program.structure))  # type: ignore[assignment]
     return controller
 
 
-def _cvxpy(settings: MpcSettings) -> PredictiveController:
+def _cvxpy(settings: MpcSettings) -> MpcController:
     import cvxpy
 
     return _with_solver(settings, lambda structure: cvxpy_osqp_and_clarabel(cvxpy, structure)[0])

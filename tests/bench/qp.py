@@ -7,7 +7,7 @@ import numpy as np
 from qp_peers import Solve, bare_osqp, cvxpy_osqp_and_clarabel
 from qp_programs import LIMIT, SlipControl
 
-from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
 SIZES = {

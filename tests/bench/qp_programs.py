@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
-from ddct_controllers.mpc.qp.factory import DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import discretise_zoh

@@ -9,9 +9,9 @@ from support.exported_mpc import NOT_IN_C, exported, run_settings
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Controller
-from ddct_controllers.mpc.predictive_controller import PredictiveController
-from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
@@ -128,10 +128,10 @@ def test_short_plans_preview_and_soft_limits_are_exported(tmp_path, changes):
     assert np.abs(run.torque_request - other.torque_request).max() > 1.0
 
 
-def rebuilt(controller: PredictiveController, settings: MpcSettings) -> PredictiveController:
+def rebuilt(controller: MpcController, settings: MpcSettings) -> MpcController:
     """Return the controller with other settings and the same observer."""
     observer = controller.observer
-    return PredictiveController(observer.model, observer, settings)
+    return MpcController(observer.model, observer, settings)
 
 
 @pytest.mark.parametrize('name', ['mpc2', 'mpc3', 'mpc4'])

@@ -9,7 +9,7 @@ from support.exported_mpc import STATUS, compile_c
 
 from ddct_controllers.mpc.export.c_text import c_part, constants, macros
 from ddct_controllers.mpc.export.dual_form import dual_form
-from ddct_controllers.mpc.qp.factory import make_backend
+from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
 INF = np.inf

@@ -9,9 +9,8 @@ from support.exported_mpc import NOT_IN_C, ExportedController, exported, run_set
 
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.mpc.export.export_controller import export_controller
-from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
-from ddct_controllers.mpc.qp.problem import QpStructure
-from ddct_controllers.mpc.qp.solution import QpSolution
+from ddct_controllers.mpc.qp.problem import QpSolution, QpStructure
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 
 EPISODES, STEPS = 40, 8

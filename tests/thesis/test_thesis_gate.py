@@ -17,8 +17,7 @@ from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
 from ddct_bringup.reproduction.numbers.sources import SOURCES, compute
 from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS, is_number
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1
-from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
+from ddct_controllers.mpc.costs import TABLE_4_1, mpc4_settings
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction

@@ -20,10 +20,10 @@ from ddct_bringup.reproduction.studies.two_input.two_input_figures import (
 )
 from ddct_bringup.run.closed_loop import ClosedLoop
 from ddct_bringup.run.headless import run_headless, run_loop
-from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import mpc4_settings
+from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
-from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
-from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -76,7 +76,7 @@ def test_without_the_pull_the_slip_error_decays_as_the_weights_say(weight):
     model = transmission_model(SETTINGS.scenario.driveline)
     observer = make_observer(SETTINGS, model)
     settings = mpc4_settings(weight, demand_weight=0.0)
-    mpc4 = TwoInputController(model, observer, settings, SETTINGS.scenario.engine_authority)
+    mpc4 = MpcController(model, observer, settings, SETTINGS.scenario.engine_authority)
     modes = np.linalg.eigvals(closed_loop(mpc4.program, observer, model))
     level, coasting, slip = sorted(modes[modes.imag == 0.0].real)[:-4:-1]
     assert level == pytest.approx(1.0, abs=1e-8)

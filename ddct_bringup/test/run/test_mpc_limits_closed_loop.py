@@ -8,7 +8,7 @@ from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.mpc.predictive_controllers import PREDICTIVE
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

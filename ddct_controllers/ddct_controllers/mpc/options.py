@@ -6,7 +6,7 @@ from typing import Any
 
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.qp.factory import BACKENDS
+from ddct_controllers.mpc.qp.backend import BACKENDS
 from ddct_controllers.option_keys import require_known_keys
 from ddct_plant.base.checks import require_choice, require_number
 from ddct_plant.base.errors import ParameterError

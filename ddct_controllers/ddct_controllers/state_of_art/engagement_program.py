@@ -11,8 +11,7 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     TransmissionModel,
 )
-from ddct_controllers.mpc.qp.backend import QpBackend
-from ddct_controllers.mpc.qp.factory import DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, QpBackend, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.timebase import PERIOD_S
 

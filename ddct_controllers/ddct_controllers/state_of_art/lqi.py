@@ -6,7 +6,7 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.linear import LinearController
-from ddct_controllers.mpc.estimate.observer import NoiseLevels
+from ddct_controllers.mpc.estimate.gains import NoiseLevels
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.parts.slip_model import CLUTCH, ENGINE, LOAD, slip_model

@@ -4,8 +4,9 @@ import numpy as np
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.estimate.disturbances import offset_free_model, offset_free_noise
+from ddct_controllers.mpc.estimate.gains import offset_free_noise
+from ddct_controllers.mpc.estimators import make_observer
+from ddct_controllers.mpc.model.augmented import offset_free_model
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_plant.base.errors import ParameterError

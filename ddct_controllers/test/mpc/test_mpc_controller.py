@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import TABLE_4_1, thesis_settings
+from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain
+from ddct_controllers.mpc.estimate.observer import AtRest, Observer
+from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
-from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.program.settings import InputTerms
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1, make_thesis_mpc, thesis_settings
+from ddct_controllers.mpc.variants import make_mpc
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -24,7 +26,7 @@ MPC3 = thesis_settings(TABLE_4_1['mpc3'], preview=True)
 
 
 def controller(settings=MPC3):
-    return PredictiveController(MODEL, make_observer(RUN, MODEL), settings)
+    return MpcController(MODEL, make_observer(RUN, MODEL), settings)
 
 
 def measurement(step, slip=60.0, open_loop=250.0, reference=None, preview=22):
@@ -169,10 +171,9 @@ def test_the_lowest_torque_gives_way_to_the_rate_too():
 
 def test_limits_that_agree_are_the_programs_own():
     mpc = controller(replace(MPC3, inputs=(InputTerms(0.39, highest=258.0, rate_n_m_s=300.0),)))
-    before, jump = np.array([258.0]), np.zeros(1)
-    assert mpc._bounds(before, jump) == (mpc.program.lower, mpc.program.upper)
-    assert mpc._bounds(before, jump)[1] is mpc.program.upper
-    assert mpc._bounds(before + 5.0, jump)[1][:4] == pytest.approx([260.0] + [258.0] * 3)
+    assert mpc.clutch.bounds(258.0) == (mpc.program.lower, mpc.program.upper)
+    assert mpc.clutch.bounds(258.0)[1] is mpc.program.upper
+    assert mpc.clutch.bounds(263.0)[1][:4] == pytest.approx([260.0] + [258.0] * 3)
 
 
 @pytest.mark.parametrize('held', [True, False])
@@ -233,7 +234,7 @@ class _Silent:
     """A solver that never gets there."""
 
     def solve(self, f, lower, upper):
-        from ddct_controllers.mpc.qp.solution import QpSolution
+        from ddct_controllers.mpc.qp.problem import QpSolution
 
         return QpSolution(np.full(len(f), math.nan), 200, 'iteration limit', math.nan)
 
@@ -271,7 +272,7 @@ def test_the_observer_is_told_the_request_as_the_actuator_cuts_it_off(held):
     """Below 0 the actuator gives nothing, whether feedback is on or held off."""
     free = replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),))
     observer = _Listening()
-    mpc = PredictiveController(MODEL, observer, free)
+    mpc = MpcController(MODEL, observer, free)
     now = measurement(60, open_loop=-80.0, reference=[400.0] * 23)
     if held:
         mpc.hold(now)
@@ -288,20 +289,20 @@ def test_a_level_that_gives_way_leaves_room_for_rounding():
     mpc = controller(replace(MPC3, inputs=(limits,)))
     reach = 3.0 * np.arange(1, 5)
     for last in np.random.default_rng(4).uniform(234.0, 1e4, 50):
-        room = mpc._limits.bounds(last)[1][:4] - np.maximum(last - reach, 230.0)
+        room = mpc.clutch.bounds(last)[1][:4] - np.maximum(last - reach, 230.0)
         given_way = last - reach > 230.0
         assert np.all(room[given_way] > 100.0 * np.spacing(last))
         assert np.all(room < 1e-5 * (last / 1e4 + 0.01))
     for last in np.random.default_rng(5).uniform(-1e4, 96.0, 50):
-        room = np.minimum(last + reach, 100.0) - mpc._limits.bounds(last)[0][:4]
+        room = np.minimum(last + reach, 100.0) - mpc.clutch.bounds(last)[0][:4]
         given_way = last + reach < 100.0
         assert np.all(room[given_way] > 100.0 * np.spacing(abs(last)))
 
 
 def test_soft_limits_are_divided_as_the_outputs_are():
     """By K_usura; the hard ones are those of the request, which is not divided."""
-    mpc = make_thesis_mpc('mpc3', ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
-    lower, upper = mpc._limits.bounds(250.0, divisor=0.8)
+    mpc = make_mpc('mpc3', ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
+    lower, upper = mpc.clutch.bounds(250.0, divisor=0.8)
     soft = mpc.program.structure.soft_rows
     assert lower[soft] == pytest.approx([rad_s_from_rpm(750.0)] * 22)
     hard = np.setdiff1d(np.arange(len(lower)), soft)
@@ -376,7 +377,7 @@ def test_a_reset_controller_is_a_new_one(backend):
 )
 def test_bad_options_are_named(options, complaint):
     with pytest.raises(ParameterError, match=complaint):
-        make_thesis_mpc('mpc3', ControllerContext(RUN, options))
+        make_mpc('mpc3', ControllerContext(RUN, options))
 
 
 def test_options_reach_the_program():
@@ -386,7 +387,7 @@ def test_options_reach_the_program():
         'torque_rate_n_m_s': 100.0,
         'preview': True,
     }
-    mpc = make_thesis_mpc('mpc1', ControllerContext(RUN, options))
+    mpc = make_mpc('mpc1', ControllerContext(RUN, options))
     assert mpc.preview_steps == 9
     requests = [250.0] + [250.0 + a.clutch_torque for a in answers(mpc, reference=[0.0] * 10)]
     assert max(np.abs(np.diff(requests))) == pytest.approx(1.0)
@@ -395,7 +396,7 @@ def test_options_reach_the_program():
 def test_the_lowest_slip_is_soft_and_holds_where_it_can():
     """Slip of 60 rad/s: rows at all 22 periods, broken by the first and so far as must be."""
     free, limited = (
-        make_thesis_mpc('mpc3', ControllerContext(RUN, options))
+        make_mpc('mpc3', ControllerContext(RUN, options))
         for options in ({}, {'lowest_slip_rpm': 600.0})
     )
     assert limited.program.structure.soft_rows.tolist() == list(range(4, 26))
@@ -406,5 +407,7 @@ def test_the_lowest_slip_is_soft_and_holds_where_it_can():
 
 
 def test_a_second_input_is_refused():
-    with pytest.raises(ParameterError, match='2 inputs given: PredictiveController decides 1'):
+    with pytest.raises(
+        ParameterError, match='2 inputs given: without an engine authority it decides 1'
+    ):
         controller(replace(MPC3, inputs=(InputTerms(0.1), InputTerms(0.1))))

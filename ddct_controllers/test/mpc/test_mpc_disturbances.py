@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext
-from ddct_controllers.mpc.estimate.disturbances import (
+from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain, offset_free_noise
+from ddct_controllers.mpc.estimate.observer import AtRest, Observer
+from ddct_controllers.mpc.model.augmented import (
     offset_free_model,
-    offset_free_noise,
     require_detectable,
+    with_disturbances,
 )
-from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -19,9 +20,8 @@ from ddct_controllers.mpc.model.transmission_model import (
     STATES,
     TORSION_SPEED,
     transmission_model,
-    with_disturbances,
 )
-from ddct_controllers.mpc.offset_free_mpc import make_offset_free_mpc, make_torsion_mpc
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -129,21 +129,21 @@ def test_the_gain_is_what_the_covariance_recursion_settles_on():
 
 
 def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
-    slip, torsion = make_torsion_mpc(ControllerContext(SETTINGS, {})).settings.outputs
+    slip, torsion = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {})).settings.outputs
     assert (slip.output, torsion.output) == (SLIP_SPEED, TORSION_SPEED)
     assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.total_ratio)
 
 
 def test_options_change_what_they_say():
     options = {'torsion_weight': 0.0, 'preview': False, 'load_drift_n_m': 1.0}
-    controller = make_torsion_mpc(ControllerContext(SETTINGS, options))
+    controller = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, options))
     assert controller.settings.outputs[1].weight == 0.0
     assert controller.preview_steps == 0
-    default = make_torsion_mpc(ControllerContext(SETTINGS, {}))
+    default = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {}))
     assert not np.allclose(controller.observer.gain, default.observer.gain)
 
 
-@pytest.mark.parametrize('make', [make_offset_free_mpc, make_torsion_mpc])
+@pytest.mark.parametrize('make', [PREDICTIVE['mpc_offset_free'], PREDICTIVE['mpc_torsion']])
 @pytest.mark.parametrize(
     ('options', 'complaint'),
     [
@@ -162,17 +162,17 @@ def test_bad_options_are_named(make, options, complaint):
 
 def test_a_negative_torsion_weight_is_refused():
     with pytest.raises(ParameterError, match='mpc_torsion.torsion_weight is -1'):
-        make_torsion_mpc(ControllerContext(SETTINGS, {'torsion_weight': -1.0}))
+        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {'torsion_weight': -1.0}))
 
 
 def test_a_torsion_weight_whose_square_is_infinite_is_refused():
     with pytest.raises(ParameterError, match='mpc_torsion.torsion_weight is .* at most'):
-        make_torsion_mpc(ControllerContext(SETTINGS, {'torsion_weight': 1e200}))
+        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {'torsion_weight': 1e200}))
 
 
 def test_a_torsion_weight_is_no_key_of_the_other_controller():
     with pytest.raises(ParameterError, match='torsion_weight is not a key of mpc_offset_free'):
-        make_offset_free_mpc(ControllerContext(SETTINGS, {'torsion_weight': 1.0}))
+        PREDICTIVE['mpc_offset_free'](ControllerContext(SETTINGS, {'torsion_weight': 1.0}))
 
 
 def test_behind_a_stiffer_half_shaft_the_errors_are_found_too():

@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.qp.backend import QpBackend
-from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, QpBackend, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
 ERROR = {'daqp': 1e-7, 'osqp': 1e-4}

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.qp.factory import BACKENDS, DEFAULT_BACKEND, make_backend
+from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.errors import DdctError, ParameterError
 
@@ -106,7 +106,7 @@ def test_a_solver_is_imported_only_when_it_is_chosen():
     """Every process of a graph would pay for it."""
     program = (
         'import sys, numpy\n'
-        'from ddct_controllers.mpc.qp.factory import make_backend\n'
+        'from ddct_controllers.mpc.qp.backend import make_backend\n'
         'from ddct_controllers.mpc.qp.problem import QpStructure\n'
         'assert not {"daqp", "osqp", "scipy"} & set(sys.modules)\n'
         'make_backend("daqp", QpStructure(numpy.eye(1), numpy.eye(1)), 10)\n'

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.build import make_observer
-from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
-from ddct_controllers.mpc.model.engine_model import with_engine
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import mpc4_settings
+from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain
+from ddct_controllers.mpc.estimate.observer import AtRest, Observer
+from ddct_controllers.mpc.estimators import make_observer
+from ddct_controllers.mpc.model.augmented import with_engine
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     SLIP_ACCELERATION,
@@ -18,9 +21,7 @@ from ddct_controllers.mpc.model.transmission_model import (
     transmission_model,
 )
 from ddct_controllers.mpc.program.settings import InputTerms, OutputTerms
-from ddct_controllers.mpc.thesis_mpc4 import make_mpc4, mpc4_settings
-from ddct_controllers.mpc.two_input_mpc import TwoInputController
-from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse
 from ddct_plant.models.static_torque import constant_slip_torque
@@ -36,11 +37,11 @@ START = RUN.scenario.control_start_step
 STIFFNESS = RUN.scenario.driveline.halfshaft_stiffness
 DEMAND = RUN.scenario.engine.torque_n_m[-1]
 """From before control start on."""
-FACTORIES = {'mpc4': make_mpc4, 'mpc4_wear': make_two_input_wear_mpc}
+FACTORIES = {'mpc4': PREDICTIVE['mpc4'], 'mpc4_wear': PREDICTIVE['mpc4_wear']}
 
 
 def controller(authority=FREE, settings=MPC4):
-    return TwoInputController(MODEL, make_observer(RUN, MODEL), settings, authority)
+    return MpcController(MODEL, make_observer(RUN, MODEL), settings, authority)
 
 
 class Vehicle:
@@ -202,7 +203,7 @@ def test_each_move_ahead_has_what_the_engine_can_reach_by_then():
     vehicle = Vehicle()
     vehicle.drive_to_control_start(mpc)
     vehicle.answer(mpc)
-    assert mpc._reachable == pytest.approx(np.array([[-3.0, -6.0, -9.0], [3.0, 6.0, 9.0]]))
+    assert mpc.engine.reachable == pytest.approx(np.array([[-3.0, -6.0, -9.0], [3.0, 6.0, 9.0]]))
 
 
 def test_the_clutch_makes_up_for_what_the_engine_may_not_do():
@@ -224,7 +225,7 @@ def test_the_filter_is_told_what_the_engine_delivers():
     gain = kalman_gain(MODEL, NoiseLevels())
     observer = Listening(MODEL, gain, AtRest(STIFFNESS, initial_request=0.0))
     authority = EngineAuthority(lag_s=0.05, slew_n_m_s=400.0)
-    mpc = TwoInputController(MODEL, observer, MPC4, authority)
+    mpc = MpcController(MODEL, observer, MPC4, authority)
     commands, engine = answers(mpc, authority), EngineResponse(authority)
     delivered = [engine.deliver(DEMAND, command.engine_torque) for command in commands]
     assert heard[START:] == delivered
@@ -261,7 +262,9 @@ def test_a_reset_controller_is_a_new_one(name):
 
 
 def test_one_input_is_refused():
-    with pytest.raises(ParameterError, match='1 inputs given: TwoInputController decides 2'):
+    with pytest.raises(
+        ParameterError, match='1 inputs given: with an engine authority it decides 2'
+    ):
         controller(settings=replace(MPC4, inputs=MPC4.inputs[:1]))
 
 
@@ -314,14 +317,14 @@ def test_bad_options_are_named(name, options, complaint):
 
 def test_options_reach_the_program():
     options = {'slip_acceleration_weight': 0.05, 'demand_weight': 0.3, 'preview': True}
-    settings = make_mpc4(ControllerContext(RUN, options)).settings
+    settings = PREDICTIVE['mpc4'](ControllerContext(RUN, options)).settings
     assert settings.outputs[1].weight == 0.05
     assert settings.inputs[1].target_weight == 0.3
     assert settings.preview
 
 
 def test_the_estimate_of_the_wear_is_shown():
-    mpc = make_two_input_wear_mpc(ControllerContext(RUN, {}))
+    mpc = PREDICTIVE['mpc4_wear'](ControllerContext(RUN, {}))
     shown = float(dict(answers(mpc)[-1].status)['wear_gain_estimate'])
     assert 0.5 <= shown <= 1.5
     assert shown == mpc.observer.wear_gain

@@ -6,24 +6,19 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.estimate.disturbances import offset_free_model
-from ddct_controllers.mpc.estimate.wear_noise import WearNoise
-from ddct_controllers.mpc.model.transmission_model import (
-    STATES,
-    transmission_model,
-    with_disturbances,
-)
+from ddct_controllers.mpc.estimate.wear_model import WearNoise
+from ddct_controllers.mpc.model.augmented import offset_free_model, with_disturbances
+from ddct_controllers.mpc.model.transmission_model import STATES, transmission_model
+from ddct_controllers.mpc.program.ahead import divided
 from ddct_controllers.mpc.program.horizon import condense
-from ddct_controllers.mpc.two_input_wear_mpc import make_two_input_wear_mpc
-from ddct_controllers.mpc.wear_mpc import make_wear_mpc
-from ddct_controllers.mpc.wear_prediction import divided
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = SETTINGS.scenario.driveline
-MAKERS = {'mpc_wear': make_wear_mpc, 'mpc4_wear': make_two_input_wear_mpc}
+MAKERS = {'mpc_wear': PREDICTIVE['mpc_wear'], 'mpc4_wear': PREDICTIVE['mpc4_wear']}
 
 
 def make_controller(options=None, name='mpc_wear'):

@@ -3,11 +3,18 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.estimate.disturbances import offset_free_model
-from ddct_controllers.mpc.estimate.observer import NoiseLevels
-from ddct_controllers.mpc.estimate.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
-from ddct_controllers.mpc.estimate.wear_noise import GAIN, SIZE, WearNoise
+from ddct_controllers.mpc.estimate.gains import NoiseLevels
+from ddct_controllers.mpc.estimate.observer import AtRest
+from ddct_controllers.mpc.estimate.wear_model import (
+    GAIN,
+    HIGHEST_GAIN,
+    LOWEST_GAIN,
+    SIZE,
+    WearNoise,
+    within_bounds,
+)
 from ddct_controllers.mpc.estimate.wear_observer import LEAST_TORQUE_N_M, WearObserver
+from ddct_controllers.mpc.model.augmented import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -30,8 +37,7 @@ def make_observer(**noise):
         offset_free_model(DRIVELINE),
         NOISE,
         WearNoise(**noise),
-        DRIVELINE.halfshaft_stiffness,
-        initial_request=0.0,
+        AtRest(DRIVELINE.halfshaft_stiffness, initial_request=0.0),
     )
 
 

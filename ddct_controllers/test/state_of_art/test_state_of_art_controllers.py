@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.mpc.qp.solution import QpSolution
+from ddct_controllers.mpc.qp.problem import QpSolution
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s

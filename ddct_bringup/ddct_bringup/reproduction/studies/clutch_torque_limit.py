@@ -19,7 +19,7 @@ from ddct_controllers.mpc.model.transmission_model import (
     TORSION_SPEED,
     transmission_model,
 )
-from ddct_controllers.mpc.qp.factory import make_backend
+from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in

@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.mpc.predictive_controller import PredictiveController
+from ddct_controllers.mpc.controller import MpcController
 
 
 class OpenLoopUnknown(Controller):
     """The MPC takes its own torque for all there is, while C_fOL acts beside it."""
 
-    def __init__(self, controller: PredictiveController) -> None:
+    def __init__(self, controller: MpcController) -> None:
         self._controller = controller
         self.preview_steps = controller.preview_steps
 
@@ -34,7 +34,7 @@ class OpenLoopOff(Controller):
     otherwise from the torque that there was.
     """
 
-    def __init__(self, controller: PredictiveController, *, from_zero: bool = False) -> None:
+    def __init__(self, controller: MpcController, *, from_zero: bool = False) -> None:
         self._controller = controller
         self._from_zero = from_zero
         self.preview_steps = controller.preview_steps

@@ -11,6 +11,9 @@ from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow, thesis_settings
+from ddct_controllers.mpc.estimators import stationary_filter
 from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL, Knowledge
 from ddct_controllers.mpc.model.transmission_model import (
     REQUEST,
@@ -18,9 +21,7 @@ from ddct_controllers.mpc.model.transmission_model import (
     TransmissionModel,
     transmission_model,
 )
-from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_controllers.mpc.thesis_mpc import BASIS, TABLE_4_1, TableRow, slip_mpc, thesis_settings
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.scenario import Scenario
@@ -40,7 +41,7 @@ class Reading:
     """In place of the one that is known of."""
     noise_rpm: float = 1.0
     """Of the measured w_d."""
-    beside: Callable[[PredictiveController], Controller] = lambda controller: controller
+    beside: Callable[[MpcController], Controller] = lambda controller: controller
     """What becomes of C_fOL beside the controller."""
     architecture: str = 'detailed'
 
@@ -48,8 +49,8 @@ class Reading:
         """Return the metrics of its run in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
         settings = self.change(thesis_settings(row))
-        mpc = slip_mpc(run, settings, self.knowledge, self.model, noise_rpm=self.noise_rpm)
-        return scored_run(run, self.beside(mpc))
+        parts = stationary_filter(run, self.knowledge, self.model, noise_rpm=self.noise_rpm)
+        return scored_run(run, self.beside(MpcController(*parts, settings)))
 
 
 def readings() -> Study:

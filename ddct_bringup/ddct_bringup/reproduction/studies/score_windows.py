@@ -13,8 +13,8 @@ from ddct_bringup.reproduction.studies.static_controller import StaticController
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.mpc.knowledge import FULL
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -5,8 +5,7 @@ from dataclasses import replace
 from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.scored_run import FIGURE_HEADERS, figures, scored_run
 from ddct_bringup.reproduction.studies.study import Study
-from ddct_controllers.mpc.offset_free_mpc import default_torsion_weight
-from ddct_controllers.mpc.thesis_mpc import BASIS
+from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.settings import RunSettings
 

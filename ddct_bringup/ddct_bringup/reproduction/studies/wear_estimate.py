@@ -7,8 +7,8 @@ from ddct_bringup.reproduction.studies.disturbed_run import NoisySpeeds, slip_af
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, LOAD_STEP_S, WEAR_GAINS
 from ddct_controllers.interface import ControllerContext
-from ddct_controllers.mpc.estimate.observer import NoiseLevels
-from ddct_controllers.mpc.wear_mpc import make_wear_mpc
+from ddct_controllers.mpc.estimate.gains import NoiseLevels
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.settings import RunSettings
@@ -42,7 +42,7 @@ def wear_estimate() -> Study:
 
 def estimates(settings: RunSettings, noise_rad_s: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the estimate of K_usura and w_d in rad/s, (steps + 1,), with the load step."""
-    controller = make_wear_mpc(ControllerContext(settings, {}))
+    controller = PREDICTIVE['mpc_wear'](ControllerContext(settings, {}))
     gains: list[float] = []
     slip = slip_after_load_step(
         settings,

@@ -1,7 +1,7 @@
 """What we compute for the numbers of Chapter 4, predictive control."""
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.mpc.thesis_mpc import TABLE_4_1
+from ddct_controllers.mpc.costs import TABLE_4_1
 
 _OUTPUT_WEIGHT, _RATE_WEIGHT = 1.0, 0.1
 """Defaults of MATLAB's mpcDesigner; its slider multiplies the one and divides the other."""

@@ -2,16 +2,20 @@
 
 import numpy as np
 
-from ddct_controllers.mpc.estimate.observer import NoiseLevels
-from ddct_controllers.mpc.estimate.wear_bounds import HIGHEST_GAIN, LOWEST_GAIN, within_bounds
-from ddct_controllers.mpc.estimate.wear_noise import (
+from ddct_controllers.interface import Status
+from ddct_controllers.mpc.estimate.gains import NoiseLevels
+from ddct_controllers.mpc.estimate.observer import AtRest
+from ddct_controllers.mpc.estimate.wear_model import (
     CLUTCH_ERROR,
     DRIVELINE,
     GAIN,
+    HIGHEST_GAIN,
     LOAD_ERROR,
+    LOWEST_GAIN,
     SIZE,
     WearNoise,
     process_noise,
+    within_bounds,
 )
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
@@ -43,20 +47,14 @@ class WearObserver:
         model: TransmissionModel,
         noise: NoiseLevels,
         wear: WearNoise,
-        halfshaft_stiffness: float,
-        initial_request: float,
+        start: AtRest,
     ) -> None:
-        """
-        Take the `offset_free_model` of a new clutch.
-
-        Before the first measurement the half-shaft of `halfshaft_stiffness` in N m/rad balances
-        the load and the actuator is at rest on `initial_request` in N m.
-        """
+        """Take the `offset_free_model` of a new clutch, and how the estimate starts."""
         driveline, actuator = slice(DRIVELINE), slice(DRIVELINE, STATES)
         self._model = model
         self._wear = wear
-        self._twist_per_torque = 1.0 / halfshaft_stiffness
-        self._initial_request = initial_request
+        self._initial_request = start.initial_request
+        self._twist_per_torque = 1.0 / start.halfshaft_stiffness
         self._transition = np.eye(SIZE)
         self._transition[driveline, driveline] = model.a[driveline, driveline]
         self._transition[driveline, CLUTCH_ERROR:] = model.a[driveline, STATES:]
@@ -93,6 +91,15 @@ class WearObserver:
     def wear_gain_at_bound(self) -> bool:
         """Whether a bound holds the estimate, so that the error of C_f has the rest."""
         return self.wear_gain in (LOWEST_GAIN, HIGHEST_GAIN)
+
+    @property
+    def status(self) -> Status:
+        """The estimate, its standard deviation and whether a bound holds it."""
+        return (
+            ('wear_gain_estimate', repr(self.wear_gain)),
+            ('wear_gain_deviation', repr(self.wear_gain_deviation)),
+            ('wear_gain_at_bound', str(self.wear_gain_at_bound).lower()),
+        )
 
     def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """

@@ -6,17 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_controllers.interface import Controller
+from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
-from ddct_controllers.mpc.export.dual_form import DualForm, dual_form
-from ddct_controllers.mpc.export.known_columns import known_columns
+from ddct_controllers.mpc.export.dual_form import DualForm, dual_form, known_columns
+from ddct_controllers.mpc.inputs import CLUTCH, ENGINE, ROOM
 from ddct_controllers.mpc.model.transmission_model import MEASURED
-from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_controllers.mpc.program.horizon import CondensedProgram
-from ddct_controllers.mpc.program.limits import CLUTCH, ROOM
 from ddct_controllers.mpc.program.settings import MpcSettings
-from ddct_controllers.mpc.two_input_mpc import ENGINE, TwoInputController
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.engine import EngineAuthority
 
 CHANGES_PER_ROW = 10
 """Changes of the active set allowed for each row that can be active, if no limit is given."""
@@ -33,16 +32,15 @@ class ControllerTables:
     """Vectors and matrices."""
 
 
-def exportable(controller: Controller, name: str) -> tuple[PredictiveController, Observer]:
+def exportable(controller: Controller, name: str) -> tuple[MpcController, Observer]:
     """Return controller and observer; raise ParameterError when they do what the C does not."""
-    if not isinstance(controller, PredictiveController):
+    if not isinstance(controller, MpcController):
         raise ParameterError(
             f'{name} cannot be exported: it is not a predictive controller; choose one, as mpc3 is'
         )
     observer = controller.observer
     # Classes made from these do something else, which would be missing in C without a word.
-    expected = TwoInputController if controller.commands_engine else PredictiveController
-    if type(controller) is not expected or type(observer) is not Observer:
+    if type(controller) is not MpcController or type(observer) is not Observer:
         raise ParameterError(
             f'{name} cannot be exported: {type(controller).__name__} with its '
             f'{type(observer).__name__} does more than there is in C; choose another, such as mpc3'
@@ -50,14 +48,14 @@ def exportable(controller: Controller, name: str) -> tuple[PredictiveController,
     return controller, observer
 
 
-def controller_tables(controller: PredictiveController, observer: Observer) -> ControllerTables:
+def controller_tables(controller: MpcController, observer: Observer) -> ControllerTables:
     """Return the tables of what `exportable` has returned."""
     settings, program, model = controller.settings, controller.program, observer.model
     form = dual_form(program.structure)
     columns = known_columns(program, len(model.a), settings)
     clutch = settings.inputs[CLUTCH]
     limits_rate = math.isfinite(clutch.rate_n_m_s)
-    engine = _engine_macros(controller) if isinstance(controller, TwoInputController) else {}
+    engine = _engine_macros(controller.authority) if controller.authority else {}
     return ControllerTables(
         public={
             'PERIOD_S': PERIOD_S,
@@ -107,7 +105,7 @@ def _start(observer: Observer) -> dict[str, np.ndarray]:
 
 
 def _rows(
-    controller: PredictiveController, form: DualForm, shift: np.ndarray, *, limits_rate: bool
+    controller: MpcController, form: DualForm, shift: np.ndarray, *, limits_rate: bool
 ) -> dict[str, np.ndarray]:
     """Return the tables that have one entry or row for each constraint."""
     program, scale = controller.program, form.scale
@@ -142,8 +140,7 @@ def _periods_ahead(program: CondensedProgram, of_input: int) -> np.ndarray:
     return periods
 
 
-def _engine_macros(controller: TwoInputController) -> dict[str, float]:
-    authority = controller.authority
+def _engine_macros(authority: EngineAuthority) -> dict[str, float]:
     return {
         'MOST_DEVIATION': authority.deviation_n_m,
         'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,

@@ -1,10 +1,14 @@
-"""A quadratic program in the coordinates in which the exported solver works."""
+"""A condensed program as the exported C has it: its solver's coordinates, its one known vector."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_controllers.mpc.model.transmission_model import SLIP_ACCELERATION, SLIP_SPEED
+from ddct_controllers.mpc.program.horizon import CondensedProgram
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.problem import QpStructure
+from ddct_plant.base.timebase import PERIOD_S
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,3 +60,76 @@ def dual_form(structure: QpStructure) -> DualForm:
     weight = structure.soft_weight or 1.0  # None when no row is soft
     relaxation = np.where(soft[kept], scale**2 / weight, 0.0)
     return DualForm(to_dual, to_dual.T, normals[kept] * scale[:, None], relaxation, kept, scale)
+
+
+@dataclass(frozen=True, eq=False)
+class KnownColumns:
+    """
+    f = gradient @ known, and bounds less shift @ the first of known.
+
+    known holds the observer's state, the inputs before the first move, C_m as measured, C_load,
+    the open loop and its jump, then the engine's deviation if C_m is commanded, and the references
+    of w_d and of dw_d/dt.
+    """
+
+    gradient: np.ndarray
+    shift: np.ndarray
+    """All columns but those of the references."""
+    slip_references: int
+    rate_references: int
+
+
+def known_columns(program: CondensedProgram, states: int, settings: MpcSettings) -> KnownColumns:
+    """Return the program of a controller whose observer has `states` states."""
+    slip, rate = _references(program.gradient, settings)
+    inputs = len(settings.inputs)
+    return KnownColumns(
+        np.hstack([_known(program.gradient, states, inputs), slip, rate]),
+        _known(program.shift, states, inputs, jump=True),
+        slip.shape[1],
+        rate.shape[1],
+    )
+
+
+def _known(matrix: np.ndarray, states: int, inputs: int, *, jump: bool = False) -> np.ndarray:
+    """
+    Return the columns without references of `matrix`, which has them as `CondensedProgram` does.
+
+    With C_m commanded the program's last two states are the demand and the deviation, and C_m is
+    not among the known inputs. The open loop is the clutch's target, which only the cost knows;
+    the engine's is zero. Only the clutch torque has a jump, and only the bounds depend on it.
+    """
+    own, rest = np.split(matrix, [states], axis=1)
+    deviation = np.zeros((len(matrix), 0))
+    if inputs == 1:
+        before, engine, load = np.split(rest[:, :3], 3, axis=1)
+        after = rest[:, 3:]
+    else:
+        engine, deviation, before, load = np.split(rest[:, :5], [1, 2, 4], axis=1)
+        after = rest[:, 5:]
+    target, change = after[:, :1], np.zeros((len(matrix), 1))
+    if jump:
+        target, change = change, target
+    return np.hstack([own, before, engine, load, target, change, deviation])
+
+
+def _references(gradient: np.ndarray, settings: MpcSettings) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return the columns for the references of w_d and of dw_d/dt; none for one without effect.
+
+    With preview a column is a period's. Otherwise the present values are held, or that of w_d is
+    continued along its tangent.
+    """
+    periods, outputs = settings.prediction_steps, [terms.output for terms in settings.outputs]
+    columns = gradient[:, -periods * len(outputs) :].reshape(-1, periods, len(outputs))
+    slip = columns[:, :, np.equal(outputs, SLIP_SPEED)].sum(axis=2)
+    rate = columns[:, :, np.equal(outputs, SLIP_ACCELERATION)].sum(axis=2)
+    if not settings.preview:
+        ahead = PERIOD_S * np.arange(1, periods + 1)
+        along = slip @ ahead if settings.along_tangent else 0.0
+        slip, rate = slip.sum(1, keepdims=True), (rate.sum(1) + along)[:, None]
+    return _if_any(slip), _if_any(rate)
+
+
+def _if_any(columns: np.ndarray) -> np.ndarray:
+    return columns if columns.any() else columns[:, :0]

@@ -71,6 +71,8 @@ def _require_free(folder: Path, *, overwrite: bool) -> None:
 
 def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
     note = remark(about)
+    engine = ['engine.c'] if tables.public['COMMANDS_ENGINE'] else []
+    parts = ['solver.c', *engine, 'controller.c']  # in the order of their use
     return {
         HEADER: f'{note}\n'
         + c_part('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),
@@ -80,17 +82,11 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
                 f'#include <limits.h>\n#include <math.h>\n\n#include "{HEADER}"',
                 macros(tables.private),
                 constants(tables.arrays),
-                '\n'.join(c_part(part) for part in _parts(tables)),
+                '\n'.join(c_part(part) for part in parts),
             ]
         ),
         EXAMPLE: f'{note}\n{c_part("example.c")}',
     }
-
-
-def _parts(tables: ControllerTables) -> list[str]:
-    """Return the files of functions that the controller needs, in the order of their use."""
-    engine = ['engine.c'] if tables.public['COMMANDS_ENGINE'] else []
-    return ['solver.c', *engine, 'controller.c']
 
 
 def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:

@@ -100,16 +100,3 @@ def _with_last_request(
     b = np.vstack([b, [1.0, 0.0, 0.0]])
     c = np.hstack([sampled.c, through])
     return TransmissionModel(a, b, c, d, np.concatenate([clutch, np.zeros(STATES - 4)]))
-
-
-def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> TransmissionModel:
-    """Append constant disturbances that drive the nine states through `columns` (9, count)."""
-    count = columns.shape[1]
-    lower = np.zeros((count, len(model.a)))
-    return TransmissionModel(
-        np.block([[model.a, columns], [lower, np.eye(count)]]),
-        np.vstack([model.b, np.zeros((count, 3))]),
-        np.hstack([model.c, np.zeros((len(model.c), count))]),
-        model.d,
-        np.concatenate([model.clutch, np.zeros(count)]),
-    )

@@ -1,19 +1,26 @@
-"""The interface behind which solvers of quadratic programs are swapped."""
+"""The interface behind which solvers of quadratic programs are swapped, and solvers by name."""
 
 import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
-from ddct_controllers.mpc.qp.problem import QpStructure
-from ddct_controllers.mpc.qp.scaling import scale
-from ddct_controllers.mpc.qp.solution import QpSolution, QpStatus
-from ddct_plant.base.errors import ParameterError
+from ddct_controllers.mpc.qp.problem import QpSolution, QpStatus, QpStructure, scale
+from ddct_plant.base.checks import require_choice
+from ddct_plant.base.errors import DdctError, ParameterError
 
 Vector = np.ndarray | Sequence[float]
 
+BACKENDS = ('daqp', 'osqp')
+"""Their names: of a module here, and of the package that does the work."""
+DEFAULT_BACKEND = 'daqp'
+"""The fastest at equal accuracy; `make bench` measures both."""
+ITERATION_LIMITS = {'daqp': 1000, 'osqp': 20_000}
+"""Ten and four times what the hardest programs of `make bench` need; OSQP's are far cheaper."""
 _LARGEST = sys.float_info.max
 
 
@@ -90,3 +97,31 @@ class QpBackend(ABC):
             raise ParameterError(
                 f'QP: row {row} must lie between {lower[row]:g} and {upper[row]:g}: no number does'
             )
+
+
+def make_backend(
+    name: str, structure: QpStructure, iteration_limit: int | None = None
+) -> QpBackend:
+    """
+    Return the backend called `name` for programs of `structure`; its own limit if none is given.
+
+    Only its module and its solver are imported. Raise ParameterError for an unknown name or a
+    limit below 1, DdctError when the backend's package is not installed.
+    """
+    require_choice('QP backend', name, BACKENDS)
+    limit = ITERATION_LIMITS[name] if iteration_limit is None else iteration_limit
+    module = import_module(f'ddct_controllers.mpc.qp.{name}_backend')
+    backend: QpBackend = module.Backend(structure, limit)
+    return backend
+
+
+def solver_package(name: str) -> Any:
+    """Return the package of the backend called `name`; raise DdctError if it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        (other,) = set(BACKENDS) - {name}
+        raise DdctError(
+            f'the QP backend {name} needs the package {name}: pip install {name}, or choose '
+            f'{other}'
+        ) from error

@@ -1,11 +1,9 @@
 """DAQP, a dual active-set solver of dense programs, as a QP backend."""
 
-from typing import Any
-
 import numpy as np
 
-from ddct_controllers.mpc.qp.backend import QpBackend
-from ddct_controllers.mpc.qp.solution import QpStatus
+from ddct_controllers.mpc.qp.backend import QpBackend, solver_package
+from ddct_controllers.mpc.qp.problem import QpStatus
 from ddct_plant.base.errors import DdctError
 
 _SOFT = 8
@@ -25,7 +23,7 @@ _STATUS: dict[int, QpStatus] = {
 """All other flags say that it stopped without an answer."""
 
 
-class DaqpBackend(QpBackend):
+class Backend(QpBackend):
     """
     Active sets are warm-started; the factorisation of the hessian is made once.
 
@@ -41,7 +39,7 @@ class DaqpBackend(QpBackend):
         self._sense[scaled.soft_rows] = _SOFT
         self._bounded = b''
         unbounded = np.full(rows, _UNBOUNDED)
-        self._model = _daqp().Model()
+        self._model = solver_package('daqp').Model()
         # DAQP counts from 1 and stops before its limit.
         self._model.settings = _SETTINGS | {'iter_limit': self._iteration_limit + 1}
         flag, _ = self._model.setup(
@@ -69,13 +67,3 @@ class DaqpBackend(QpBackend):
         y, _, flag, info = self._model.solve()
         iterations = min(info['iterations'], self._iteration_limit)
         return y, iterations, _STATUS.get(flag, 'iteration limit')
-
-
-def _daqp() -> Any:
-    try:
-        import daqp
-    except ImportError as error:
-        raise DdctError(
-            'the QP backend daqp needs the package daqp: pip install daqp, or choose osqp'
-        ) from error
-    return daqp

@@ -1,13 +1,10 @@
 """OSQP, an operator-splitting (ADMM) solver of sparse programs, as a QP backend."""
 
-from typing import Any
-
 import numpy as np
 from scipy import sparse
 
-from ddct_controllers.mpc.qp.backend import QpBackend
-from ddct_controllers.mpc.qp.solution import QpStatus
-from ddct_plant.base.errors import DdctError
+from ddct_controllers.mpc.qp.backend import QpBackend, solver_package
+from ddct_controllers.mpc.qp.problem import QpStatus
 
 _SETTINGS = {
     'eps_abs': 1e-6,
@@ -24,7 +21,7 @@ _STATUS: dict[int, QpStatus] = {1: 'solved', 3: 'infeasible'}
 """All other values say that it stopped without an answer."""
 
 
-class OsqpBackend(QpBackend):
+class Backend(QpBackend):
     """
     Primal and dual iterates and the step size are warm-started; soft rows get slack variables.
 
@@ -41,7 +38,7 @@ class OsqpBackend(QpBackend):
         columns = np.zeros((rows, slacks))
         columns[scaled.soft_rows, np.arange(slacks)] = 1.0 / np.sqrt(scaled.soft_weights)
         self._f = np.zeros(size + slacks)
-        self._solver = _osqp().OSQP(algebra='builtin')
+        self._solver = solver_package('osqp').OSQP(algebra='builtin')
         self._solver.setup(
             sparse.triu(sparse.block_diag([scaled.hessian, np.eye(slacks)]), format='csc'),
             self._f,
@@ -61,13 +58,3 @@ class OsqpBackend(QpBackend):
         result = self._solver.solve(raise_error=False)
         status = _STATUS.get(result.info.status_val, 'iteration limit')
         return result.x[:size], result.info.iter, status
-
-
-def _osqp() -> Any:
-    try:
-        import osqp
-    except ImportError as error:
-        raise DdctError(
-            'the QP backend osqp needs the package osqp: pip install osqp, or choose daqp'
-        ) from error
-    return osqp

@@ -1,11 +1,14 @@
-"""The part of a condensed quadratic program that stays the same from step to step."""
+"""A quadratic program: what of it stays the same from step to step, scaled, and its solution."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
+
+QpStatus = Literal['solved', 'iteration limit', 'infeasible']
 
 WORST_CONDITION = 1e10
 """Of the Hessian scaled to a unit diagonal; above, a solution has less than six digits."""
@@ -69,6 +72,64 @@ class QpStructure:
     def soft_rows(self) -> np.ndarray:
         """(number of soft rows,) their indices."""
         return np.flatnonzero(np.asarray(self.soft))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class QpSolution:
+    """The minimiser, or why there is none; `z` and `violation` are NaN unless solved."""
+
+    z: np.ndarray
+    """(n,)."""
+    iterations: int
+    """In the solver's own unit: changes of its active set (DAQP), or ADMM steps (OSQP)."""
+    status: QpStatus
+    """
+    'iteration limit' when the solver stopped short of its tolerance, 'infeasible' when the hard
+    rows contradict each other.
+    """
+    violation: float
+    """By how much the worst soft row lies outside its bounds, in that row's unit; 0 if none."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledQp:
+    """
+    A QpStructure in y = z / variables, each row of G multiplied by its entry of `rows`.
+
+    Solvers compare residuals with absolute tolerances: so these mean the same for every unit of
+    the inputs and outputs, and both solvers stop at the same accuracy. The cost is unchanged.
+    """
+
+    hessian: np.ndarray
+    """(n, n), unit diagonal."""
+    constraints: np.ndarray
+    """(m, n), rows of unit length; a row of zeros stays one."""
+    soft_rows: np.ndarray
+    """(number of soft rows,) their indices."""
+    soft_weights: np.ndarray
+    """(number of soft rows,) w of each, for slacks multiplied like their rows."""
+    variables: np.ndarray
+    """(n,) above 0."""
+    rows: np.ndarray
+    """(m,) above 0."""
+
+
+def scale(structure: QpStructure) -> ScaledQp:
+    """Return `structure` scaled by the diagonal of its hessian and the lengths of its rows."""
+    variables = 1.0 / np.sqrt(np.diag(structure.hessian))
+    constraints = structure.constraints * variables
+    lengths = np.linalg.norm(constraints, axis=1)
+    rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
+    soft_rows = structure.soft_rows
+    weight = structure.soft_weight or 0.0  # None when no row is soft
+    return ScaledQp(
+        hessian=structure.hessian * variables * variables[:, None],
+        constraints=constraints * rows[:, None],
+        soft_rows=soft_rows,
+        soft_weights=weight / rows[soft_rows] ** 2,
+        variables=variables,
+        rows=rows,
+    )
 
 
 def _matrix(name: str, given: np.ndarray) -> np.ndarray:

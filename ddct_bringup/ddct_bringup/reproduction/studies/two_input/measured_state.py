@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ddct_bringup.run.closed_loop import ClosedLoop
-from ddct_controllers.mpc.build import run_start
+from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.estimators import run_start
 from ddct_controllers.mpc.model.transmission_model import MEASURED, TransmissionModel
-from ddct_controllers.mpc.predictive_controller import PredictiveController
 from ddct_plant.scenario.settings import RunSettings
 
 TWIST = MEASURED
@@ -35,9 +35,7 @@ class MeasuredState(Observer):
 class LoopWithMeasuredState(ClosedLoop):
     """The closed loop, which lets its controller's `MeasuredState` measure the twist."""
 
-    def __init__(
-        self, settings: RunSettings, controller: PredictiveController[MeasuredState]
-    ) -> None:
+    def __init__(self, settings: RunSettings, controller: MpcController[MeasuredState]) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
         controller.observer.twist = lambda: float(self._driveline.outputs().joint_position[TWIST])

@@ -20,12 +20,12 @@ from ddct_bringup.reproduction.studies.two_input.torque_level import growth
 from ddct_bringup.reproduction.studies.two_input.two_input_figures import HEADERS, cells
 from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_bringup.thesis.table_5_1 import thesis_row
-from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import mpc4_settings
 from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MpcSettings
-from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
-from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
@@ -50,11 +50,11 @@ class Reading:
     plant: Model = transmission_model
     observer: Callable[[RunSettings, TransmissionModel], Observer] = make_observer
 
-    def controller(self, run: RunSettings) -> TwoInputController:
+    def controller(self, run: RunSettings) -> MpcController:
         """Return the controller of a run."""
         model = self.model(run.scenario.driveline, 1.0)
         observer = self.observer(run, model)
-        return TwoInputController(model, observer, self.settings, run.scenario.engine_authority)
+        return MpcController(model, observer, self.settings, run.scenario.engine_authority)
 
     def run(self) -> Trajectory:
         """Return its run in the thesis scenario."""

@@ -8,8 +8,10 @@ from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.reproduction.studies.two_input.two_input_figures import HEADERS, cells
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.mpc.build import make_observer
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import mpc4_settings
 from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     REQUEST,
@@ -18,8 +20,6 @@ from ddct_controllers.mpc.model.transmission_model import (
     transmission_model,
 )
 from ddct_controllers.mpc.program.horizon import CondensedProgram
-from ddct_controllers.mpc.thesis_mpc4 import mpc4_settings
-from ddct_controllers.mpc.two_input_mpc import TwoInputController
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.scenario.settings import RunSettings
@@ -41,7 +41,7 @@ def torque_level() -> Study:
     for pull in PULLS:
         observer = make_observer(SETTINGS, model)
         settings = mpc4_settings(demand_weight=pull)
-        mpc4 = TwoInputController(model, observer, settings, EngineAuthority())
+        mpc4 = MpcController(model, observer, settings, EngineAuthority())
         run = run_headless(SETTINGS, mpc4)
         left = run.engine_torque[-1] - run.torque_demand[-1]
         rows.append(

@@ -1,4 +1,6 @@
-"""References of the weighted outputs over the horizon."""
+"""What is known of the horizon ahead: the torques that drive the slip, and its references."""
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,9 +10,27 @@ from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.timebase import PERIOD_S
 
 
+def divided(measurement: Measurement, gain: float) -> Measurement:
+    """
+    Return what drives the slip divided by K_usura = `gain`: C_m, C_load and the references.
+
+    Slip is linear in K_usura times the request. With these and the driveline's states divided by
+    K_usura, the request obeys the equations of a new clutch.
+    """
+    if gain == 1.0:
+        return measurement
+    return replace(
+        measurement,
+        engine_torque=measurement.engine_torque / gain,
+        load_torque=measurement.load_torque / gain,
+        slip_reference=[speed / gain for speed in measurement.slip_reference],
+        slip_reference_rate=[rate / gain for rate in measurement.slip_reference_rate],
+    )
+
+
 def references(settings: MpcSettings, measurement: Measurement) -> np.ndarray:
     """
-    Return them at the periods 1..p, (p, outputs).
+    Return the references of the weighted outputs at the periods 1..p, (p, outputs).
 
     They are the coming ones with preview, else the present ones, or that of the slip along its
     tangent; those of other outputs than the slip and its rate are zero.

@@ -1,0 +1,138 @@
+"""The model predictive controller: one step, from the measurement to the command."""
+
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.measured import measured_speeds
+from ddct_controllers.mpc.estimate.observer import StateEstimator
+from ddct_controllers.mpc.inputs import CLUTCH, ENGINE, ClutchInput, CommandedEngine, KnownEngine
+from ddct_controllers.mpc.model.augmented import with_engine
+from ddct_controllers.mpc.model.transmission_model import TransmissionModel
+from ddct_controllers.mpc.program.ahead import divided, references
+from ddct_controllers.mpc.program.horizon import condense
+from ddct_controllers.mpc.program.settings import MpcSettings
+from ddct_controllers.mpc.qp.backend import make_backend
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.engine import EngineAuthority
+
+Estimator = TypeVar('Estimator', bound=StateEstimator)
+
+
+class MpcController(Controller, Generic[Estimator]):
+    """
+    Chooses the moves of its inputs that minimise the cost of `MpcSettings`.
+
+    It is composed of a model, an observer, the program that both make with the settings, and the
+    inputs: the clutch torque request, and C_m if an engine's authority is given. C_m or the
+    driver's demand for it, C_load as far as the model has it, and the architecture's open-loop
+    torque are known now and taken as constant over the horizon. Limited is the whole clutch torque
+    request, open loop included; moves are those of the controller's own part.
+
+    The program is that of a new clutch. What drives the slip is divided by the wear gain K_usura
+    that the observer estimates, limits and moves remain those of the request; so the cost is that
+    of the transmitted torque's moves, and the closed loop is the same at every wear.
+    """
+
+    def __init__(
+        self,
+        model: TransmissionModel,
+        observer: Estimator,
+        settings: MpcSettings,
+        authority: EngineAuthority | None = None,
+    ) -> None:
+        """
+        Build the program; raise ParameterError when the settings do not make one.
+
+        `model` is without an engine, `authority` what limits the second input, if there is one.
+        """
+        self.commands_engine = authority is not None
+        self._inputs = 1 + self.commands_engine
+        if len(settings.inputs) != self._inputs:
+            raise ParameterError(
+                f'MPC: {len(settings.inputs)} inputs given: with'
+                f'{"" if authority else "out"} an engine authority it decides {self._inputs}'
+            )
+        if authority is not None:
+            model = with_engine(model, authority.lag_share)
+            settings = CommandedEngine.limited_by_rows(settings)
+        self.observer = observer
+        """What estimates its state."""
+        self.settings = settings
+        """What it was built from."""
+        self.authority = authority
+        """What the engine is known to do of a request; None if it is not commanded."""
+        self.program = condense(model, settings)
+        """What it solves at every period."""
+        self.clutch = ClutchInput(self.program, settings.inputs[CLUTCH])
+        self.engine: KnownEngine | CommandedEngine = KnownEngine()
+        """The inputs."""
+        if authority is not None:
+            rows = self.program.level_rows[ENGINE]
+            self.engine = CommandedEngine(authority, rows, settings.control_steps)
+        structure = self.program.structure
+        self._solver = make_backend(settings.backend, structure, settings.iteration_limit)
+        self.preview_steps = settings.prediction_steps if settings.preview else 0
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything; the observer starts afresh from the next measurement."""
+        for part in (self._solver, self.observer, self.clutch, self.engine):
+            part.reset()
+        self._plan = np.zeros(self.program.structure.hessian.shape[0])
+        self.fallbacks = 0
+
+    def hold(self, measurement: Measurement) -> None:
+        """Let the observer follow the plant under the open-loop torque alone."""
+        self.observer.correct(measured_speeds(measurement), measurement.load_torque)
+        request = self.clutch.hold(measurement)
+        delivered = self.engine.hold(measurement)
+        self.observer.predict((request, delivered, measurement.load_torque))
+
+    def update(self, measurement: Measurement) -> Command:
+        """
+        Return the first of the moves that are best over the horizon.
+
+        When the solver gives no solution, the rest of the last plan is followed within the limits;
+        each such step is counted and shown as `fallbacks` in `controller/status`.
+        """
+        observer, clutch, engine, program = self.observer, self.clutch, self.engine, self.program
+        # Estimate the state, and the wear.
+        state = observer.correct(measured_speeds(measurement), measurement.load_torque)
+        gain, estimated = observer.wear_gain, observer.status
+        # What is known of the horizon: torques, and the reference with or without preview.
+        ahead = divided(measurement, gain)
+        level, jump = clutch.before(measurement)
+        known = np.concatenate((state, engine.known(level, ahead, gain)))
+        # Without a move of its own the controller leaves C_fOL, and the engine on the demand.
+        others = (0.0,) * (self._inputs - 1)
+        targets = (measurement.open_loop_torque, *others)
+        # The program of this period.
+        wanted = references(self.settings, ahead).ravel()
+        f = program.gradient @ np.concatenate((known, targets, wanted))
+        shift = program.shift @ np.concatenate((known, (jump, *others)))
+        lower, upper = engine.bounds(clutch.bounds(level - jump, gain), measurement, gain)
+        solution = self._solver.solve(f, lower - shift, upper - shift)
+        # The first moves of the solution, or the next ones of the last plan within the limits.
+        solved = solution.status == 'solved'
+        if solved:
+            self._plan = solution.z
+        else:
+            self.fallbacks += 1
+            self._plan = np.concatenate([self._plan[self._inputs :], np.zeros(self._inputs)])
+        move, *engine_move = self._plan[: self._inputs].tolist()
+        if not solved:
+            move = clutch.nearest(level + move, level - jump) - level
+        # The command, whose effect the observer predicts.
+        own_torque = clutch.keep(level + move, measurement)
+        asked, delivered, said = engine.ask(engine_move, measurement, gain, solved=solved)
+        observer.predict((max(level + move, 0.0), delivered, measurement.load_torque))
+        status = (
+            ('qp_status', solution.status),
+            ('qp_iterations', str(solution.iterations)),
+            ('fallbacks', str(self.fallbacks)),
+            *estimated,
+            *said,
+        )
+        return Command(own_torque, status, asked)
