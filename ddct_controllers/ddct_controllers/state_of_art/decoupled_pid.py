@@ -4,7 +4,7 @@ from ddct_controllers.interface import Command, Controller, ControllerContext, M
 from ddct_controllers.measured import measured_speeds
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
-from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.parts.pid import placed_gains
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
 from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
@@ -35,38 +35,35 @@ class DecoupledPid(Controller):
         """Tune the loops; raise ParameterError for a bad option."""
         options = number_options(NAME, context, OPTIONS)
         scenario = context.settings.scenario
-        authority = scenario.engine_authority
-        transmission = self._transmission = RigidTransmission(scenario.driveline)
+        transmission = RigidTransmission(scenario.driveline)
         self._plan = SpeedPlan(transmission, scenario.engine_speed_reference)
-        self._clutch = SlowClutch(context, transmission)
+        self._clutch = SlowClutch(context, transmission, options['engine_bandwidth_rad_s'])
+        authority = scenario.engine_authority
         slip_gains = placed_gains(options['slip_bandwidth_rad_s'], authority.lag_s)
         self._engine = EngineShare(transmission, authority, slip_gains)
-        self._engine_pid = Pid(placed_gains(options['engine_bandwidth_rad_s'], self._clutch.lag_s))
 
     def reset(self) -> None:
         """Forget the plan, empty both integrals, put actuator and engine to rest."""
-        for part in (self._plan, self._clutch, self._engine, self._engine_pid):
+        for part in (self._plan, self._clutch, self._engine):
             part.reset()
 
     def hold(self, measurement: Measurement) -> None:
         """Let the models of actuator and engine follow the open-loop torque and the demand."""
         measured_speeds(measurement)
-        self._clutch.hold(measurement)
+        self._clutch.nominal(measurement.open_loop_torque)
         self._engine.hold(measurement)
 
     def update(self, measurement: Measurement) -> Command:
         """Return both torques of the coming period."""
         engine_speed, _, _ = measured_speeds(measurement)
-        if self._engine.at_its_limit:
-            self._plan.reset()
-        planned_speed, engine_rate = self._plan.update(measurement)
-        if not self._engine.at_its_limit:
-            engine_rate += self._engine_pid.update(planned_speed - engine_speed)
+        waits = self._engine.at_its_limit
+        planned_speed, engine_rate = self._plan.update(measurement, afresh=waits)
+        if not waits:
+            engine_rate += self._clutch.pid.update(planned_speed - engine_speed)
         slip_rate = measurement.slip_reference_rate[0]
-        torque = self._clutch.torque(measurement, engine_rate - slip_rate)
-        torque += self._engine.clutch_torque
-        request = max(torque, 0.0)
-        self._engine_pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        request = self._clutch.request(
+            measurement, engine_rate - slip_rate, self._engine.clutch_torque
+        )
         slip_error = measurement.slip_reference[0] - measurement.slip_speed
         engine_request, _ = self._engine.update(
             measurement, self._clutch.nominal(request), slip_error, slip_rate

@@ -6,18 +6,19 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.linear import LinearController
-from ddct_controllers.mpc.estimate.gains import NoiseLevels
+from ddct_controllers.mpc.estimate.gains import NoiseLevels, riccati
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.parts.slip_model import CLUTCH, ENGINE, LOAD, slip_model
-from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
+ENGINE, CLUTCH, LOAD = range(3)
+"""Inputs of the slip model: C_m, C_f, C_load in N m."""
 NAME = 'lqi'
+NO_GAIN = f'{NAME}: no gain for this driveline (%s)'
 OPTIONS = {'natural_frequency_rad_s': NumberOption(4.0, 1.0, 8.0)}
 """Of the double pole that the weights give a rigid driveline without lag."""
 NOISE = NoiseLevels(engine_torque_n_m=30.0, clutch_torque_n_m=30.0)
@@ -63,6 +64,30 @@ def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) ->
     return StateSpace(a, b, a[request:], b[request:], PERIOD_S)
 
 
+def slip_model(parameters: DrivelineParameters) -> StateSpace:
+    """
+    Return the driveline of Section 1.5 in x = [w_d, w_sr, theta_sr], y = w_d.
+
+    c_m and c_prim are left out: they act on absolute speeds, which slip does not show, and only
+    move a pole from 0 to -0.007 1/s. What they brake is a constant torque to this model.
+    """
+    p = parameters
+    tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
+    to_shaft = 1.0 / (p.shaft_inertia * tau)
+    to_torsion = to_shaft / tau + 1.0 / p.vehicle_inertia
+    a = [
+        [0.0, damping * to_shaft, stiffness * to_shaft],
+        [0.0, -damping * to_torsion, -stiffness * to_torsion],
+        [0.0, 1.0, 0.0],
+    ]
+    b = [
+        [1.0 / p.engine_inertia, -1.0 / p.engine_inertia - 1.0 / p.shaft_inertia, 0.0],
+        [0.0, to_shaft, 1.0 / p.vehicle_inertia],
+        [0.0, 0.0, 0.0],
+    ]
+    return StateSpace(np.array(a), np.array(b), np.eye(1, 3), np.zeros((1, 3)))
+
+
 def _plant(driveline: DrivelineParameters) -> StateSpace:
     """Return G_a and the slip model, sampled, without the delay: torque in N m to w_d in rad/s."""
     slip, actuator = slip_model(driveline), ACTUATOR.to_state_space()
@@ -95,7 +120,7 @@ def _feedback_gain(
         2.0 * (natural_frequency_rad_s / slip_gain) ** 2 * (plant.c.T @ plant.c)
     )
     weights[states, states] = (natural_frequency_rad_s**2 / slip_gain) ** 2
-    cost = _riccati(a, b, weights, 1.0)
+    cost = riccati(a, b, weights, np.eye(1), NO_GAIN)
     return np.linalg.solve(1.0 + b.T @ cost @ b, b.T @ cost @ a)[0]
 
 
@@ -115,18 +140,7 @@ def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarra
     driven = np.zeros((len(plant.a), 3))
     driven[: len(torques)] = torques * levels
     error = (math.sqrt(2.0) * NOISE.speed_rad_s) ** 2
-    covariance = _riccati(plant.a.T, plant.c.T, driven @ driven.T, error)
+    covariance = riccati(plant.a.T, plant.c.T, driven @ driven.T, np.array([[error]]), NO_GAIN)
     innovation = plant.c @ covariance @ plant.c.T + error
     gain: np.ndarray = covariance @ plant.c.T / innovation
     return gain
-
-
-def _riccati(a: np.ndarray, b: np.ndarray, q: np.ndarray, r: float) -> np.ndarray:
-    # Imported here: only runs with this controller need it.
-    from scipy.linalg import solve_discrete_are
-
-    try:
-        solution: np.ndarray = solve_discrete_are(a, b, q, np.array([[r]]))
-    except (np.linalg.LinAlgError, ValueError) as failure:
-        raise ParameterError(f'{NAME}: no gain for this driveline ({failure})') from failure
-    return solution

@@ -1,14 +1,16 @@
 """Control of both speeds with an estimate of the clutch torque, after [2] (Section 1.3)."""
 
+import math
+
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.measured import measured_speeds
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
-from ddct_controllers.state_of_art.parts.clutch_torque_estimator import ClutchTorqueEstimator
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
-from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
+from ddct_controllers.state_of_art.parts.pid import placed_gains
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
 from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
+from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'torque_estimator'
 OPTIONS = {
@@ -17,6 +19,44 @@ OPTIONS = {
     'estimator_bandwidth_rad_s': NumberOption(30.0, 10.0, 60.0),
 }
 """Of the two loops and the estimator; docs/state_of_art.md has the argument."""
+
+
+class ClutchTorqueEstimator:
+    """
+    A Luenberger observer of J_m dw_m/dt = C_m - C_n - d, with d constant.
+
+    C_n is the clutch torque that the actuator's model gives, d what the clutch transmits beyond
+    it, which wear or another fault makes. Both poles of the sampled observer are at
+    exp(-bandwidth T). Damping of the engine counts as part of d.
+    """
+
+    def __init__(self, engine_inertia: float, bandwidth_rad_s: float) -> None:
+        """Take J_m in kg m^2 and the bandwidth."""
+        pole = math.exp(-bandwidth_rad_s * PERIOD_S)
+        self._speed_gain = 1.0 - pole**2
+        self._torque_gain = -engine_inertia * (1.0 - pole) ** 2 / PERIOD_S
+        self._engine_inertia = engine_inertia
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything; the next speed starts an estimate with d = 0."""
+        self._speed: float | None = None
+        self._deviation = 0.0
+
+    def correct(self, engine_speed: float) -> float:
+        """Return d in N m for w_m in rad/s."""
+        if self._speed is None:
+            self._speed = engine_speed
+        innovation = engine_speed - self._speed
+        self._speed += self._speed_gain * innovation
+        self._deviation += self._torque_gain * innovation
+        return self._deviation
+
+    def predict(self, engine_torque: float, nominal_clutch_torque: float) -> None:
+        """Advance by one period over which C_m and C_n have these means in N m."""
+        assert self._speed is not None, 'correct comes first'
+        torque = engine_torque - nominal_clutch_torque - self._deviation
+        self._speed += PERIOD_S * torque / self._engine_inertia
 
 
 class TorqueEstimatorControl(Controller):
@@ -37,44 +77,40 @@ class TorqueEstimatorControl(Controller):
         """Tune loops and estimator; raise ParameterError for a bad option."""
         options = number_options(NAME, context, OPTIONS)
         scenario = context.settings.scenario
+        transmission = self._transmission = RigidTransmission(scenario.driveline)
+        self._plan = SpeedPlan(transmission, scenario.engine_speed_reference)
+        self._clutch = SlowClutch(context, transmission, options['shaft_bandwidth_rad_s'])
         authority = scenario.engine_authority
-        self._transmission = RigidTransmission(scenario.driveline)
-        self._plan = SpeedPlan(self._transmission, scenario.engine_speed_reference)
-        self._clutch = SlowClutch(context, self._transmission)
         engine_gains = placed_gains(options['engine_bandwidth_rad_s'], authority.lag_s)
-        self._engine = EngineShare(self._transmission, authority, engine_gains)
-        self._shaft_pid = Pid(placed_gains(options['shaft_bandwidth_rad_s'], self._clutch.lag_s))
+        self._engine = EngineShare(transmission, authority, engine_gains)
         self._estimator = ClutchTorqueEstimator(
-            self._transmission.engine_inertia, options['estimator_bandwidth_rad_s']
+            transmission.engine_inertia, options['estimator_bandwidth_rad_s']
         )
 
     def reset(self) -> None:
         """Forget plan and estimate, empty both integrals, put actuator and engine to rest."""
-        parts = self._plan, self._clutch, self._engine, self._shaft_pid, self._estimator
-        for part in parts:
+        for part in (self._plan, self._clutch, self._engine, self._estimator):
             part.reset()
 
     def hold(self, measurement: Measurement) -> None:
         """Let the estimator follow the clutch under the open-loop torque."""
         engine_speed, _, _ = measured_speeds(measurement)
         self._estimator.correct(engine_speed)
-        self._estimator.predict(self._engine.hold(measurement), self._clutch.hold(measurement))
+        nominal = self._clutch.nominal(measurement.open_loop_torque)
+        self._estimator.predict(self._engine.hold(measurement), nominal)
 
     def update(self, measurement: Measurement) -> Command:
         """Return both torques of the coming period."""
         engine_speed, shaft_speed, _ = measured_speeds(measurement)
         deviation = self._estimator.correct(engine_speed)
-        if self._engine.at_its_limit:
-            self._plan.reset()
-        planned_speed, planned_rate = self._plan.update(measurement)
+        waits = self._engine.at_its_limit
+        planned_speed, planned_rate = self._plan.update(measurement, afresh=waits)
         slip, slip_rate = measurement.slip_reference[0], measurement.slip_reference_rate[0]
         shaft_rate = planned_rate - slip_rate
-        if not self._engine.at_its_limit:
-            shaft_rate += self._shaft_pid.update(planned_speed - slip - shaft_speed)
+        if not waits:
+            shaft_rate += self._clutch.pid.update(planned_speed - slip - shaft_speed)
         shaft_rate -= deviation / self._transmission.vehicle_inertia
-        torque = self._clutch.torque(measurement, shaft_rate) + self._engine.clutch_torque
-        request = max(torque, 0.0)
-        self._shaft_pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        request = self._clutch.request(measurement, shaft_rate, self._engine.clutch_torque)
         nominal = self._clutch.nominal(request)
         estimate = nominal + deviation
         engine_request, delivered = self._engine.update(

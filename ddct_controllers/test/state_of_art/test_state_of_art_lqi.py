@@ -12,7 +12,6 @@ from ddct_controllers.interface import ControllerContext
 from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.parts.slip_model import slip_model
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline_model import driveline_matrices
@@ -39,7 +38,7 @@ def response(model, omega, column):
 @pytest.mark.parametrize('column', [0, 1, 2])
 def test_the_slip_model_is_the_driveline_but_for_the_drag(column):
     omega = np.geomspace(0.5, 300.0, 50)
-    ours = response(slip_model(DRIVELINE), omega, column)
+    ours = response(lqi.slip_model(DRIVELINE), omega, column)
     whole = response(driveline_matrices(DRIVELINE), omega, column)
     assert np.abs(ours / whole - 1.0).max() < 0.02
 

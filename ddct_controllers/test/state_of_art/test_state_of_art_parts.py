@@ -8,13 +8,12 @@ import pytest
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
-from ddct_controllers.state_of_art.parts.clutch_torque_estimator import ClutchTorqueEstimator
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
-from ddct_controllers.state_of_art.parts.lag import ACTUATION_LAG_S
 from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.parts.slow_clutch import ACTUATION_LAG_S, SlowClutch
 from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
+from ddct_controllers.state_of_art.torque_estimator import ClutchTorqueEstimator
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.printed import ACTUATOR
@@ -106,7 +105,7 @@ def test_the_estimator_finds_what_the_clutch_transmits_beyond_its_model():
 
 
 def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass():
-    clutch = SlowClutch(ControllerContext(SETTINGS, {}), RIGID)
+    clutch = SlowClutch(ControllerContext(SETTINGS, {}), RIGID, 0.5)
     now = measurement()
     static = constant_slip_torque(DRIVELINE, now.engine_torque, now.load_torque)
     wanted = RIGID.constant_slip_acceleration(now) + 10.0

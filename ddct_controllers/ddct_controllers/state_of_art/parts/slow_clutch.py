@@ -1,14 +1,30 @@
-"""The clutch's share of two-input control: what the driveline can follow as a rigid body."""
+"""The clutch's share of two-input control: a slow speed, as far as the driveline is rigid."""
 
 import numpy as np
 
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.state_of_art.parts.clutch_actuation import ClutchActuation
-from ddct_controllers.state_of_art.parts.lag import ACTUATION_LAG_S
+from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.scenario.initial import initial_state
+
+
+def _time_constant_s(factor: Factor) -> float:
+    """Return the derivative of ln(s + a), or of ln(s^2 + b s + c), at s = 0."""
+    return factor[0] / factor[1] if isinstance(factor, tuple) else 1.0 / factor
+
+
+ACTUATION_LAG_S = (
+    PERIOD_S
+    + sum(_time_constant_s(factor) for factor in ACTUATOR.denominator)
+    - sum(_time_constant_s(factor) for factor in ACTUATOR.numerator)
+)
+"""From request to torque, about 43 ms: the delay and -d ln G_a/ds at s = 0 (Section 1.4.2)."""
 
 
 class SlowClutch:
@@ -21,23 +37,28 @@ class SlowClutch:
     loops are unstable from bandwidths of 0.5 to 1 rad/s on.
     """
 
-    def __init__(self, context: ControllerContext, transmission: RigidTransmission) -> None:
-        """Start as the run does."""
+    def __init__(
+        self,
+        context: ControllerContext,
+        transmission: RigidTransmission,
+        bandwidth_rad_s: float,
+    ) -> None:
+        """Start as the run does; the bandwidth is that of the speed that `pid` controls."""
+        self._initial_request = initial_state(context.settings).torque_request
         self._transmission = transmission
         corner = 0.5 * transmission.rigid_below_rad_s
-        self.lag_s = 2.0 / corner + ACTUATION_LAG_S
-        """Of the shaft's acceleration behind the wanted one, at low frequency."""
+        # At low frequency the shaft's acceleration is so far behind the wanted one.
+        lag_s = 2.0 / corner + ACTUATION_LAG_S
+        self.pid = Pid(placed_gains(bandwidth_rad_s, lag_s))
+        """From the error of the slow speed in rad/s to an acceleration in rad/s^2."""
         self._filter = DiscreteFilter(_low_pass(corner))
-        self._actuation = ClutchActuation(context)
+        self.reset()
 
     def reset(self) -> None:
-        """Start afresh."""
+        """Start afresh, with the actuator at rest on the initial request."""
+        self.pid.reset()
         self._filter.reset()
-        self._actuation.reset()
-
-    def hold(self, measurement: Measurement) -> float:
-        """Return what `nominal` does, for the open-loop torque alone."""
-        return self._actuation.update(measurement.open_loop_torque)
+        self._actuator = Actuator(self._initial_request)
 
     def torque(self, measurement: Measurement, acceleration: float) -> float:
         """Return C_f in N m for a wanted shaft acceleration in rad/s^2."""
@@ -48,9 +69,22 @@ class SlowClutch:
             + self._transmission.vehicle_inertia * passed
         )
 
+    def request(self, measurement: Measurement, acceleration: float, more: float) -> float:
+        """Return the request in N m that gives this acceleration, and `more` N m beside it."""
+        torque = self.torque(measurement, acceleration) + more
+        request = max(torque, 0.0)
+        self.pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        return request
+
     def nominal(self, request: float) -> float:
-        """Return the actuator's mean torque over the coming period in N m, after this request."""
-        return self._actuation.update(request)
+        """
+        Return the torque in N m of a clutch without wear, and take the request in N m in.
+
+        It is the actuator's mean over the coming period, which moves the engine; the request acts
+        one period later.
+        """
+        nodes = self._actuator.update(request)
+        return (sum(nodes) - 0.5 * (nodes[0] + nodes[-1])) / SUBSTEPS
 
 
 def _low_pass(corner_rad_s: float) -> StateSpace:

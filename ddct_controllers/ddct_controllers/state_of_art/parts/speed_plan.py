@@ -26,8 +26,12 @@ class SpeedPlan:
         """Forget the momentum; the next update measures it."""
         self._momentum: float | None = None
 
-    def update(self, measurement: Measurement) -> tuple[float, float]:
-        """Return w_m* in rad/s and its rate over the coming period in rad/s^2."""
+    def update(self, measurement: Measurement, *, afresh: bool = False) -> tuple[float, float]:
+        """
+        Return w_m* in rad/s and its rate over the coming period in rad/s^2.
+
+        `afresh` measures the momentum anew.
+        """
         if self._given.given:
             now, then = (
                 self._given.speed(time_of_step(step))
@@ -36,7 +40,7 @@ class SpeedPlan:
             return now, (then - now) / PERIOD_S
         transmission = self._transmission
         momentum = self._momentum
-        if momentum is None:
+        if momentum is None or afresh:
             momentum = transmission.momentum(measurement)
         vehicle = transmission.vehicle_inertia
         total = transmission.engine_inertia + vehicle
