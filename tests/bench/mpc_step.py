@@ -89,7 +89,7 @@ class _Solver:
         """Do nothing: every program starts from the last solution."""
 
     def solve(self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> QpSolution:
-        return QpSolution(self._solve(f, lower, upper), 0, 'solved', 0.0)
+        return QpSolution(self._solve(f, lower, upper), 0, 'solved')
 
 
 def _with_solver(settings: MpcSettings, make: Callable[..., Any]) -> MpcController:

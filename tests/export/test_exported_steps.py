@@ -93,8 +93,8 @@ class Hasty:
         z = -np.linalg.solve(self._structure.hessian, f)
         rows = self._structure.constraints @ z
         if (rows >= lower - 1e-9).all() and (rows <= upper + 1e-9).all():
-            return QpSolution(z, 0, 'solved', 0.0)
-        return QpSolution(z, 0, 'iteration limit', 0.0)
+            return QpSolution(z, 0, 'solved')
+        return QpSolution(z, 0, 'iteration limit')
 
 
 def never_changing_its_active_set(folder: Path) -> ExportedController:

@@ -15,8 +15,6 @@ from ddct_plant.linear.lti import StateSpace, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
-ENGINE, CLUTCH, LOAD = range(3)
-"""Inputs of the slip model: C_m, C_f, C_load in N m."""
 NAME = 'lqi'
 NO_GAIN = f'{NAME}: no gain for this driveline (%s)'
 OPTIONS = {'natural_frequency_rad_s': NumberOption(4.0, 1.0, 8.0)}
@@ -66,7 +64,9 @@ def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) ->
 
 def slip_model(parameters: DrivelineParameters) -> StateSpace:
     """
-    Return the driveline of Section 1.5 in x = [w_d, w_sr, theta_sr], y = w_d.
+    Return the driveline of Section 1.5 in x = [w_d, w_sr, theta_sr], y = w_d, u the torques.
+
+    u = [C_m, C_f, C_load] in N m.
 
     c_m and c_prim are left out: they act on absolute speeds, which slip does not show, and only
     move a pole from 0 to -0.007 1/s. What they brake is a constant torque to this model.
@@ -91,7 +91,7 @@ def slip_model(parameters: DrivelineParameters) -> StateSpace:
 def _plant(driveline: DrivelineParameters) -> StateSpace:
     """Return G_a and the slip model, sampled, without the delay: torque in N m to w_d in rad/s."""
     slip, actuator = slip_model(driveline), ACTUATOR.to_state_space()
-    clutch = slip.b[:, CLUTCH : CLUTCH + 1]
+    clutch = slip.b[:, 1:2]
     a = np.block(
         [[slip.a, clutch @ actuator.c], [np.zeros((len(actuator.a), len(slip.a))), actuator.a]]
     )
@@ -131,12 +131,7 @@ def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarra
     Torque noise is held over a period; two measured speeds make the slip.
     """
     torques = discretise_zoh(slip_model(driveline), PERIOD_S).b
-    levels = np.zeros(3)
-    levels[[ENGINE, CLUTCH, LOAD]] = (
-        NOISE.engine_torque_n_m,
-        NOISE.clutch_torque_n_m,
-        NOISE.load_torque_n_m,
-    )
+    levels = NOISE.engine_torque_n_m, NOISE.clutch_torque_n_m, NOISE.load_torque_n_m
     driven = np.zeros((len(plant.a), 3))
     driven[: len(torques)] = torques * levels
     error = (math.sqrt(2.0) * NOISE.speed_rad_s) ** 2

@@ -236,7 +236,7 @@ class _Silent:
     def solve(self, f, lower, upper):
         from ddct_controllers.mpc.qp.problem import QpSolution
 
-        return QpSolution(np.full(len(f), math.nan), 200, 'iteration limit', math.nan)
+        return QpSolution(np.full(len(f), math.nan), 200, 'iteration limit')
 
     def reset(self):
         pass

@@ -102,7 +102,7 @@ def test_without_a_solution_the_request_stays_and_is_counted():
 
     class Failing:
         def solve(self, f, lower, upper):
-            return QpSolution(f * math.nan, 7, 'iteration limit', math.nan)
+            return QpSolution(f * math.nan, 7, 'iteration limit')
 
     for horizon, program in controller._programs.items():
         controller._programs[horizon] = replace(program, solver=Failing())

@@ -64,8 +64,6 @@ class WearObserver:
         self._actuator_b = model.b[actuator, REQUEST]
         self._process = process_noise(model, noise, wear)
         self._measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
-        self._measured = np.eye(MEASURED, SIZE)
-        self._identity = np.eye(SIZE)
         self.reset()
 
     def reset(self) -> None:
@@ -153,6 +151,7 @@ class WearObserver:
         gain = np.linalg.solve(innovation, covariance[:MEASURED]).T
         self._state = self._state + gain @ (speeds - self._state[:MEASURED])
         # Joseph's form: it stays symmetric and positive whatever is rounded.
-        kept = self._identity - gain @ self._measured
+        kept = np.eye(SIZE)
+        kept[:, :MEASURED] -= gain
         self._covariance = kept @ covariance @ kept.T + gain @ self._measurement_noise @ gain.T
         self._state = within_bounds(self._state, self._covariance)

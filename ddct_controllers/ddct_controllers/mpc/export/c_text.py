@@ -4,10 +4,17 @@ import math
 import re
 from collections.abc import Mapping
 from importlib.resources import files
+from textwrap import TextWrapper
 
 import numpy as np
 
-_WIDTH = 99
+_LINES = TextWrapper(
+    99,
+    initial_indent='    ',
+    subsequent_indent='    ',
+    break_long_words=False,
+    break_on_hyphens=False,
+)
 
 
 def c_part(name: str) -> str:
@@ -39,13 +46,8 @@ def _constant(name: str, array: np.ndarray) -> str:
 def _braced(array: np.ndarray) -> str:
     if array.ndim > 1:
         return '{\n' + ',\n'.join(_braced(row) for row in array) + '\n}'
-    lines, line = [], '   '
-    for item in (f' {_number(float(value))},' for value in array):
-        if len(line) + len(item) > _WIDTH:
-            lines.append(line)
-            line = '   '
-        line += item
-    return '{\n' + '\n'.join([*lines, line.removesuffix(',')]) + '\n}'
+    numbers = ' '.join(f'{_number(float(value))},' for value in array)
+    return '{\n' + _LINES.fill(numbers).removesuffix(',') + '\n}'
 
 
 def _value(value: int | float) -> str:

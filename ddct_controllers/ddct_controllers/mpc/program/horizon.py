@@ -42,9 +42,8 @@ def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgra
     hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
     rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
     is_soft = np.arange(len(rows)) >= len(hard[0])
-    weight = settings.soft_limit_weight if is_soft.any() else None
     return CondensedProgram(
-        QpStructure(hessian, rows, is_soft, weight),
+        QpStructure(hessian, rows, is_soft, settings.soft_limit_weight),
         gradient,
         lower,
         upper,

@@ -41,8 +41,6 @@ class QpBackend(ABC):
         self._structure = structure
         self._scaled = scale(structure)
         self._iteration_limit = iteration_limit
-        self._soft_rows = structure.soft_rows
-        self._soft_constraints = structure.constraints[self._soft_rows]
         self.reset()
 
     @abstractmethod
@@ -70,16 +68,8 @@ class QpBackend(ABC):
         )
         if status != 'solved':
             self.reset()
-            return QpSolution(np.full(len(f), math.nan), iterations, status, math.nan)
-        z = scaled.variables * y
-        return QpSolution(z, iterations, status, self._violation(z, lower, upper))
-
-    def _violation(self, z: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
-        rows = self._soft_rows
-        if not len(rows):
-            return 0.0
-        values = self._soft_constraints @ z
-        return max(0.0, float(np.maximum(values - upper[rows], lower[rows] - values).max()))
+            return QpSolution(np.full(len(f), math.nan), iterations, status)
+        return QpSolution(scaled.variables * y, iterations, status)
 
     def _check(self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
         rows, size = self._structure.constraints.shape

@@ -76,7 +76,7 @@ class QpStructure:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class QpSolution:
-    """The minimiser, or why there is none; `z` and `violation` are NaN unless solved."""
+    """The minimiser, or why there is none; `z` is NaN unless solved."""
 
     z: np.ndarray
     """(n,)."""
@@ -87,8 +87,6 @@ class QpSolution:
     'iteration limit' when the solver stopped short of its tolerance, 'infeasible' when the hard
     rows contradict each other.
     """
-    violation: float
-    """By how much the worst soft row lies outside its bounds, in that row's unit; 0 if none."""
 
 
 @dataclass(frozen=True, eq=False)
