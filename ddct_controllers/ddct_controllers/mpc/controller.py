@@ -6,7 +6,8 @@ import numpy as np
 
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.mpc.estimate.observer import StateEstimator
+from ddct_controllers.mpc.estimate.observer import Observer
+from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.inputs import CLUTCH, ENGINE, ClutchInput, CommandedEngine, KnownEngine
 from ddct_controllers.mpc.model.augmented import with_engine
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel
@@ -17,7 +18,7 @@ from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.engine import EngineAuthority
 
-Estimator = TypeVar('Estimator', bound=StateEstimator)
+Estimator = TypeVar('Estimator', bound=Observer | WearObserver)
 
 
 class MpcController(Controller, Generic[Estimator]):

@@ -66,16 +66,12 @@ def _program(free: np.ndarray, steps: np.ndarray) -> EngagementProgram:
     starts = [move * horizon // MOVES for move in range(MOVES)]
     ends = np.array([[0.0, SLIP_WEIGHT], [-1.0, 1.0]])
     ends[1] *= ACCELERATION_WEIGHT / PERIOD_S
-    delayed = np.array([_from(start, steps[:, REQUEST]) for start in starts]).T
-    response = ends @ delayed[-2:]
+    # At the last two periods, to a step that begins at each start.
+    delayed = [steps[horizon - 1 - start : horizon + 1 - start, REQUEST] for start in starts]
+    response = ends @ np.transpose(delayed)
     inputs = steps[-2:, [REQUEST, ENGINE_TORQUE, LOAD_TORQUE]]
     known = np.hstack([ends @ free[-2:], ends @ inputs, [[-SLIP_WEIGHT], [0.0]]])
     levels = np.tril(np.ones((MOVES, MOVES)))
     structure = QpStructure(np.eye(MOVES) + response.T @ response, levels)
     solver = make_backend(DEFAULT_BACKEND, structure)
     return EngagementProgram(response.T @ known, solver)
-
-
-def _from(start: int, step_response: np.ndarray) -> np.ndarray:
-    """Return the response to a step that begins at period `start`."""
-    return np.concatenate([np.zeros(start), step_response[: len(step_response) - start]])

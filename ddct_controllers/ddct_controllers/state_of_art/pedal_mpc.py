@@ -55,12 +55,12 @@ class PedalMpc(Controller):
 
     def hold(self, measurement: Measurement) -> None:
         """Let the observer follow the plant under the open-loop torque alone."""
-        self._correct(measurement)
+        self._observer.correct(measured_speeds(measurement), measurement.load_torque)
         self._advance(measurement, max(measurement.open_loop_torque, 0.0))
 
     def update(self, measurement: Measurement) -> Command:
         """Return the first move of the best request."""
-        state = self._correct(measurement)
+        state = self._observer.correct(measured_speeds(measurement), measurement.load_torque)
         horizon, slip = self._horizon_and_slip(measurement)
         before = self._request
         if before is None:
@@ -94,9 +94,6 @@ class PedalMpc(Controller):
         if since_start < 0:
             return self._shortest, measurement.slip_reference[0]
         return max(self._longest - since_start, self._shortest), 0.0
-
-    def _correct(self, measurement: Measurement) -> np.ndarray:
-        return self._observer.correct(measured_speeds(measurement), measurement.load_torque)
 
     def _advance(self, measurement: Measurement, request: float) -> None:
         self._request = request

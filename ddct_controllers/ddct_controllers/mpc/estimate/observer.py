@@ -1,33 +1,11 @@
 """Observer of the states that are not measured, with a constant gain."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from ddct_controllers.interface import Status
 from ddct_controllers.mpc.model.transmission_model import MEASURED, TransmissionModel
-
-
-class StateEstimator(Protocol):
-    """What a predictive controller needs of an observer."""
-
-    @property
-    def wear_gain(self) -> float:
-        """K_usura of the clutch as estimated, by which `correct` divides; 1 for a new one."""
-
-    @property
-    def status(self) -> Status:
-        """What `controller/status` shows of the estimate."""
-
-    def reset(self) -> None:
-        """Forget the estimate; the next measurement starts another one."""
-
-    def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
-        """Return x_(k|k), (n,), for w_m, w_p, w_r in rad/s and C_load in N m."""
-
-    def predict(self, inputs: tuple[float, float, float]) -> None:
-        """Advance by one period with the saturated request, C_m and C_load in N m."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +27,9 @@ class Observer:
     """
 
     wear_gain = 1.0
+    """K_usura as estimated, by which the states of the driveline are divided."""
     status: Status = ()
+    """What `controller/status` shows of the estimate."""
 
     def __init__(self, model: TransmissionModel, gain: np.ndarray, start: AtRest | None) -> None:
         """Take the gain (n, 3), and how the estimate starts; None starts it at zero."""
