@@ -75,6 +75,18 @@ def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> 
         assert imported <= set(rows[: rows.index(room)]), room
 
 
+def test_the_steps_from_a_program_to_the_model_are_there() -> None:
+    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    section = page.partition('## From a program to the model')[2].partition('\n## ')[0]
+    steps = re.findall(r'^\| \d+ \| `([\w/]+\.py)`(?:: (.*?))? \|', section, re.MULTILINE)
+    assert len(steps) >= 18
+    for path, names in steps:
+        package = path.partition('/')[0]
+        code = (ROOT / package / path).read_text(encoding='utf-8')
+        for name in re.findall(r'`(?:\w+\.)?(\w+)`', names):
+            assert re.search(rf'^ *(?:def|class) {name}\b', code, re.MULTILINE), (path, name)
+
+
 @pytest.mark.parametrize('package', MAY_IMPORT)
 def test_no_folder_has_too_many_modules(package: str) -> None:
     folder = ROOT / package / package
