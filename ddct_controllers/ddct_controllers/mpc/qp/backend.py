@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.mpc.qp.problem import QpSolution, QpStatus, QpStructure, scale
+from ddct_controllers.mpc.qp.problem import QpSolution, QpStatus, QpStructure
 from ddct_plant.base.checks import require_choice
 from ddct_plant.base.errors import DdctError, ParameterError
 
@@ -31,6 +31,11 @@ class QpBackend(ABC):
     A solve that fails forgets the start. Deterministic: the same solves after `reset` give the
     same bits. Raise ParameterError when `iteration_limit` is below 1, DdctError when the solver's
     package is missing.
+
+    The solver gets the program in y = z / variables, each row of G multiplied by its entry of
+    `rows`. Solvers compare residuals with absolute tolerances: so these mean the same for every
+    unit of the inputs and outputs, and both solvers stop at the same accuracy. The cost is
+    unchanged.
     """
 
     def __init__(self, structure: QpStructure, iteration_limit: int) -> None:
@@ -38,9 +43,22 @@ class QpBackend(ABC):
             raise ParameterError(f'QP: iteration_limit is {iteration_limit!r}: give an integer')
         if iteration_limit < 1:
             raise ParameterError(f'QP: iteration_limit is {iteration_limit}: at least 1 is needed')
-        self._structure = structure
-        self._scaled = scale(structure)
         self._iteration_limit = iteration_limit
+        self._structure = structure
+        variables = 1.0 / np.sqrt(np.diag(structure.hessian))
+        constraints = structure.constraints * variables
+        lengths = np.linalg.norm(constraints, axis=1)
+        rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
+        self._variables, self._rows = variables, rows
+        """(n,) and (m,), above 0."""
+        self._hessian = structure.hessian * variables * variables[:, None]
+        """(n, n), unit diagonal."""
+        self._constraints = constraints * rows[:, None]
+        """(m, n), rows of unit length; a row of zeros stays one."""
+        self._soft_rows = structure.soft_rows
+        weight = structure.soft_weight or 0.0  # None when no row is soft
+        self._soft_weights = weight / rows[self._soft_rows] ** 2
+        """(number of soft rows,) w of each, for slacks multiplied like their rows."""
         self.reset()
 
     @abstractmethod
@@ -62,14 +80,13 @@ class QpBackend(ABC):
         """
         f, lower, upper = (np.asarray(vector, dtype=float) for vector in (f, lower, upper))
         self._check(f, lower, upper)
-        scaled = self._scaled
         y, iterations, status = self._solve_scaled(
-            scaled.variables * f, scaled.rows * lower, scaled.rows * upper
+            self._variables * f, self._rows * lower, self._rows * upper
         )
         if status != 'solved':
             self.reset()
             return QpSolution(np.full(len(f), math.nan), iterations, status)
-        return QpSolution(scaled.variables * y, iterations, status)
+        return QpSolution(self._variables * y, iterations, status)
 
     def _check(self, f: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
         rows, size = self._structure.constraints.shape

@@ -33,23 +33,22 @@ class Backend(QpBackend):
 
     def reset(self) -> None:
         """Return to the state of a new backend, without a warm start."""
-        scaled = self._scaled
-        rows, size = scaled.constraints.shape
+        rows, size = self._constraints.shape
         self._sense = np.zeros(rows, dtype=np.intc)
-        self._sense[scaled.soft_rows] = _SOFT
+        self._sense[self._soft_rows] = _SOFT
         self._bounded = b''
         unbounded = np.full(rows, _UNBOUNDED)
         self._model = solver_package('daqp').Model()
         # DAQP counts from 1 and stops before its limit.
         self._model.settings = _SETTINGS | {'iter_limit': self._iteration_limit + 1}
         flag, _ = self._model.setup(
-            scaled.hessian, np.zeros(size), scaled.constraints, unbounded, -unbounded, self._sense
+            self._hessian, np.zeros(size), self._constraints, unbounded, -unbounded, self._sense
         )
         if flag < 0:
             raise DdctError(f'QP: daqp refuses the program (flag {flag}): use another backend')
-        if len(scaled.soft_rows):
+        if len(self._soft_rows):
             reciprocal = np.zeros(rows)
-            reciprocal[scaled.soft_rows] = 1.0 / scaled.soft_weights
+            reciprocal[self._soft_rows] = 1.0 / self._soft_weights
             self._model.soft_weights(rho_l=reciprocal, rho_u=reciprocal)
 
     def _solve_scaled(

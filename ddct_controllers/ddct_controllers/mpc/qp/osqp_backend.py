@@ -31,18 +31,17 @@ class Backend(QpBackend):
 
     def reset(self) -> None:
         """Return to the state of a new backend, without a warm start."""
-        scaled = self._scaled
-        rows, size = scaled.constraints.shape
-        slacks = len(scaled.soft_rows)
+        rows, size = self._constraints.shape
+        slacks = len(self._soft_rows)
         # A slack t = s sqrt(w) costs 1/2 t^2.
         columns = np.zeros((rows, slacks))
-        columns[scaled.soft_rows, np.arange(slacks)] = 1.0 / np.sqrt(scaled.soft_weights)
+        columns[self._soft_rows, np.arange(slacks)] = 1.0 / np.sqrt(self._soft_weights)
         self._f = np.zeros(size + slacks)
         self._solver = solver_package('osqp').OSQP(algebra='builtin')
         self._solver.setup(
-            sparse.triu(sparse.block_diag([scaled.hessian, np.eye(slacks)]), format='csc'),
+            sparse.triu(sparse.block_diag([self._hessian, np.eye(slacks)]), format='csc'),
             self._f,
-            sparse.csc_matrix(np.hstack([scaled.constraints, columns])),
+            sparse.csc_matrix(np.hstack([self._constraints, columns])),
             np.full(rows, -np.inf),
             np.full(rows, np.inf),
             max_iter=self._iteration_limit,
