@@ -5,9 +5,7 @@ from ddct_controllers.measured import measured_speeds
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
 from ddct_controllers.state_of_art.parts.pid import placed_gains
-from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
-from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
 
 NAME = 'decoupled_pid'
 OPTIONS = {
@@ -34,18 +32,15 @@ class DecoupledPid(Controller):
     def __init__(self, context: ControllerContext) -> None:
         """Tune the loops; raise ParameterError for a bad option."""
         options = number_options(NAME, context, OPTIONS)
-        scenario = context.settings.scenario
-        transmission = RigidTransmission(scenario.driveline)
-        self._plan = SpeedPlan(transmission, scenario.engine_speed_reference)
-        self._clutch = SlowClutch(context, transmission, options['engine_bandwidth_rad_s'])
-        authority = scenario.engine_authority
+        self._clutch = SlowClutch(context, options['engine_bandwidth_rad_s'])
+        authority = context.settings.scenario.engine_authority
         slip_gains = placed_gains(options['slip_bandwidth_rad_s'], authority.lag_s)
-        self._engine = EngineShare(transmission, authority, slip_gains)
+        self._engine = EngineShare(self._clutch.transmission, authority, slip_gains)
 
     def reset(self) -> None:
         """Forget the plan, empty both integrals, put actuator and engine to rest."""
-        for part in (self._plan, self._clutch, self._engine):
-            part.reset()
+        self._clutch.reset()
+        self._engine.reset()
 
     def hold(self, measurement: Measurement) -> None:
         """Let the models of actuator and engine follow the open-loop torque and the demand."""
@@ -57,7 +52,7 @@ class DecoupledPid(Controller):
         """Return both torques of the coming period."""
         engine_speed, _, _ = measured_speeds(measurement)
         waits = self._engine.at_its_limit
-        planned_speed, engine_rate = self._plan.update(measurement, afresh=waits)
+        planned_speed, engine_rate = self._clutch.plan.update(measurement, afresh=waits)
         if not waits:
             engine_rate += self._clutch.pid.update(planned_speed - engine_speed)
         slip_rate = measurement.slip_reference_rate[0]

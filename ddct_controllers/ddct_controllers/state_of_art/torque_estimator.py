@@ -7,9 +7,7 @@ from ddct_controllers.measured import measured_speeds
 from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
 from ddct_controllers.state_of_art.parts.pid import placed_gains
-from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
-from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
 from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'torque_estimator'
@@ -76,11 +74,9 @@ class TorqueEstimatorControl(Controller):
     def __init__(self, context: ControllerContext) -> None:
         """Tune loops and estimator; raise ParameterError for a bad option."""
         options = number_options(NAME, context, OPTIONS)
-        scenario = context.settings.scenario
-        transmission = self._transmission = RigidTransmission(scenario.driveline)
-        self._plan = SpeedPlan(transmission, scenario.engine_speed_reference)
-        self._clutch = SlowClutch(context, transmission, options['shaft_bandwidth_rad_s'])
-        authority = scenario.engine_authority
+        self._clutch = SlowClutch(context, options['shaft_bandwidth_rad_s'])
+        transmission = self._clutch.transmission
+        authority = context.settings.scenario.engine_authority
         engine_gains = placed_gains(options['engine_bandwidth_rad_s'], authority.lag_s)
         self._engine = EngineShare(transmission, authority, engine_gains)
         self._estimator = ClutchTorqueEstimator(
@@ -89,7 +85,7 @@ class TorqueEstimatorControl(Controller):
 
     def reset(self) -> None:
         """Forget plan and estimate, empty both integrals, put actuator and engine to rest."""
-        for part in (self._plan, self._clutch, self._engine, self._estimator):
+        for part in (self._clutch, self._engine, self._estimator):
             part.reset()
 
     def hold(self, measurement: Measurement) -> None:
@@ -104,12 +100,12 @@ class TorqueEstimatorControl(Controller):
         engine_speed, shaft_speed, _ = measured_speeds(measurement)
         deviation = self._estimator.correct(engine_speed)
         waits = self._engine.at_its_limit
-        planned_speed, planned_rate = self._plan.update(measurement, afresh=waits)
+        planned_speed, planned_rate = self._clutch.plan.update(measurement, afresh=waits)
         slip, slip_rate = measurement.slip_reference[0], measurement.slip_reference_rate[0]
         shaft_rate = planned_rate - slip_rate
         if not waits:
             shaft_rate += self._clutch.pid.update(planned_speed - slip - shaft_speed)
-        shaft_rate -= deviation / self._transmission.vehicle_inertia
+        shaft_rate -= deviation / self._clutch.transmission.vehicle_inertia
         request = self._clutch.request(measurement, shaft_rate, self._engine.clutch_torque)
         nominal = self._clutch.nominal(request)
         estimate = nominal + deviation

@@ -11,6 +11,7 @@ from ddct_controllers.mpc.model.augmented import offset_free_model, with_disturb
 from ddct_controllers.mpc.model.transmission_model import STATES, transmission_model
 from ddct_controllers.mpc.program.ahead import divided
 from ddct_controllers.mpc.program.horizon import condense
+from ddct_controllers.mpc.qp.problem import QpSolution
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -71,6 +72,35 @@ def test_what_drives_the_slip_is_divided_and_what_the_actuator_is_asked_is_not()
     assert np.array(scaled.slip_reference_rate) * 0.8 == pytest.approx(given.slip_reference_rate)
     kept = ('open_loop_torque', 'engine_speed', 'shaft_speed', 'wheel_speed', 'step')
     assert all(getattr(scaled, name) == getattr(given, name) for name in kept)
+
+
+class Solved:
+    """A solver with the same answer to every program."""
+
+    def __init__(self, *moves):
+        self._moves = np.array(moves)
+
+    def reset(self):
+        pass
+
+    def solve(self, f, lower, upper):
+        return QpSolution(self._moves, 1, 'solved')
+
+
+def test_the_moves_of_the_engine_are_multiplied_by_the_gain_and_those_of_the_clutch_are_not():
+    controller = make_controller(name='mpc4_wear')
+    for step in range(20):
+        controller.hold(measurement(step, 170.0 + 0.5 * step))
+    controller._solver = Solved(2.0, 5.0)
+    command = controller.update(measurement(20, 180.0))
+    gain = float(dict(command.status)['wear_gain_estimate'])
+    assert abs(gain - 1.0) > 0.05
+    assert command.clutch_torque == pytest.approx(2.0)
+    assert command.engine_torque == pytest.approx(200.0 + 5.0 * gain)
+    second = controller.update(measurement(21, 180.5))
+    later = float(dict(second.status)['wear_gain_estimate'])
+    assert second.clutch_torque == pytest.approx(4.0)
+    assert second.engine_torque == pytest.approx(200.0 + 5.0 * gain + 5.0 * later)
 
 
 def test_a_reset_controller_is_a_new_one():

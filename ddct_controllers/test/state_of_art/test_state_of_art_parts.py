@@ -105,7 +105,7 @@ def test_the_estimator_finds_what_the_clutch_transmits_beyond_its_model():
 
 
 def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass():
-    clutch = SlowClutch(ControllerContext(SETTINGS, {}), RIGID, 0.5)
+    clutch = SlowClutch(ControllerContext(SETTINGS, {}), 0.5)
     now = measurement()
     static = constant_slip_torque(DRIVELINE, now.engine_torque, now.load_torque)
     wanted = RIGID.constant_slip_acceleration(now) + 10.0

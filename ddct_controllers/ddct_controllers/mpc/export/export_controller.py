@@ -92,6 +92,8 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
 def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
     """Return what is written above every file."""
     clutch = chosen.inputs[0]
+    slip_limits = (terms.lowest for terms in chosen.outputs if terms.output == SLIP_SPEED)
+    lowest_slip = max(slip_limits, default=-math.inf)
     return [
         f'Predictive slip controller {name} with its observer, for a dry dual clutch.',
         _MARK,
@@ -101,7 +103,7 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
         f'Prediction over {chosen.prediction_steps} periods, moves over {chosen.control_steps}.',
         f'Clutch torque {clutch.lowest:g} to {clutch.highest:g} N m, its rate at most '
         f'{clutch.rate_n_m_s:g} N m/s (inf is none).',
-        f'Slip is softly kept above {_lowest_slip(chosen):g} rad/s (-inf is no limit).',
+        f'Slip is softly kept above {lowest_slip:g} rad/s (-inf is no limit).',
         '',
         'Call it every 10 ms (100 Hz). Units are SI: rad/s, rad/s^2, N m. C_load is a torque on',
         'the wheel, all others are on the engine side; a clutch torque above 0 slows the engine',
@@ -110,8 +112,3 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
         '',
         'SPDX-License-Identifier: Apache-2.0',
     ]
-
-
-def _lowest_slip(chosen: MpcSettings) -> float:
-    limits = (terms.lowest for terms in chosen.outputs if terms.output == SLIP_SPEED)
-    return max(limits, default=-math.inf)

@@ -1,4 +1,4 @@
-"""The clutch's share of two-input control: a slow speed, as far as the driveline is rigid."""
+"""The clutch's share of two-input control: a slow speed, which follows a plan."""
 
 import numpy as np
 
@@ -6,6 +6,7 @@ from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
@@ -37,15 +38,14 @@ class SlowClutch:
     loops are unstable from bandwidths of 0.5 to 1 rad/s on.
     """
 
-    def __init__(
-        self,
-        context: ControllerContext,
-        transmission: RigidTransmission,
-        bandwidth_rad_s: float,
-    ) -> None:
+    def __init__(self, context: ControllerContext, bandwidth_rad_s: float) -> None:
         """Start as the run does; the bandwidth is that of the speed that `pid` controls."""
         self._initial_request = initial_state(context.settings).torque_request
-        self._transmission = transmission
+        scenario = context.settings.scenario
+        transmission = self.transmission = RigidTransmission(scenario.driveline)
+        """For which it plans and asks."""
+        self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
+        """Of the engine speed."""
         corner = 0.5 * transmission.rigid_below_rad_s
         # At low frequency the shaft's acceleration is so far behind the wanted one.
         lag_s = 2.0 / corner + ACTUATION_LAG_S
@@ -56,24 +56,24 @@ class SlowClutch:
 
     def reset(self) -> None:
         """Start afresh, with the actuator at rest on the initial request."""
-        self.pid.reset()
-        self._filter.reset()
+        for part in (self.plan, self.pid, self._filter):
+            part.reset()
         self._actuator = Actuator(self._initial_request)
 
     def torque(self, measurement: Measurement, acceleration: float) -> float:
         """Return C_f in N m for a wanted shaft acceleration in rad/s^2."""
-        constant_slip = self._transmission.constant_slip_acceleration(measurement)
+        constant_slip = self.transmission.constant_slip_acceleration(measurement)
         passed = constant_slip + self._filter.update(acceleration - constant_slip)
         return (
-            self._transmission.load_at_shaft(measurement)
-            + self._transmission.vehicle_inertia * passed
+            self.transmission.load_at_shaft(measurement)
+            + self.transmission.vehicle_inertia * passed
         )
 
     def request(self, measurement: Measurement, acceleration: float, more: float) -> float:
         """Return the request in N m that gives this acceleration, and `more` N m beside it."""
         torque = self.torque(measurement, acceleration) + more
         request = max(torque, 0.0)
-        self.pid.unwind((torque - request) / self._transmission.vehicle_inertia)
+        self.pid.unwind((torque - request) / self.transmission.vehicle_inertia)
         return request
 
     def nominal(self, request: float) -> float:
