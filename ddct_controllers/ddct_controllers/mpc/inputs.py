@@ -136,7 +136,8 @@ class CommandedEngine:
     @staticmethod
     def limited_by_rows(settings: MpcSettings) -> MpcSettings:
         """Return the settings with a limit that no engine has: its rows' bounds come by period."""
-        limit, clutch, engine = 2.0 * MOST_AUTHORITY, *settings.inputs
+        limit = 2.0 * MOST_AUTHORITY
+        clutch, engine = settings.inputs
         engine = replace(engine, lowest=-limit, highest=limit, rate_n_m_s=math.inf)
         return replace(settings, inputs=(clutch, engine))
 
