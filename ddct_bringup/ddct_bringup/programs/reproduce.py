@@ -5,11 +5,12 @@ from ddct_bringup.reproduction.figures import command as figures_command
 from ddct_bringup.reproduction.numbers import command as numbers_command
 from ddct_bringup.reproduction.studies import command as studies_command
 from ddct_plant.graph.run_info import package_version
-from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'reproduce'
 _COMMANDS = (numbers_command, figures_command, studies_command, calibration_command)
 
+_DESCRIPTION = 'Compute what the thesis prints, and hold it against the print.'
 _EPILOG = """\
 examples:
   reproduce numbers                     every printed number beside ours
@@ -22,21 +23,8 @@ Each of them has its own --help."""
 
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
-    return run_program(PROGRAM, _reproduce, argv)
-
-
-def _reproduce(argv: list[str]) -> int:
-    parser = ProgramParser(
-        prog=PROGRAM,
-        description='Compute what the thesis prints, and hold it against the print.',
-        epilog=_EPILOG,
-    )
-    parser.add_argument('--version', action='version', version=package_version())
-    commands = parser.add_subparsers(required=True, metavar='WHAT')
-    for command in _COMMANDS:
-        command.add_parser(commands)
-    options = parser.parse_args(argv)
-    return options.run(options)
+    parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WHAT', version=package_version())
 
 
 if __name__ == '__main__':

@@ -7,11 +7,12 @@ from ddct_controllers.workflows import (
     mpc_command,
 )
 from ddct_plant.graph.run_info import package_version
-from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'design'
 _COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command)
 
+_DESCRIPTION = 'Design controllers, and check them in the loop as it runs.'
 _EPILOG = """\
 examples:
   design loop-shaping                                 Chapter 2, step by step
@@ -25,21 +26,8 @@ Each workflow has its own --help. The thesis's numbers, figures and studies: rep
 
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
-    return run_program(PROGRAM, _design, argv)
-
-
-def _design(argv: list[str]) -> int:
-    parser = ProgramParser(
-        prog=PROGRAM,
-        description='Design controllers, and check them in the loop as it runs.',
-        epilog=_EPILOG,
-    )
-    parser.add_argument('--version', action='version', version=package_version())
-    commands = parser.add_subparsers(required=True, metavar='WORKFLOW')
-    for command in _COMMANDS:
-        command.add_parser(commands)
-    options = parser.parse_args(argv)
-    return options.run(options)
+    parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW', version=package_version())
 
 
 if __name__ == '__main__':

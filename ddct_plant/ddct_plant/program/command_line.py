@@ -5,7 +5,8 @@ import contextlib
 import errno
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from types import ModuleType
 from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError
@@ -71,6 +72,32 @@ def run_program(
         complain(name, _refused(error))
         _drop_output()
         return 1
+
+
+def run_subcommands(
+    parser: ProgramParser,
+    commands: Sequence[ModuleType],
+    argv: list[str] | None,
+    *,
+    metavar: str,
+    version: str,
+) -> int:
+    """
+    Run the subcommand that `argv` chooses, by `run_program`, and return the exit code.
+
+    `add_parser(subparsers)` of each module in `commands` adds one; its parser's default `run`
+    takes the options and returns the exit code.
+    """
+
+    def chosen(argv: list[str]) -> int:
+        parser.add_argument('--version', action='version', version=version)
+        subparsers = parser.add_subparsers(required=True, metavar=metavar)
+        for command in commands:
+            command.add_parser(subparsers)
+        options = parser.parse_args(argv)
+        return options.run(options)
+
+    return run_program(parser.prog, chosen, argv)
 
 
 def complain(name: str, text: object) -> None:
