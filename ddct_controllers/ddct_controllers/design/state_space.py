@@ -1,9 +1,19 @@
-"""Algebra of single-input, single-output state-space systems: series, feedback, response."""
+"""
+Algebra of single-input, single-output state-space systems: series, feedback, response.
+
+Run-time controllers are designed and verified with these, so that they are ours: python-control
+takes a second to load, and evaluates frequencies one by one.
+"""
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import StateSpace
+
+if TYPE_CHECKING:
+    import control
 
 
 def series(*systems: StateSpace) -> StateSpace:
@@ -50,6 +60,14 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
     resolvent = variable.reshape(-1, 1, 1) * np.eye(len(system.a)) - system.a
     states = np.linalg.solve(resolvent, np.broadcast_to(system.b, (omega.size, *system.b.shape)))
     return ((system.c @ states)[:, 0, 0] + system.d[0, 0]).reshape(omega.shape)
+
+
+def to_control(system: StateSpace) -> 'control.StateSpace':
+    """Return the system as python-control's."""
+    # Only here: see above.
+    import control
+
+    return control.ss(system.a, system.b, system.c, system.d, dt=system.period_s or 0)
 
 
 def poles_rad_s(system: StateSpace) -> np.ndarray:

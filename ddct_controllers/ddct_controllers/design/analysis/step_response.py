@@ -3,9 +3,9 @@
 import numpy as np
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
-from ddct_controllers.design.state_space import close_loop
+from ddct_controllers.design.state_space import to_control
 from ddct_plant.base.checks import require_number
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
 
 TIME_STEP_S = 0.001
 """Between the points at which a continuous loop is evaluated, each of them exact."""
@@ -23,15 +23,11 @@ def step_response(
     require_number('duration_s', duration_s, above=0.0)
     system = loop.to_state_space() if isinstance(loop, ContinuousLoop) else loop
     period_s = system.period_s or TIME_STEP_S
-    closed = close_loop(system)
-    if system.period_s is None:
-        closed = discretise_zoh(closed, period_s)
     time = period_s * np.arange(round(duration_s / period_s) + 1)
-    state, output = np.zeros(len(closed.a)), np.zeros(len(time))
-    for index in range(len(time)):
-        output[index] = closed.c[0] @ state + closed.d[0, 0]
-        state = closed.a @ state + closed.b[:, 0]
-    return time, output
+    import control  # takes a second
+
+    closed = control.feedback(to_control(system))
+    return time, control.step_response(closed, time).outputs
 
 
 def rise_time_s(time: np.ndarray, output: np.ndarray, final_value: float = 1.0) -> float | None:
