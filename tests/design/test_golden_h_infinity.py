@@ -24,8 +24,7 @@ from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.h_infinity.design import generalised_plant
 from ddct_controllers.design.h_infinity.recipes import make_weights
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise
-from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U
-from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
+from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
 from ddct_controllers.synthesised import synthesised_design
 
 POINTS = 2**13

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import sampled_loop
-from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.margins import LoopMargins, closed_loop_stable, loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications

@@ -10,8 +10,12 @@ import numpy as np
 from ddct_controllers.design.analysis.driveline_mode import driveline_mode
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
-from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
+from ddct_controllers.design.analysis.worst_corner import (
+    PARAMETER_SPREAD,
+    WEAR_GAINS,
+    PlantCorners,
+    worst_corner,
+)
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.errors import DdctError

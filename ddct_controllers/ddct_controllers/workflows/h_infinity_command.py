@@ -4,10 +4,14 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.h_infinity.design import METHODS, HinfDesign, design_h_infinity
-from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
-from ddct_controllers.design.h_infinity.recipes import RECIPES, THESIS_SPECIFICATIONS, make_weights
+from ddct_controllers.design.h_infinity.recipes import (
+    PRINTED_WEIGHTS,
+    RECIPES,
+    THESIS_SPECIFICATIONS,
+    make_weights,
+)
 from ddct_controllers.design.h_infinity.report import (
     Record,
     design_record,

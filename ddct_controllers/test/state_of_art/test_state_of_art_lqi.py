@@ -6,8 +6,7 @@ from scipy.linalg import solve_discrete_are
 
 from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
-from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi

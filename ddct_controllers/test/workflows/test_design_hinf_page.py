@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
-from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.workflows.h_infinity_command import page_tables
 from ddct_plant.linear.lti import discretise_zoh

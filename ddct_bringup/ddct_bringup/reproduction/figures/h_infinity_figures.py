@@ -15,10 +15,14 @@ from ddct_bringup.reproduction.figures.thesis_figure import Drawing, ThesisFigur
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY, new_chart
 from ddct_controllers.design.drawing.charts import draw_bound
-from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
-from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS
-from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, relative_error, wear_family
-from ddct_controllers.design.h_infinity.weighted_norms import WeightedNorms, weighted_norms
+from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.uncertainty import (
+    PRINTED_W_U,
+    WeightedNorms,
+    relative_error,
+    wear_family,
+    weighted_norms,
+)
 from ddct_controllers.design.verified_design import WEAR_GAINS
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction

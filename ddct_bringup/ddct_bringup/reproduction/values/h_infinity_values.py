@@ -11,8 +11,7 @@ from ddct_bringup.reproduction.values.sampled_values import sampled_values
 from ddct_bringup.reproduction.values.step_values import step_values
 from ddct_bringup.reproduction.values.synthesis_values import synthesis_values
 from ddct_controllers.design.analysis.steady_state import poles_at_zero
-from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
-from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 
 

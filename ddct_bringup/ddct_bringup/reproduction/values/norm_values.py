@@ -9,10 +9,12 @@ from ddct_bringup.reproduction.values.step_values import fulfilled, step_figures
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.h_infinity.cleaning import clean
-from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
-from ddct_controllers.design.h_infinity.recipes import THESIS_SPECIFICATIONS
-from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U
-from ddct_controllers.design.h_infinity.weighted_norms import WeightedNorms, weighted_norms
+from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.uncertainty import (
+    PRINTED_W_U,
+    WeightedNorms,
+    weighted_norms,
+)
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.base.units import RAD_S_PER_RPM
 from ddct_plant.linear.lti import FactoredTransferFunction

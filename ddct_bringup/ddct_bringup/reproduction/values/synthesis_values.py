@@ -6,7 +6,7 @@ from ddct_bringup.reproduction.values.factors import pair, real
 from ddct_bringup.reproduction.values.raw_controller import RAW_CONTROLLER
 from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.design.h_infinity.design import design_h_infinity
-from ddct_controllers.design.h_infinity.printed_weights import PRINTED_WEIGHTS
+from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.synthesised import synthesised_design
 from ddct_plant.linear.cascade import Factor

@@ -1,6 +1,7 @@
-"""The worst that wear and driveline parameters together do to a sampled loop."""
+"""The worst that wear and the corners of the driveline's parameters do to a sampled loop."""
 
-from dataclasses import dataclass
+import itertools
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ddct_controllers.design.analysis.driveline_mode import (
     nearest_mode,
 )
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_plant
 from ddct_controllers.design.state_space import (
     close_loop,
     frequency_response,
@@ -20,11 +21,48 @@ from ddct_controllers.design.state_space import (
 )
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
 
+PARAMETER_SPREAD = 0.2
 WEAR_GAINS = (0.7, 1.0, 1.3)
 """K_usura from one end of Table 5.2 to the other."""
 _CANDIDATE_SHARE = 0.95
 """Corners whose M_s on the grid reaches this share of the highest are solved for exactly."""
+
+
+class PlantCorners:
+    """
+    Every combination of driveline parameters 20 % below and above their nominal values.
+
+    A parameter that is 0 stays 0. The thesis's driveline has 7 others, so 128 corners; they serve
+    any number of controllers.
+    """
+
+    omega = np.geomspace(0.01, np.pi / PERIOD_S, 800)
+    """Frequencies in rad/s of `responses`."""
+
+    def __init__(self, nominal: DrivelineParameters = IDENTIFIED_DRIVELINE) -> None:
+        """Sample the plant at every corner, with a new clutch."""
+        self.varied = [field.name for field in fields(nominal) if getattr(nominal, field.name)]
+        """Names of the parameters that differ between corners."""
+        ends = (1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD)
+        self.factors = list(itertools.product(ends, repeat=len(self.varied)))
+        """Per corner: multiples of the nominal values, in the order of `varied`."""
+        self.parameters = [
+            replace(
+                nominal,
+                **{
+                    name: factor * getattr(nominal, name)
+                    for name, factor in zip(self.varied, factors, strict=True)
+                },
+            )
+            for factors in self.factors
+        ]
+        """Per corner: the driveline."""
+        self.plants = [sampled_plant(parameters) for parameters in self.parameters]
+        """Per corner: hold, delay, actuator and driveline, as `sampled_plant` gives them."""
+        self.responses = np.array([frequency_response(p, self.omega) for p in self.plants])
+        """(corners, frequencies), complex."""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass, replace
 
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     ContinuousLoop,
@@ -12,6 +11,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
     sampled_plant,
 )
+from ddct_controllers.design.analysis.margins import closed_loop_stable
 from ddct_controllers.design.factored_form import factored_form
 from ddct_controllers.design.h_infinity.cleaning import CleaningStep, clean
 from ddct_controllers.design.h_infinity.problem import mixed_sensitivity, sampled_sensitivity

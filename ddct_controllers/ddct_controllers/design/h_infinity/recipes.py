@@ -64,6 +64,16 @@ class HinfWeights:
     """Level of the controller over the optimum."""
 
 
+PRINTED_WEIGHTS = HinfWeights(
+    SensitivityWeight(low_frequency_gain=0.15, peak=1.33),
+    ComplementaryWeight(peak=1.02, corner_rad_s=28.0),
+    effort=None,
+    sampled=False,
+    back_off=1.0,
+)
+"""Section 3.2.1: K, S_p, T_p and w_2 as printed; at the optimum, as the thesis's synthesis is."""
+
+
 def make_weights(
     recipe: str,
     specifications: TimeSpecifications = THESIS_SPECIFICATIONS,

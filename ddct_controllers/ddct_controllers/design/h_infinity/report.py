@@ -4,17 +4,15 @@ import dataclasses
 import math
 from typing import Any
 
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import (
     ContinuousLoop,
     continuous_loop,
     plant_in_rpm,
     sampled_loop,
 )
-from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
+from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.analysis.worst_corner import worst_corner
+from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.design.factored_form import factored_form
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
@@ -25,8 +23,8 @@ from ddct_controllers.design.h_infinity.uncertainty import (
     relative_error,
     shortfall_from_rad_s,
     wear_family,
+    weighted_norms,
 )
-from ddct_controllers.design.h_infinity.weighted_norms import weighted_norms
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh

@@ -1,14 +1,25 @@
-"""W_u: the size of the uncertainty that clutch wear makes (Section 3.2.1.3)."""
+"""
+W_u, the size of the uncertainty that clutch wear makes (Section 3.2.1.3), and weighted peaks.
+
+Section 3.2.2 judges a controller by the peaks of S and T under their weights and W_u.
+"""
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq, linprog
 
-from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, plant_in_rpm
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import (
+    IDENTIFIED_DRIVELINE,
+    ContinuousLoop,
+    plant_in_rpm,
+)
+from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, SensitivityWeight
 from ddct_controllers.design.verified_design import WEAR_GAINS
-from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 PRINTED_W_U = FactoredTransferFunction(0.2987, (3913.0 / 0.2987,), (13030.0,))
 """W_u as printed, made with `ginput`; it falls from 0.3003 to 0.2987, short of the error 0.3."""
@@ -72,3 +83,35 @@ def _least_excess(omega: np.ndarray, error: np.ndarray, pole: float) -> tuple[fl
     )
     slope, level, excess = found.x
     return float(excess), float(slope), float(level * pole**2)
+
+
+@dataclass(frozen=True)
+class WeightedNorms:
+    """Peaks over frequency; each below 1 meets its requirement."""
+
+    sensitivity: float
+    """||W_s S||, with the poles of W_s at 0."""
+    complementary: float
+    """||W_t T||."""
+    uncertainty: float
+    """||W_u T||: robust stability for all K_usura."""
+    stack: float
+    """||[W_s S; W_t T]||."""
+
+
+def weighted_norms(
+    loop: ContinuousLoop | StateSpace,
+    w_s: SensitivityWeight,
+    w_t: ComplementaryWeight,
+    w_u: FactoredTransferFunction,
+) -> WeightedNorms:
+    """Return the norms of a stable loop, on a grid that is dense around the poles."""
+    curve = LoopCurve(loop)
+    sensitivity = np.abs(1.0 / (1.0 + curve.values))
+    complementary = np.abs(curve.values) * sensitivity
+    first = sensitivity * np.abs(w_s.transfer_function().frequency_response(curve.omega))
+    second = complementary * np.abs(w_t.transfer_function().frequency_response(curve.omega))
+    third = complementary * np.abs(w_u.frequency_response(curve.omega))
+    return WeightedNorms(
+        *(float(np.max(x)) for x in (first, second, third, np.hypot(first, second)))
+    )

@@ -5,14 +5,13 @@ import math
 from typing import Any
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loop_stability import unstable_poles
 from ddct_controllers.design.analysis.loops import (
     ContinuousLoop,
     continuous_loop,
     plant_in_rpm,
     sampled_loop,
 )
-from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
-from ddct_controllers.design.loop_shaping.crossover_bound import require_reachable
+from ddct_controllers.design.analysis.margins import closed_loop_stable
 from ddct_controllers.design.loop_shaping.design import integrators, placement
 from ddct_controllers.design.loop_shaping.networks import LeadNetwork, with_crossover
 from ddct_controllers.design.loop_shaping.nyquist import stabilising_sign
 from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
     TimeSpecifications,
+    require_reachable,
 )
 from ddct_controllers.design.state_space import frequency_response, series
 from ddct_controllers.design.verified_design import (

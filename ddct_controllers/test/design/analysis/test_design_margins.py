@@ -7,9 +7,13 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable, unstable_poles
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
-from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.margins import (
+    LoopMargins,
+    closed_loop_stable,
+    loop_margins,
+    unstable_poles,
+)
 from ddct_controllers.design.state_space import frequency_response, scaled, series
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S

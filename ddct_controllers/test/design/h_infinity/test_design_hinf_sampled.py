@@ -7,8 +7,7 @@ import pytest
 
 from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.plant_corners import PlantCorners
-from ddct_controllers.design.analysis.worst_corner import WorstCorner, worst_corner
+from ddct_controllers.design.analysis.worst_corner import PlantCorners, WorstCorner, worst_corner
 from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.problem import sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import make_weights

@@ -13,7 +13,6 @@ from ddct_controllers.design.h_infinity.problem import mixed_sensitivity
 from ddct_controllers.design.h_infinity.recipes import HinfWeights, make_weights
 from ddct_controllers.design.h_infinity.synthesis import gamma_iteration as riccati_synthesis
 from ddct_controllers.design.h_infinity.synthesis import lmi as lmi_synthesis
-from ddct_controllers.design.h_infinity.synthesis.coordinates import balanced
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
     SynthesisError,
     synthesise,
@@ -22,6 +21,7 @@ from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
     GeneralisedPlant,
     GeneralisedPlantError,
+    balanced,
 )
 from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
 from ddct_controllers.design.h_infinity.synthesis.riccati import (

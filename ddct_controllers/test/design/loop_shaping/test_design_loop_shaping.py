@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.loop_stability import unstable_poles
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
-from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins
+from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins, unstable_poles
 from ddct_controllers.design.analysis.pulse_transfer_function import pulse_transfer_function
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.factored_form import factored_form

@@ -9,18 +9,16 @@ from scipy.optimize import brentq
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.loop_shaping.crossover_bound import (
-    highest_crossover_rad_s,
-    require_reachable,
-    unavoidable_lag,
-)
 from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
     TimeSpecifications,
+    highest_crossover_rad_s,
     prototype_complementary_peak,
     prototype_phase_margin,
     prototype_sensitivity_peak,
+    require_reachable,
     rise_time_crossover_product,
+    unavoidable_lag,
 )
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.printed import ACTUATOR

@@ -7,11 +7,14 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.loop_stability import closed_loop_stable
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
-from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.plant_corners import PARAMETER_SPREAD, PlantCorners
-from ddct_controllers.design.analysis.worst_corner import WEAR_GAINS, worst_corner
+from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
+from ddct_controllers.design.analysis.worst_corner import (
+    PARAMETER_SPREAD,
+    WEAR_GAINS,
+    PlantCorners,
+    worst_corner,
+)
 from ddct_controllers.design.state_space import frequency_response, scaled
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.h_infinity.synthesis.coordinates import balanced
-from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
+    GeneralisedPlant,
+    balanced,
+)
 from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
 from ddct_controllers.design.h_infinity.synthesis.riccati import (
     central_controller,

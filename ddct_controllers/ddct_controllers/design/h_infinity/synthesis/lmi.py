@@ -7,13 +7,15 @@ import numpy as np
 from scipy.linalg import block_diag, null_space
 from scipy.sparse import csc_matrix
 
-from ddct_controllers.design.h_infinity.synthesis.coordinates import balanced
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
     Synthesis,
     SynthesisError,
     verified_norm,
 )
-from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
+from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
+    GeneralisedPlant,
+    balanced,
+)
 from ddct_controllers.design.h_infinity.synthesis.riccati import central_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 
