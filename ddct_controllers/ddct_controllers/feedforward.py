@@ -1,13 +1,13 @@
 """Feedforward of engine torque and load torque (thesis Section 1.6.2), as it runs."""
 
-from ddct_controllers.design.feedforward.design import design_feedforward, state_at_rest
+from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_plant.models.parameters import DrivelineParameters
 
 
 class Feedforward:
     """
-    u = -C_1 C_m - C_2 C_load with proper, stable C_1 and C_2; see `design.feedforward_design`.
+    u = -C_1 C_m - C_2 C_load with proper, stable C_1 and C_2; see `design.feedforward`.
 
     C_1 and C_2 are negative, as P_2 is, so that the request is about 0.88 C_m, led by what the
     actuator lags.

@@ -4,8 +4,9 @@ import numpy as np
 from scipy.linalg import eigvals
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.cascade import Factor
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 _REAL = 1e-9
 """Imaginary part, relative to the magnitude, below which a root counts as real."""
@@ -31,6 +32,15 @@ def factored_form(system: StateSpace) -> FactoredTransferFunction:
     value = float((system.c @ resolvent + system.d)[0, 0])
     gain = value * float((np.prod(point - poles) / np.prod(point - zeros)).real)
     return FactoredTransferFunction(gain, _factors(zeros), _factors(poles))
+
+
+def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTransferFunction:
+    """
+    Return the zero-order-hold equivalent at 10 ms, as the thesis's `c2d` gives it (Section 2.2.2).
+
+    The variable of the result is z: a number a stands for (z + a), (b, c) for z^2 + b z + c.
+    """
+    return factored_form(discretise_zoh(controller.to_state_space(), PERIOD_S))
 
 
 def _zeros(system: StateSpace, far: float) -> np.ndarray:

@@ -14,7 +14,7 @@ from ddct_controllers.design.drawing.chart_style import (
 )
 from ddct_controllers.design.drawing.charts import decibel
 from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS, integrators
-from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork
+from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network
 from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 
@@ -100,8 +100,8 @@ def _draw_network(heading: str, kind: str) -> Drawing:
     figure, panels = new_chart(heading, panels=2)
     normalised = np.geomspace(0.01, 1000.0, 500)
     for ratio, style in zip(_RATIOS, line_styles(), strict=False):
-        network = LeadNetwork(1.0, ratio) if kind == 'd' else LagNetwork(1.0, ratio)
-        response = network.transfer_function.frequency_response(normalised)
+        network = lead_network(1.0, ratio) if kind == 'd' else lag_network(1.0, ratio)
+        response = network.frequency_response(normalised)
         for axes, values in zip(panels, (decibel(response), _degrees(response)), strict=True):
             axes.semilogx(normalised, values, label=f'm_{kind} = {ratio:g}', **style)
     frequency = 'ω/z_d' if kind == 'd' else 'ω/p_i'

@@ -10,11 +10,9 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers import feedforward
-from ddct_controllers.design.feedforward.design import TORQUE_RATE_WEIGHT, design_feedforward
-from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
+from ddct_controllers.design.feedforward import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
@@ -86,19 +84,6 @@ def test_the_table_of_weights(monkeypatch):
 def test_the_weight_that_we_take_has_the_lowest_std_of_the_acceleration():
     rows = [row for row in table('weight') if row[0] != 'static law']
     assert float(min(rows, key=lambda row: float(row[4]))[0]) == TORQUE_RATE_WEIGHT
-
-
-def test_the_table_of_residuals():
-    gains = [constant_slip_torque(DRIVELINE, *unit) for unit in ((1.0, 0.0), (0.0, 1.0))]
-    empty = np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0))
-    static = StateSpace(*empty, np.array([gains]), PERIOD_S)
-    exact, ours = design_feedforward(DRIVELINE, NEARLY_EXACT), design_feedforward(DRIVELINE)
-    for frequency, *cells in table('residual'):
-        omega = np.array([2.0 * np.pi * float(frequency)])
-        values = [engine_residual(model, omega, DRIVELINE) for model in (static, exact, ours)]
-        values.append(load_residual(ours, omega, DRIVELINE))
-        for cell, value in zip(cells, values, strict=True):
-            assert_printed(cell, abs(value[0]))
 
 
 @pytest.mark.parametrize('row', table('controllers'), ids=lambda row: row[0])

@@ -1,7 +1,5 @@
 """The steady-state requirement: how many integrators G_c needs, by the final-value theorem."""
 
-import math
-
 import numpy as np
 
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
@@ -33,26 +31,3 @@ def required_integrators(
         )
     needed = poles_at_zero(disturbance_path) + disturbance_order + 1
     return max(0, needed - poles_at_zero(plant))
-
-
-def steady_state_error(
-    loop: FactoredTransferFunction,
-    disturbance_path: FactoredTransferFunction,
-    disturbance_order: int = 0,
-) -> float:
-    """
-    Return |e| at t = inf for the disturbance 1 / s^(h + 1): zero, a finite value or infinity.
-
-    It is the limit of |path / L| / s^h at s = 0, for a stable loop that integrates.
-    """
-    order = poles_at_zero(loop) - poles_at_zero(disturbance_path) - disturbance_order
-    if order != 0:
-        return 0.0 if order > 0 else math.inf
-    return abs(_leading_coefficient(disturbance_path) / _leading_coefficient(loop))
-
-
-def _leading_coefficient(transfer_function: FactoredTransferFunction) -> float:
-    """Return G(s) s^q at s = 0, q being the number of poles there."""
-    zeros, poles = transfer_function.zeros, transfer_function.poles
-    product = np.prod(-zeros[zeros != 0.0]) / np.prod(-poles[poles != 0.0])
-    return float((transfer_function.gain * product).real)

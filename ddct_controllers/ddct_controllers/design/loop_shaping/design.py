@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.step_response import overshoot, step_response
-from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork, with_crossover
+from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network, with_crossover
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import clutch_to_slip
@@ -19,9 +19,9 @@ PLACEMENT_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.6, overshoot=0.14)
 """What G_c2 is designed for."""
 PLACEMENT_CROSSOVER_RAD_S = 3.5
 """w_c that the thesis takes for t_r = 0.6 s."""
-_LEAD = LeadNetwork(zero_rad_s=1.0, ratio=16.0)
+_LEAD = lead_network(zero_rad_s=1.0, ratio=16.0)
 """As G_c1 has it: the text says z_d = w_c = 8 rad/s, the printed zeros and poles are 1 and 16."""
-_LAG = LagNetwork(pole_rad_s=0.6, ratio=16.0)
+_LAG = lag_network(pole_rad_s=0.6, ratio=16.0)
 _GAIN = 0.3
 """|K_c| of G_c1."""
 
@@ -41,13 +41,12 @@ def integrators(gain: float, count: int) -> FactoredTransferFunction:
 
 def network_steps() -> tuple[DesignStep, ...]:
     """Return the stages from K_c/s to G_c1, equation (2.1), which is the last one."""
-    lead, lag = _LEAD.transfer_function, _LAG.transfer_function
-    networks = integrators(1.0, 1) * lead * lead * lag
+    networks = integrators(1.0, 1) * _LEAD * _LEAD * _LAG
     return (
         DesignStep('-1/s', integrators(-1.0, 1)),
-        DesignStep('and one lead', integrators(-1.0, 1) * lead),
-        DesignStep('and two leads', integrators(-1.0, 1) * lead * lead),
-        DesignStep('and the lag', integrators(-1.0, 1) * lead * lead * lag),
+        DesignStep('and one lead', integrators(-1.0, 1) * _LEAD),
+        DesignStep('and two leads', integrators(-1.0, 1) * _LEAD * _LEAD),
+        DesignStep('and the lag', integrators(-1.0, 1) * _LEAD * _LEAD * _LAG),
         DesignStep('|K_c| = 0.3: G_c1', integrators(-_GAIN, 0) * networks),
     )
 

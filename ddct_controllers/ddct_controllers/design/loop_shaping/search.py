@@ -9,7 +9,7 @@ import numpy as np
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
 from ddct_controllers.design.analysis.margins import closed_loop_stable
 from ddct_controllers.design.loop_shaping.design import integrators, placement
-from ddct_controllers.design.loop_shaping.networks import LeadNetwork, with_crossover
+from ddct_controllers.design.loop_shaping.networks import lead_network, with_crossover
 from ddct_controllers.design.loop_shaping.nyquist import stabilising_sign
 from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
@@ -190,7 +190,7 @@ class _Search:
     ) -> FactoredTransferFunction:
         if structure == 'placement':
             return placement(crossover, ratio * crossover, self._parameters, self._count)
-        lead = LeadNetwork(ratio * crossover, _LEAD_POLE_RATIO / ratio).transfer_function
+        lead = lead_network(ratio * crossover, _LEAD_POLE_RATIO / ratio)
         shape = integrators(self._sign, self._count)
         for _ in range(self._count):
             shape = shape * lead

@@ -2,14 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.analysis.steady_state import (
-    poles_at_zero,
-    required_integrators,
-    steady_state_error,
-)
+from ddct_controllers.design.analysis.steady_state import poles_at_zero, required_integrators
 from ddct_controllers.design.loop_shaping.design import integrators
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.printed import PRINTED_CONTROLLERS
@@ -21,6 +18,29 @@ from ddct_plant.models.parameters import DrivelineParameters
 DRIVELINE = DrivelineParameters()
 PLANT = plant_in_rpm(DRIVELINE)
 ENGINE, LOAD = engine_to_slip(DRIVELINE), load_to_slip(DRIVELINE)
+
+
+def steady_state_error(
+    loop: FactoredTransferFunction,
+    disturbance_path: FactoredTransferFunction,
+    disturbance_order: int = 0,
+) -> float:
+    """
+    Return |e| at t = inf for the disturbance 1 / s^(h + 1): zero, a finite value or infinity.
+
+    It is the limit of |path / L| / s^h at s = 0, for a stable loop that integrates.
+    """
+    order = poles_at_zero(loop) - poles_at_zero(disturbance_path) - disturbance_order
+    if order != 0:
+        return 0.0 if order > 0 else math.inf
+    return abs(_leading_coefficient(disturbance_path) / _leading_coefficient(loop))
+
+
+def _leading_coefficient(transfer_function: FactoredTransferFunction) -> float:
+    """Return G(s) s^q at s = 0, q being the number of poles there."""
+    zeros, poles = transfer_function.zeros, transfer_function.poles
+    product = np.prod(-zeros[zeros != 0.0]) / np.prod(-poles[poles != 0.0])
+    return float((transfer_function.gain * product).real)
 
 
 def test_a_step_of_engine_torque_needs_one_integrator_as_section_2_2_says():

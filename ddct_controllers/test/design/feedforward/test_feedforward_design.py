@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import sampled_plant
-from ddct_controllers.design.feedforward.design import (
+from ddct_controllers.design.feedforward import (
     TORQUE_RATE_WEIGHT,
     design_feedforward,
     state_at_rest,
 )
-from ddct_controllers.design.feedforward.residual import engine_residual, load_residual
 from ddct_controllers.design.state_space import poles_rad_s
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.feedforward import Feedforward
@@ -135,27 +134,6 @@ def test_the_torsional_mode_is_damped_in_it_and_not_in_an_exact_inverse():
 
     assert damping(FILTER) > 0.5
     assert damping(EXACT) < 0.16
-
-
-def test_it_compensates_the_engine_torque_better_than_the_static_law_up_to_3_3_hz():
-    omega = 2.0 * np.pi * np.append(np.geomspace(0.05, 3.3, 50), 3.4)
-    ours = np.abs(engine_residual(FILTER, omega, DRIVELINE))
-    static = np.abs(engine_residual(STATIC, omega, DRIVELINE))
-    assert np.all(ours[:-1] < static[:-1])
-    assert ours[-1] > static[-1]
-    assert ours[omega < 2.0 * np.pi].max() < 0.03
-
-
-def test_it_compensates_the_load_up_to_a_third_of_a_hertz():
-    omega = 2.0 * np.pi * np.geomspace(0.05, 0.3, 20)
-    assert np.abs(load_residual(FILTER, omega, DRIVELINE)).max() < 0.05
-
-
-def test_without_a_filter_the_residual_is_one():
-    nothing = replace(STATIC, d=np.zeros((1, 2)))
-    omega = np.array([1.0, 10.0])
-    for residual in (engine_residual, load_residual):
-        np.testing.assert_array_equal(residual(nothing, omega, DRIVELINE), [1.0, 1.0])
 
 
 def test_a_run_that_starts_with_torque_is_not_taken_for_a_ramp():

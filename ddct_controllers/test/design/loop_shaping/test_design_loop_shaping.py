@@ -7,16 +7,15 @@ import pytest
 
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins, unstable_poles
-from ddct_controllers.design.analysis.pulse_transfer_function import pulse_transfer_function
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.factored_form import factored_form
+from ddct_controllers.design.factored_form import factored_form, pulse_transfer_function
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     largest_zero_rad_s,
     network_steps,
     placement,
 )
-from ddct_controllers.design.loop_shaping.networks import LagNetwork, LeadNetwork
+from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network
 from ddct_controllers.design.loop_shaping.specifications import prototype_phase_margin
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
@@ -84,8 +83,8 @@ def test_the_steps_to_g_c1_end_with_a_stable_loop_and_the_crossover():
 
 def test_leads_from_w_c_on_as_the_text_has_them_are_unstable():
     """z_d = w_c = 8 rad/s; G_c1 has z_d = 1 rad/s."""
-    lead = LeadNetwork(zero_rad_s=8.0, ratio=16.0).transfer_function
-    lag = LagNetwork(pole_rad_s=0.6, ratio=16.0).transfer_function
+    lead = lead_network(zero_rad_s=8.0, ratio=16.0)
+    lag = lag_network(pole_rad_s=0.6, ratio=16.0)
     controller = FactoredTransferFunction(-0.3, (), (0.0,)) * lead * lead * lag
     assert unstable_poles(continuous_loop(controller)) > 0
 
