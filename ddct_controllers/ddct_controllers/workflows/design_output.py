@@ -1,60 +1,76 @@
-"""Where a design goes: DIR/NAME.yaml, a controller's name for every program, and its charts."""
+"""What both design methods share: options, a name that is free, tables, JSON, and the files."""
 
+import argparse
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.designed import DesignedController, load_designed, require_name
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import write_text
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.program.table import Table, print_table
 
 
-def require_free(name: str, folder: Path | None, *, overwrite: bool) -> None:
+def add_design_options(parser: argparse.ArgumentParser) -> None:
+    """Add the specifications, and what is to be written; None is what was not given."""
+    add = parser.add_argument
+    add('--rise-time', type=float, metavar='S', help='longest t_r')
+    add('--overshoot', type=float, metavar='PERCENT', help='largest overshoot')
+    add('--name', metavar='NAME', help='of the controller (default: mine)')
+    add('--out', type=Path, metavar='DIR', help='write the controller and its charts')
+    add('--overwrite', action='store_true', default=None, help='replace an earlier design')
+    add('--json', metavar='FILE', help='write all figures; - is standard output')
+    add('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+
+
+def free_name(options: argparse.Namespace) -> str:
     """
-    Check before the work that a design can be kept under this name; raise DdctError if not.
+    Return the design's name, checked before the work; raise DdctError when it cannot be kept.
 
-    `overwrite` replaces only a file that holds a designed controller.
+    `--overwrite` replaces only a file that holds a designed controller.
     """
+    name: str = 'mine' if options.name is None else options.name
     require_name(name)
     if name in controller_names():
         raise ParameterError(f'--name {name} is taken by another controller: choose another')
-    if folder is None:
-        return
-    path = design_path(folder, name)
-    if path.exists():
-        if not overwrite:
+    path = _path(options, name)
+    if path and path.exists():
+        if not options.overwrite:
             raise DdctError(f'{path} exists already: choose another --name or add --overwrite')
         load_designed(str(path))
+    return name
 
 
-def design_path(folder: Path, name: str) -> Path:
-    """Return where the controller called `name` goes."""
-    return folder / f'{name}.yaml'
+def show(options: argparse.Namespace, tables: Iterable[Table], record: Mapping[str, Any]) -> None:
+    """Print the tables unless standard output is for the JSON, and write that if asked for."""
+    if options.json != STDOUT:
+        for table in tables:
+            print_table(table)
+    if options.json:
+        write_json(options.json, record)
 
 
 def write_design(
-    folder: Path,
-    designed: DesignedController,
-    specifications: TimeSpecifications,
-    parameters: DrivelineParameters,
-) -> Path:
-    """Write charts and, last, the controller; return its path. Raise DdctError on failure."""
+    options: argparse.Namespace, designed: DesignedController, specifications: TimeSpecifications
+) -> None:
+    """Write charts and, last, the controller, if asked for; raise DdctError on failure."""
+    path = _path(options, designed.name)
+    if not path:
+        return
     # matplotlib takes most of a second to load.
     from ddct_controllers.design.drawing.design_charts import write_design_charts
 
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DdctError(f'--out {folder}: cannot be made ({error.strerror})') from error
-    write_design_charts(
-        folder,
-        designed.name,
-        designed.transfer_function,
-        designed.sampled(),
-        specifications,
-        parameters,
-    )
-    path = design_path(folder, designed.name)
+        raise DdctError(f'--out {path.parent}: cannot be made ({error.strerror})') from error
+    write_design_charts(path.parent, designed, specifications)
     write_text(str(path), designed.to_yaml())
-    return path
+    if options.json != STDOUT:
+        print(f'Run it: bringup --controller {path} --out runs/{designed.name}')
+
+
+def _path(options: argparse.Namespace, name: str) -> Path | None:
+    return options.out / f'{name}.yaml' if options.out else None

@@ -1,11 +1,10 @@
 """Subcommand `design h-infinity`: Chapter 3 step by step, or a controller of one's own."""
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
-from ddct_controllers.design.h_infinity.design import METHODS, HinfDesign, design_h_infinity
+from ddct_controllers.design.h_infinity.design import METHODS, design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import (
     PRINTED_WEIGHTS,
     RECIPES,
@@ -13,7 +12,6 @@ from ddct_controllers.design.h_infinity.recipes import (
     make_weights,
 )
 from ddct_controllers.design.h_infinity.report import (
-    Record,
     design_record,
     printed_record,
     provenance,
@@ -24,18 +22,22 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.designed import BILINEAR, HOLD, DesignedController
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
-from ddct_controllers.workflows.design_output import require_free, write_design
+from ddct_controllers.workflows.design_output import (
+    add_design_options,
+    free_name,
+    show,
+    write_design,
+)
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.files.output_file import write_text
 from ddct_plant.program.page_tables import fill_tables, read_page
-from ddct_plant.program.table import print_table
 
 _DESCRIPTION = """\
 Chapter 3 of the thesis: specifications to weights, synthesis, cleaning, discretisation, and
 what the closed loop then does. A controller is given only when its closed loop was verified.
 --weights thesis: K and w_2 as printed. fitted: those that lead to nearly the printed Hinf1.
 sampled: as printed with one more on the torque, and hold and delay in the plant; run this one.
+Without --rise-time and --overshoot they are the thesis's 0.3 s and 8 %.
 K grows with the square of the rise time, w_2 falls with it, unless they are given.
 --out writes the controller as DIR/NAME.yaml, which `bringup` and `compare` take, and charts."""
 _EXAMPLES = """\
@@ -57,19 +59,13 @@ def add_parser(subparsers: Any) -> None:
         epilog=_EXAMPLES,
     )
     add = parser.add_argument
-    add('--rise-time', type=float, metavar='S', help='t_r (default: 0.3)')
-    add('--overshoot', type=float, metavar='PERCENT', help='(default: 8)')
     add('--weights', choices=tuple(RECIPES), default=_DEFAULT_RECIPE, help='(default: thesis)')
     add('--low-frequency-gain', type=float, metavar='K', help='|S| near 0 over w^2')
     add('--bandwidth', type=float, metavar='W_2', help='corner of W_t in rad/s')
     add('--effort', type=float, metavar='TORQUE', help='N m per rpm that cost 1 (sampled)')
     add('--back-off', type=float, metavar='FACTOR', help='level over the optimum (riccati)')
     add('--method', choices=METHODS, default=METHODS[0], help='(default: riccati)')
-    add('--name', default='mine', help='of the controller (default: mine)')
-    add('--out', type=Path, metavar='DIR', help='write the controller and its charts')
-    add('--overwrite', action='store_true', help='replace an earlier design')
-    add('--json', metavar='FILE', help='write all figures; - is standard output')
-    add('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    add_design_options(parser)
     parser.set_defaults(run=run)
 
 
@@ -79,8 +75,11 @@ def run(options: argparse.Namespace) -> int:
         page = read_page(options.write_doc)
         write_text(options.write_doc, fill_tables(page, 'h-infinity', page_tables()))
         return 0
-    require_free(options.name, options.out, overwrite=options.overwrite)
-    specifications = _specifications(options)
+    name = free_name(options)
+    specifications = TimeSpecifications(
+        _DEFAULTS.rise_time_s if options.rise_time is None else options.rise_time,
+        _DEFAULTS.overshoot if options.overshoot is None else options.overshoot / 100.0,
+    )
     weights = make_weights(
         options.weights,
         specifications,
@@ -92,15 +91,17 @@ def run(options: argparse.Namespace) -> int:
     if options.method == 'lmi' and options.back_off is not None:
         raise ParameterError('--back-off is for --method riccati: the LMIs give their optimum')
     design = design_h_infinity(weights, method=options.method)
+    designed = DesignedController(
+        name,
+        design.cleaned,
+        provenance(options.weights, specifications, design),
+        BILINEAR if weights.sampled else HOLD,
+    )
     uncertainty = uncertainty_record()
-    record = design_record(options.name, options.weights, specifications, design, PlantCorners())
-    if options.json != STDOUT:
-        for table in design_tables([record], uncertainty).values():
-            print_table(table)
-    if options.out:
-        _write(options, specifications, design)
-    if options.json:
-        write_json(options.json, record | {'uncertainty': uncertainty})
+    record = design_record(name, options.weights, specifications, design, PlantCorners())
+    tables = design_tables([record], uncertainty)
+    show(options, tables.values(), record | {'uncertainty': uncertainty})
+    write_design(options, designed, specifications)
     return 0
 
 
@@ -111,34 +112,8 @@ def page_tables() -> dict[str, Any]:
         design_record(name, recipe, _DEFAULTS, synthesised_design(name), corners)
         for name, recipe in SYNTHESISED.items()
     ]
-    tables = design_tables(records, uncertainty_record())
-    return tables | {'printed': loop_table(_printed_records())}
-
-
-def _printed_records() -> dict[str, Record]:
-    return {
+    printed = {
         name: printed_record(controller, PRINTED_WEIGHTS, _DEFAULTS)
         for name, controller in H_INFINITY_CONTROLLERS.items()
     }
-
-
-def _specifications(options: argparse.Namespace) -> TimeSpecifications:
-    rise_time_s, percent = options.rise_time, options.overshoot
-    return TimeSpecifications(
-        _DEFAULTS.rise_time_s if rise_time_s is None else rise_time_s,
-        _DEFAULTS.overshoot if percent is None else percent / 100.0,
-    )
-
-
-def _write(
-    options: argparse.Namespace, specifications: TimeSpecifications, design: HinfDesign
-) -> None:
-    designed = DesignedController(
-        options.name,
-        design.cleaned,
-        provenance(options.weights, specifications, design),
-        BILINEAR if design.weights.sampled else HOLD,
-    )
-    path = write_design(options.out, designed, specifications, DrivelineParameters())
-    if options.json != STDOUT:
-        print(f'Run it: bringup --controller {path} --out runs/{options.name}')
+    return design_tables(records, uncertainty_record()) | {'printed': loop_table(printed)}

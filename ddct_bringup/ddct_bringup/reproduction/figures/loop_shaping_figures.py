@@ -10,8 +10,8 @@ from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_respo
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_SPECIFICATIONS,
-    integrators,
 )
+from ddct_controllers.design.loop_shaping.networks import integrators
 from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS

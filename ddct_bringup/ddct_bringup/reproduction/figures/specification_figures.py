@@ -13,8 +13,8 @@ from ddct_controllers.design.drawing.chart_style import (
     new_chart,
 )
 from ddct_controllers.design.drawing.charts import decibel
-from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS, integrators
-from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network
+from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS
+from ddct_controllers.design.loop_shaping.networks import integrators, lag_network, lead_network
 from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 

@@ -10,8 +10,8 @@ from ddct_bringup.reproduction.values.norm_values import norm_values
 from ddct_bringup.reproduction.values.sampled_values import sampled_values
 from ddct_bringup.reproduction.values.step_values import step_values
 from ddct_bringup.reproduction.values.synthesis_values import synthesis_values
-from ddct_controllers.design.analysis.steady_state import poles_at_zero
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.loop_shaping.networks import poles_at_zero
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 
 

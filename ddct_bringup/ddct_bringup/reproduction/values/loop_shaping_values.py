@@ -15,19 +15,23 @@ from ddct_bringup.reproduction.values.step_values import (
 )
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.analysis.steady_state import poles_at_zero, required_integrators
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
     PLACEMENT_SPECIFICATIONS,
-    integrators,
     largest_zero_rad_s,
     network_steps,
     placement,
 )
-from ddct_controllers.design.loop_shaping.networks import network_phase
+from ddct_controllers.design.loop_shaping.networks import (
+    integrators,
+    network_phase,
+    poles_at_zero,
+    required_integrators,
+    stabilising_sign,
+)
 from ddct_controllers.design.loop_shaping.nichols import contours
-from ddct_controllers.design.loop_shaping.nyquist import nyquist_count, stabilising_sign
+from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     prototype_phase_margin,

@@ -21,67 +21,47 @@ from ddct_controllers.design.drawing.chart_style import (
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_controllers.designed import DesignedController
+from ddct_plant.linear.lti import StateSpace
 
-CHARTS = ('nyquist', 'nichols', 'step')
-"""Each is written as NAME_<chart>.png."""
 _STEP_RISE_TIMES = 8.0
 """Length of the step chart in rise times asked for."""
 
 
-def chart_path(folder: Path, name: str, chart: str) -> Path:
-    """Return where a chart of the controller called `name` goes."""
-    return folder / f'{name}_{chart}.png'
-
-
 def write_design_charts(
-    folder: Path,
-    name: str,
-    controller: FactoredTransferFunction,
-    sampled: StateSpace,
-    specifications: TimeSpecifications,
-    parameters: DrivelineParameters,
+    folder: Path, designed: DesignedController, specifications: TimeSpecifications
 ) -> None:
     """
-    Draw the loop as designed and as run into `folder`; raise DdctError when it cannot be written.
+    Draw NAME_nyquist.png, NAME_nichols.png and NAME_step.png; raise DdctError on failure.
 
-    Both are shown: the continuous loop without delay, which the thesis judges, and that of the
-    `sampled` controller with hold and delay.
+    The loop is shown as designed, continuous without delay, which the thesis judges, and as run:
+    sampled with hold and delay.
     """
     loops: dict[str, ContinuousLoop | StateSpace] = {
-        'continuous, no delay': continuous_loop(controller, parameters),
-        'as run: sampled, hold and delay': sampled_loop(sampled, parameters),
+        'continuous, no delay': continuous_loop(designed.transfer_function),
+        'as run: sampled, hold and delay': sampled_loop(designed.sampled()),
     }
-    curves = {label: LoopCurve(loop) for label, loop in loops.items()}
+    curves = {label: LoopCurve(loop).values for label, loop in loops.items()}
+    charted = {label: nichols_curve(values) for label, values in curves.items()}
     duration_s = _STEP_RISE_TIMES * specifications.rise_time_s
-    titles = {
-        'nyquist': 'Nyquist plot around -1 + j0',
-        'nichols': 'Nichols chart with the bounds S_p and T_p',
-        'step': 'Step response of the closed loop',
-    }
+    responses = {label: step_response(loop, duration_s) for label, loop in loops.items()}
     with chart_style():
-        for chart in CHARTS:
-            figure, (axes,) = new_chart(f'{name}: {titles[chart]}')
-            if chart == 'nyquist':
-                _draw_nyquist(axes, curves, specifications)
-            elif chart == 'nichols':
-                charted = {label: nichols_curve(curve.values) for label, curve in curves.items()}
-                draw_nichols(axes, charted, specifications)
-            else:
-                _draw_bounds(axes, specifications)
-                draw_step_response(
-                    axes,
-                    {label: step_response(loop, duration_s) for label, loop in loops.items()},
-                )
-            save_chart(figure, chart_path(folder, name, chart))
+        nyquist, (axes,) = new_chart(f'{designed.name}: Nyquist plot around -1 + j0')
+        _draw_nyquist(axes, curves, specifications)
+        nichols, (axes,) = new_chart(f'{designed.name}: Nichols chart with the bounds S_p and T_p')
+        draw_nichols(axes, charted, specifications)
+        step, (axes,) = new_chart(f'{designed.name}: Step response of the closed loop')
+        _draw_bounds(axes, specifications)
+        draw_step_response(axes, responses)
+        for chart, figure in (('nyquist', nyquist), ('nichols', nichols), ('step', step)):
+            save_chart(figure, folder / f'{designed.name}_{chart}.png')
 
 
 def _draw_nyquist(
-    axes: Axes, curves: dict[str, LoopCurve], specifications: TimeSpecifications
+    axes: Axes, curves: dict[str, np.ndarray], specifications: TimeSpecifications
 ) -> None:
-    for (label, curve), style in zip(curves.items(), line_styles(), strict=False):
-        axes.plot(curve.values.real, curve.values.imag, label=label, **style)
+    for (label, values), style in zip(curves.items(), line_styles(), strict=False):
+        axes.plot(values.real, values.imag, label=label, **style)
     circle = np.exp(1j * np.linspace(0.0, math.tau, 361)) / specifications.sensitivity_peak - 1.0
     level = f'|S| = S_p = {specifications.sensitivity_peak:.2f}'
     axes.plot(circle.real, circle.imag, color=ORANGE, linestyle='--', label=level)

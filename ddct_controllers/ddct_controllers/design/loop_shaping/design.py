@@ -6,7 +6,12 @@ from scipy.optimize import brentq
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.step_response import overshoot, step_response
-from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network, with_crossover
+from ddct_controllers.design.loop_shaping.networks import (
+    integrators,
+    lag_network,
+    lead_network,
+    with_crossover,
+)
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import clutch_to_slip
@@ -32,11 +37,6 @@ class DesignStep:
 
     name: str
     controller: FactoredTransferFunction
-
-
-def integrators(gain: float, count: int) -> FactoredTransferFunction:
-    """Return K_c / s^mu."""
-    return FactoredTransferFunction(gain, (), (0.0,) * count)
 
 
 def network_steps() -> tuple[DesignStep, ...]:

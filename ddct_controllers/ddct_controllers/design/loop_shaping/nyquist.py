@@ -1,4 +1,4 @@
-"""The Nyquist criterion P_cl = P_ol + N, by python-control, and the sign it asks of K_c."""
+"""The Nyquist criterion P_cl = P_ol + N, by python-control (Section 2.2.1)."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,6 @@ import numpy as np
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop, to_control
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.linear.lti import FactoredTransferFunction
 
 _INDENTATION_RAD_S = 1e-6
 """
@@ -17,13 +16,11 @@ A closed-loop pole within one would be missed: one that the loop hardly moves of
 """
 _ON_AXIS = 1e-9
 """Real part, relative to the magnitude, below which a closed-loop pole is on the axis."""
-_SLOW = 1e-7
-"""A frequency below all others of a plant, relative to its slowest pole or zero."""
 
 
 @dataclass(frozen=True)
 class NyquistCount:
-    """What the Nyquist curve of a loop tells of its closed loop (Section 2.2.1)."""
+    """What the Nyquist curve of a loop tells of its closed loop ."""
 
     open_loop_unstable: int
     """P_ol, poles of L with positive real part."""
@@ -55,17 +52,3 @@ def nyquist_count(loop: ContinuousLoop) -> NyquistCount:
 
     curve = control.nyquist_response(to_control(system), indent_radius=_INDENTATION_RAD_S)
     return NyquistCount(int(np.count_nonzero(factored.poles.real > 0.0)), int(curve.count))
-
-
-def stabilising_sign(plant: FactoredTransferFunction, integrators: int) -> int:
-    """
-    Return the only sign of K_c in K_c/s^mu times networks that can stabilise the loop, +1 or -1.
-
-    On the positive real axis a network is positive, so L(s) = K_c/s^mu R(s) G(s) has one sign
-    from some s down to 0. If it is negative there, 1 + L goes from minus infinity to 1 and has a
-    positive root, and P_cl is odd, whatever the networks: then K_c has the wrong sign.
-    """
-    corners = np.abs(np.concatenate([plant.zeros, plant.poles]))
-    slow = _SLOW * np.min(corners[corners > 0.0], initial=1.0)
-    value = plant * FactoredTransferFunction(1.0, (), (0.0,) * integrators)
-    return 1 if value.at(np.array(slow)).real > 0.0 else -1

@@ -8,9 +8,13 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
 from ddct_controllers.design.analysis.margins import closed_loop_stable
-from ddct_controllers.design.loop_shaping.design import integrators, placement
-from ddct_controllers.design.loop_shaping.networks import lead_network, with_crossover
-from ddct_controllers.design.loop_shaping.nyquist import stabilising_sign
+from ddct_controllers.design.loop_shaping.design import placement
+from ddct_controllers.design.loop_shaping.networks import (
+    integrators,
+    lead_network,
+    stabilising_sign,
+    with_crossover,
+)
 from ddct_controllers.design.loop_shaping.specifications import (
     SpecificationError,
     TimeSpecifications,

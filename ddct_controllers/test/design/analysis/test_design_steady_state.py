@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.analysis.steady_state import poles_at_zero, required_integrators
-from ddct_controllers.design.loop_shaping.design import integrators
+from ddct_controllers.design.loop_shaping.networks import (
+    integrators,
+    poles_at_zero,
+    required_integrators,
+)
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.units import RPM_PER_RAD_S

@@ -5,12 +5,9 @@ from nyquist_contour import unstable_by_contour
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.margins import unstable_poles
-from ddct_controllers.design.loop_shaping.design import integrators, network_steps
-from ddct_controllers.design.loop_shaping.nyquist import (
-    NyquistCount,
-    nyquist_count,
-    stabilising_sign,
-)
+from ddct_controllers.design.loop_shaping.design import network_steps
+from ddct_controllers.design.loop_shaping.networks import integrators, stabilising_sign
+from ddct_controllers.design.loop_shaping.nyquist import NyquistCount, nyquist_count
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
