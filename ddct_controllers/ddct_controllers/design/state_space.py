@@ -1,5 +1,5 @@
 """
-Algebra of single-input, single-output state-space systems: series, feedback, response.
+Single-input, single-output state-space systems: series, feedback, response, factored form.
 
 Run-time controllers are designed and verified with these, so that they are ours: python-control
 takes a second to load, and evaluates frequencies one by one.
@@ -8,12 +8,20 @@ takes a second to load, and evaluates frequencies one by one.
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.linalg import eigvals
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.linear.lti import StateSpace
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 if TYPE_CHECKING:
     import control
+
+_REAL = 1e-9
+"""Imaginary part, relative to the magnitude, below which a root counts as real."""
+_FAR = 1e8
+"""Generalised eigenvalues beyond this, relative to the largest pole, are zeros at infinity."""
 
 
 def series(*systems: StateSpace) -> StateSpace:
@@ -89,6 +97,34 @@ def to_s_plane(poles: np.ndarray, period_s: float | None) -> np.ndarray:
     return rates
 
 
+def factored_form(system: StateSpace) -> FactoredTransferFunction:
+    """
+    Return gain, zeros and poles of a system with one input and one output; nothing is cancelled.
+
+    For a sampled system the variable is z: a number a stands for (z + a). The zeros are the finite
+    generalised eigenvalues of [[a, b], [c, d]] and [[1, 0], [0, 0]]; the gain follows from the
+    value at a point away from zeros and poles. Raise ParameterError for other sizes.
+    """
+    _require_one_by_one(system)
+    poles = np.linalg.eigvals(system.a)
+    size = 1.0 + float(np.max(np.abs(poles), initial=0.0))
+    zeros = _zeros(system, _FAR * size)
+    point = 2.0 * max(size, float(np.max(np.abs(zeros), initial=0.0)))
+    resolvent = np.linalg.solve(point * np.eye(len(system.a)) - system.a, system.b)
+    value = float((system.c @ resolvent + system.d)[0, 0])
+    gain = value * float((np.prod(point - poles) / np.prod(point - zeros)).real)
+    return FactoredTransferFunction(gain, _factors(zeros), _factors(poles))
+
+
+def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTransferFunction:
+    """
+    Return the zero-order-hold equivalent at 10 ms, as the thesis's `c2d` gives it (Section 2.2.2).
+
+    The variable of the result is z: a number a stands for (z + a), (b, c) for z^2 + b z + c.
+    """
+    return factored_form(discretise_zoh(controller.to_state_space(), PERIOD_S))
+
+
 def _after(first: StateSpace, second: StateSpace) -> StateSpace:
     if first.period_s != second.period_s:
         raise ParameterError(
@@ -111,3 +147,23 @@ def _require_one_by_one(system: StateSpace) -> None:
             f'state space: it has {system.d.shape[1]} inputs and {system.d.shape[0]} outputs, '
             'it must have one of each'
         )
+
+
+def _zeros(system: StateSpace, far: float) -> np.ndarray:
+    pencil = np.block([[system.a, system.b], [system.c, system.d]])
+    mass = np.zeros_like(pencil)
+    mass[: len(system.a), : len(system.a)] = np.eye(len(system.a))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        found = eigvals(pencil, mass)
+    return found[np.isfinite(found) & (np.abs(found) < far)]
+
+
+def _factors(roots: np.ndarray) -> tuple[Factor, ...]:
+    """Return real roots as numbers a, slow to fast, then pairs as (b, c) in the same order."""
+    real = np.abs(roots.imag) <= _REAL * np.abs(roots)
+    singles = sorted(0.0 - roots[real].real, key=abs)
+    upper = sorted(roots[~real & (roots.imag > 0.0)], key=abs)
+    return (
+        *(float(a) for a in singles),
+        *((float(-2.0 * root.real), float(abs(root) ** 2)) for root in upper),
+    )

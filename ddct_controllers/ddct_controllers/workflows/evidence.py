@@ -1,7 +1,5 @@
 """What the sampled loops of controllers can bear, as plain values for JSON."""
 
-import dataclasses
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -105,7 +103,7 @@ def loop_evidence(
     mode = driveline_mode(loop, driveline)
     return {
         'wear_gain': wear_gain,
-        **{name: _finite(x) for name, x in dataclasses.asdict(loop_margins(loop)).items()},
+        **loop_margins(loop).plain(),
         'driveline_mode_hz': mode.frequency_hz if mode else None,
         'driveline_mode_damping': mode.damping if mode else None,
         'driveline_mode_torsion_rpm': mode.torsion_amplitude_rpm if mode else None,
@@ -135,7 +133,3 @@ def _stable_wear_gain(nominal: Evidence) -> Evidence | None:
         'lowest': 0.0 if less is None else 10.0 ** (-less / 20.0),
         'highest': None if more is None else 10.0 ** (more / 20.0),
     }
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is None or math.isfinite(value) else None

@@ -1,7 +1,7 @@
 """The printed z-forms: controllers discretised by zero-order hold at 10 ms."""
 
 from ddct_bringup.reproduction.values.coefficients import coefficients
-from ddct_controllers.design.factored_form import pulse_transfer_function
+from ddct_controllers.design.state_space import pulse_transfer_function
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 
 

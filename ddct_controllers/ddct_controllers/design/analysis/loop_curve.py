@@ -93,6 +93,16 @@ class LoopCurve:
         return frequency_response(self._loop, omega)
 
 
+def sensitivity(values: np.ndarray) -> np.ndarray:
+    """Return |S| = 1/|1 + L| of values of L, elementwise."""
+    return 1.0 / np.abs(1.0 + values)
+
+
+def complementary(values: np.ndarray) -> np.ndarray:
+    """Return |T| = |L/(1 + L)| of values of L, elementwise."""
+    return np.abs(values / (1.0 + values))
+
+
 def _grid(poles: np.ndarray, last: float) -> np.ndarray:
     near = np.concatenate([1.0 + _DISTANCES, 1.0 / (1.0 + _DISTANCES)])
     around = np.outer(np.abs(poles[np.isfinite(poles)]), near).ravel()

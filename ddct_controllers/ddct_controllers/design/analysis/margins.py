@@ -1,11 +1,11 @@
 """Stability and margins of a unit-feedback loop, continuous or sampled, both exact."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loop_curve import LoopCurve, complementary, sensitivity
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop
 from ddct_plant.linear.lti import StateSpace
@@ -40,6 +40,10 @@ class LoopMargins:
     bandwidth_rad_s: float | None = None
     """Lowest frequency at which |T| is 1/sqrt(2), 0 when |T| is below that at rest."""
 
+    def plain(self) -> dict[str, bool | float | None]:
+        """Return all by name for JSON, which has no infinity: None where nothing limits one."""
+        return {name: None if x == math.inf else x for name, x in asdict(self).items()}
+
 
 def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
     """
@@ -65,8 +69,8 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
             default=math.inf,
         ),
         disk_margin=2.0 / curve.peak(lambda values: np.abs((1.0 - values) / (1.0 + values)))[0],
-        sensitivity_peak=curve.peak(lambda values: 1.0 / np.abs(1.0 + values))[0],
-        complementary_peak=curve.peak(_complementary)[0],
+        sensitivity_peak=curve.peak(sensitivity)[0],
+        complementary_peak=curve.peak(complementary)[0],
         crossover_rad_s=max(crossovers, default=0.0),
         bandwidth_rad_s=_bandwidth_rad_s(curve),
     )
@@ -74,14 +78,10 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
 
 def _bandwidth_rad_s(curve: LoopCurve) -> float:
     level = math.sqrt(0.5)
-    if _complementary(curve.values[:1])[0] < level:
+    if complementary(curve.values[:1])[0] < level:
         return 0.0
-    falls = curve.crossings(lambda values: _complementary(values) - level)
+    falls = curve.crossings(lambda values: complementary(values) - level)
     return min(falls, default=math.inf)
-
-
-def _complementary(values: np.ndarray) -> np.ndarray:
-    return np.abs(values / (1.0 + values))
 
 
 def _decibel(gain: float) -> float:

@@ -30,22 +30,22 @@ def step_response(
     return time, control.step_response(closed, time).outputs
 
 
-def rise_time_s(time: np.ndarray, output: np.ndarray, final_value: float = 1.0) -> float | None:
+def rise_time_s(time: np.ndarray, output: np.ndarray) -> float | None:
     """
-    Return when the output first crosses the final value, t_r of Section 2.1; None if never.
+    Return when the output first crosses the final value 1, t_r of Section 2.1; None if never.
 
     Linear between points. The final value is that of a loop with an integrator, 1, not the last
     point: slow poles take minutes to settle.
     """
-    above = np.flatnonzero(output >= final_value)
+    above = np.flatnonzero(output >= 1.0)
     if not above.size or above[0] == 0:
         return float(time[0]) if above.size else None
     after = int(above[0])
     before = after - 1
-    share = (final_value - output[before]) / (output[after] - output[before])
+    share = (1.0 - output[before]) / (output[after] - output[before])
     return float(time[before] + share * (time[after] - time[before]))
 
 
-def overshoot(time: np.ndarray, output: np.ndarray, final_value: float = 1.0) -> float:
-    """Return by what fraction of the final value the output exceeds it at most; 0.1 is 10 %."""
-    return max(0.0, float(np.max(output)) / final_value - 1.0)
+def overshoot(time: np.ndarray, output: np.ndarray) -> float:
+    """Return by what fraction the output exceeds the final value 1 at most; 0.1 is 10 %."""
+    return max(0.0, float(np.max(output)) - 1.0)

@@ -12,7 +12,6 @@ from ddct_controllers.design.analysis.loops import (
     sampled_plant,
 )
 from ddct_controllers.design.analysis.margins import closed_loop_stable
-from ddct_controllers.design.factored_form import factored_form
 from ddct_controllers.design.h_infinity.cleaning import CleaningStep, clean
 from ddct_controllers.design.h_infinity.problem import mixed_sensitivity, sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
@@ -24,6 +23,7 @@ from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
 from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
+from ddct_controllers.design.state_space import factored_form
 from ddct_plant.base.checks import require_choice
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane

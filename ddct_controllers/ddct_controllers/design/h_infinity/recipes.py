@@ -21,7 +21,6 @@ THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
 class WeightRecipe:
     """Weights for a rise time of 0.3 s; other rise times scale every frequency alike."""
 
-    description: str
     low_frequency_gain: float
     """K."""
     bandwidth_rad_s: float
@@ -37,18 +36,20 @@ class WeightRecipe:
 
 
 RECIPES = {
-    'thesis': WeightRecipe('of Section 3.2.1, K and w_2 as printed', 0.15, 28.0, BUTTERWORTH),
-    'fitted': WeightRecipe(
-        'that lead to nearly the printed Hinf1', *(0.35, 28.0), damping=1.0, back_off=1.0
-    ),
+    'thesis': WeightRecipe(0.15, 28.0, BUTTERWORTH),
+    'fitted': WeightRecipe(0.35, 28.0, damping=1.0, back_off=1.0),
     'sampled': WeightRecipe(
-        'the same, and one on the torque; hold and delay in the plant',
         *(0.15, 28.0, BUTTERWORTH),
         effort=EffortWeight(torque_n_m_per_rpm=0.055, corner_rad_s=30.0),
         sampled=True,
     ),
 }
-"""By the name that `design h-infinity --weights` takes."""
+"""
+By the name that `design h-infinity --weights` takes.
+
+Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
+first with one more on the torque, and hold and delay in the plant.
+"""
 
 
 @dataclass(frozen=True)

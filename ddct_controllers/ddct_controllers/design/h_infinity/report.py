@@ -1,7 +1,6 @@
 """What `design h-infinity` computes, as plain values."""
 
 import dataclasses
-import math
 from typing import Any
 
 from ddct_controllers.design.analysis.loops import (
@@ -13,7 +12,6 @@ from ddct_controllers.design.analysis.loops import (
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
-from ddct_controllers.design.factored_form import factored_form
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
 from ddct_controllers.design.h_infinity.uncertainty import (
@@ -26,6 +24,7 @@ from ddct_controllers.design.h_infinity.uncertainty import (
     weighted_norms,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.design.state_space import factored_form
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
@@ -104,9 +103,8 @@ def loop_record(
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
     response = step_response(loop, _STEP_RISE_TIMES * specifications.rise_time_s)
     rise_time, exceeds = rise_time_s(*response), overshoot(*response)
-    margins = dataclasses.asdict(loop_margins(loop))
     return {
-        **{key: None if value == math.inf else value for key, value in margins.items()},
+        **loop_margins(loop).plain(),
         'rise_time_s': rise_time,
         'overshoot': exceeds,
         'meets_specifications': rise_time is not None

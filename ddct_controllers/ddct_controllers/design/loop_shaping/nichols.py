@@ -5,7 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve, Measure
+from ddct_controllers.design.analysis.loop_curve import (
+    LoopCurve,
+    Measure,
+    complementary,
+    sensitivity,
+)
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.checks import require_number
 
@@ -51,8 +56,8 @@ def constant_m_curve(level: float) -> NicholsCurve:
 
 def constant_s_curve(level: float) -> NicholsCurve:
     """Return where |S| = 1/|1 + L| is `level`, from L = 1/S - 1."""
-    sensitivity = require_number('level of |S|', level, above=0.0) * _unit_circle()
-    return nichols_curve(1.0 / sensitivity - 1.0, unwrap=False)
+    closed = require_number('level of |S|', level, above=0.0) * _unit_circle()
+    return nichols_curve(1.0 / closed - 1.0, unwrap=False)
 
 
 def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
@@ -74,8 +79,8 @@ def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
 def contours(curve: LoopCurve, specifications: TimeSpecifications) -> tuple[Contour, Contour]:
     """Return what L does at the S_p and the T_p curve of the specifications."""
     return (
-        _contour(curve, 'S', specifications.sensitivity_peak, _sensitivity),
-        _contour(curve, 'T', specifications.complementary_peak, _complementary),
+        _contour(curve, 'S', specifications.sensitivity_peak, sensitivity),
+        _contour(curve, 'T', specifications.complementary_peak, complementary),
     )
 
 
@@ -91,14 +96,6 @@ def _contour(curve: LoopCurve, name: str, level: float, measure: Measure) -> Con
         bounds.append(last)
     stretches = tuple(zip(bounds[0::2], bounds[1::2], strict=True))
     return Contour(name, level, *curve.peak(measure), stretches)
-
-
-def _sensitivity(values: np.ndarray) -> np.ndarray:
-    return 1.0 / np.abs(1.0 + values)
-
-
-def _complementary(values: np.ndarray) -> np.ndarray:
-    return np.abs(values / (1.0 + values))
 
 
 def _unit_circle() -> np.ndarray:

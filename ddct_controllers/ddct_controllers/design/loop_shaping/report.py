@@ -1,7 +1,6 @@
 """What `design loop-shaping` computes, as plain values."""
 
 import dataclasses
-import math
 from typing import Any
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
@@ -84,7 +83,7 @@ def provenance(design: LoopShapingDesign) -> Record:
         'sampled_loop': {
             'rise_time_s': found.rise_time_s,
             'overshoot': found.overshoot,
-            **_finite(dataclasses.asdict(found.margins)),
+            **found.margins.plain(),
             'stable_with_wear_gain': {
                 str(gain): stable
                 for gain, stable in zip(WEAR_GAINS, found.stable_when_worn, strict=True)
@@ -130,18 +129,10 @@ def _loop_record(loop: ContinuousLoop | StateSpace) -> Record:
     found = contours(LoopCurve(loop), NETWORK_SPECIFICATIONS)
     return {
         'unstable_poles': unstable_poles(loop),
-        **_finite(dataclasses.asdict(loop_margins(loop))),
+        **loop_margins(loop).plain(),
         'contours': [_contour_record(contour) for contour in found],
     }
 
 
 def _contour_record(contour: Contour) -> Record:
     return dataclasses.asdict(contour) | {'respected': contour.respected}
-
-
-def _finite(values: Record) -> Record:
-    """Replace what has no limit by None, as JSON has no infinity."""
-    return {
-        name: None if isinstance(value, float) and math.isinf(value) else value
-        for name, value in values.items()
-    }

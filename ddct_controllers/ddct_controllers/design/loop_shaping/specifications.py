@@ -48,8 +48,9 @@ class TimeSpecifications:
 
     @property
     def damping(self) -> float:
-        """Least zeta, that of `damping_of_overshoot`."""
-        return damping_of_overshoot(self.overshoot)
+        """Least zeta, |ln s^| / sqrt(pi^2 + ln^2 s^)."""
+        logarithm = math.log(self.overshoot)
+        return -logarithm / math.hypot(math.pi, logarithm)
 
     @property
     def sensitivity_peak(self) -> float:
@@ -70,12 +71,6 @@ class TimeSpecifications:
     def crossover_rad_s(self) -> float:
         """Least w_c, from t_r w_c at this zeta."""
         return rise_time_crossover_product(self.damping) / self.rise_time_s
-
-
-def damping_of_overshoot(overshoot: float) -> float:
-    """Return zeta = |ln s^| / sqrt(pi^2 + ln^2 s^), s^ being a fraction in (0, 1)."""
-    logarithm = math.log(overshoot)
-    return -logarithm / math.hypot(math.pi, logarithm)
 
 
 def prototype_sensitivity_peak(damping: float) -> float:

@@ -8,7 +8,6 @@ import pytest
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins, unstable_poles
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.factored_form import factored_form, pulse_transfer_function
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     largest_zero_rad_s,
@@ -17,6 +16,7 @@ from ddct_controllers.design.loop_shaping.design import (
 )
 from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network
 from ddct_controllers.design.loop_shaping.specifications import prototype_phase_margin
+from ddct_controllers.design.state_space import factored_form, pulse_transfer_function
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
