@@ -105,3 +105,23 @@ def test_controllers_load_no_design_code_before_they_need_it(module: str) -> Non
         [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
     )
     assert done.stdout.split() == []
+
+
+def test_no_controller_or_architecture_loads_python_control_to_run():
+    """Not even those that are synthesised, or the feedforward that is designed, at the start."""
+    code = (
+        'import sys\n'
+        'from ddct_controllers.architecture import make_architecture\n'
+        'from ddct_controllers.registry import controller_names, make_controller\n'
+        'from ddct_plant.scenario.file import load_scenario\n'
+        'from ddct_plant.scenario.settings import RunSettings\n'
+        "settings = RunSettings(load_scenario('thesis'), 'feedforward')\n"
+        'for name in controller_names():\n'
+        '    make_architecture(settings, make_controller(name, settings))\n'
+        "assert 'ddct_controllers.design.h_infinity.design' in sys.modules\n"
+        "print('control' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+    )
+    assert done.stdout.split() == ['False']

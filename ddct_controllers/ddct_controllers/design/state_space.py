@@ -1,8 +1,8 @@
 """
 Single-input, single-output state-space systems: series, feedback, response, factored form.
 
-Run-time controllers are designed and verified with these, so that they are ours: python-control
-takes a second to load, and evaluates frequencies one by one.
+They are ours because run-time controllers are designed and verified with them: python-control
+takes a second to load, and its realisation of factors through polynomials is off by percents.
 """
 
 from typing import TYPE_CHECKING

@@ -1,4 +1,8 @@
-"""Stability and margins of a unit-feedback loop, continuous or sampled, both exact."""
+"""
+Stability and margins of a unit-feedback loop, continuous or sampled, both exact.
+
+The margins are ours: python-control finds those of a sampled loop by polynomials, and is wrong.
+"""
 
 import math
 from dataclasses import asdict, dataclass
