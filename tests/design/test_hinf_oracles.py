@@ -7,13 +7,16 @@ from scipy.linalg import block_diag, null_space
 
 from ddct_controllers.design.h_infinity.design import generalised_plant
 from ddct_controllers.design.h_infinity.recipes import RECIPES, make_weights
-from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise, verified_norm
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
+    h_infinity_norm,
+    synthesise,
+    verified_norm,
+)
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
     GeneralisedPlant,
     balanced,
 )
 from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
-from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
 from ddct_plant.linear.lti import StateSpace
 
 pytestmark = pytest.mark.slow

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, closed_loop_stable, loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 WEAR_GAINS = (0.7, 1.3)
@@ -79,9 +79,3 @@ def verify(
     reached_s, highest = step_figures(loop, _LOOK_AHEAD * specifications.rise_time_s)
     at_contours = contours(LoopCurve(loop), specifications)
     return Verification(specifications, margins, reached_s, highest, at_contours, worn)
-
-
-def step_figures(loop: StateSpace, duration_s: float) -> tuple[float | None, float]:
-    """Return rise time in s and overshoot as a fraction of a sampled loop."""
-    response = step_response(loop, duration_s)
-    return rise_time_s(*response), overshoot(*response)

@@ -30,6 +30,14 @@ def step_response(
     return time, control.step_response(closed, time).outputs
 
 
+def step_figures(
+    loop: ContinuousLoop | StateSpace, duration_s: float
+) -> tuple[float | None, float]:
+    """Return rise time in s, None if it is never over, and overshoot as a fraction."""
+    response = step_response(loop, duration_s)
+    return rise_time_s(*response), overshoot(*response)
+
+
 def rise_time_s(time: np.ndarray, output: np.ndarray) -> float | None:
     """
     Return when the output first crosses the final value 1, t_r of Section 2.1; None if never.

@@ -10,7 +10,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
@@ -101,8 +101,7 @@ def loop_record(
     if not closed_loop_stable(loop):
         return {'stable': False}
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
-    response = step_response(loop, _STEP_RISE_TIMES * specifications.rise_time_s)
-    rise_time, exceeds = rise_time_s(*response), overshoot(*response)
+    rise_time, exceeds = step_figures(loop, _STEP_RISE_TIMES * specifications.rise_time_s)
     return {
         **loop_margins(loop).plain(),
         'rise_time_s': rise_time,

@@ -57,18 +57,15 @@ class SensitivityWeight:
         """epsilon, where `shifted` has its poles."""
         return OFFSET_RATIO * self.corner_rad_s
 
-    def transfer_function(self) -> FactoredTransferFunction:
-        """Return W_s with its poles at 0."""
-        return self._with_poles_at(0.0)
+    def transfer_function(self, offset_rad_s: float = 0.0) -> FactoredTransferFunction:
+        """Return W_s with its poles at 0, or at minus an offset."""
+        corner = self.corner_rad_s
+        numerator = ((2.0 * BUTTERWORTH * corner, corner**2),)
+        return FactoredTransferFunction(1.0 / self.peak, numerator, (offset_rad_s, offset_rad_s))
 
     def shifted(self) -> FactoredTransferFunction:
         """Return W_1* = W_s s^2 / (s + epsilon)^2, the stable stand-in of Section 3.2.2."""
-        return self._with_poles_at(self.offset_rad_s)
-
-    def _with_poles_at(self, pole: float) -> FactoredTransferFunction:
-        corner = self.corner_rad_s
-        numerator = ((2.0 * BUTTERWORTH * corner, corner**2),)
-        return FactoredTransferFunction(1.0 / self.peak, numerator, (pole, pole))
+        return self.transfer_function(self.offset_rad_s)
 
 
 @dataclass(frozen=True)

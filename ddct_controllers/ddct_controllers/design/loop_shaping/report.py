@@ -11,7 +11,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
@@ -105,14 +105,14 @@ def _placements() -> dict[str, FactoredTransferFunction]:
 
 def _placement_record(controller: FactoredTransferFunction) -> Record:
     loop = continuous_loop(controller)
-    response = step_response(loop, _STEP_DURATION_S)
+    rise_time_s, overshoot = step_figures(loop, _STEP_DURATION_S)
     margins = loop_margins(loop)
     return {
         **dataclasses.asdict(controller),
         'crossover_rad_s': margins.crossover_rad_s,
         'complementary_peak': margins.complementary_peak,
-        'rise_time_s': rise_time_s(*response),
-        'overshoot': overshoot(*response),
+        'rise_time_s': rise_time_s,
+        'overshoot': overshoot,
     }
 
 

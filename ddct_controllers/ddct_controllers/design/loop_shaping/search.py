@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
 from ddct_controllers.design.analysis.margins import closed_loop_stable
+from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.loop_shaping.design import placement
 from ddct_controllers.design.loop_shaping.networks import (
     integrators,
@@ -24,7 +25,6 @@ from ddct_controllers.design.state_space import frequency_response, series
 from ddct_controllers.design.verified_design import (
     LARGEST_SENSITIVITY_PEAK,
     Verification,
-    step_figures,
     verify,
 )
 from ddct_plant.base.timebase import PERIOD_S

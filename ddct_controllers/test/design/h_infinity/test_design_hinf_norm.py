@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import sampled_plant
-from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import h_infinity_norm
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace

@@ -11,8 +11,10 @@ from ddct_controllers.design.analysis.worst_corner import PlantCorners, WorstCor
 from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.problem import sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import make_weights
-from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise
-from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
+    h_infinity_norm,
+    synthesise,
+)
 from ddct_controllers.design.state_space import close_loop, frequency_response
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane

@@ -9,7 +9,6 @@ from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
     GeneralisedPlant,
     balanced,
 )
-from ddct_controllers.design.h_infinity.synthesis.norm import h_infinity_norm
 from ddct_controllers.design.h_infinity.synthesis.riccati import (
     central_controller,
     stabilising_solutions,
@@ -30,6 +29,11 @@ _TOLERANCE = 1e-4
 _AGREEMENT = 1e-6
 """Relative excess of the closed loop's norm over the level that rounding may cause."""
 _FACTOR = 4.0
+_NORM_TOLERANCE = 1e-7
+"""Relative: the norm is at least what is returned and at most this much higher."""
+_ON_AXIS = 1e-7
+"""Real part, relative to the magnitude, below which an eigenvalue may be on the axis."""
+_ROUNDS = 50
 _LOWEST, _HIGHEST = 1e-6, 1e6
 """Levels between which an optimum is looked for."""
 
@@ -66,7 +70,7 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
     norm; what the Riccati solutions promise does not count. Raise GeneralisedPlantError for a
     plant without a solution, SynthesisError when no level verifies.
     """
-    require_back_off(back_off)
+    require_number('back-off from the optimum', back_off, at_least=1.0, at_most=100.0)
     plant.require_solvable()
     plant = balanced(plant)
     best = _first_reached(plant)
@@ -82,11 +86,6 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
             refused = middle
     chosen = _reached(plant, best.gamma * back_off) or best
     return Synthesis(chosen.controller, chosen.gamma, best.gamma, refused, 'riccati')
-
-
-def require_back_off(back_off: float) -> None:
-    """Raise ParameterError for a factor below 1."""
-    require_number('back-off from the optimum', back_off, at_least=1.0, at_most=100.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,3 +115,51 @@ def _reached(plant: GeneralisedPlant, gamma: float) -> _Reached | None:
         return None
     norm = verified_norm(plant, controller)
     return _Reached(controller, norm) if norm <= gamma * (1.0 + _AGREEMENT) else None
+
+
+def h_infinity_norm(system: StateSpace) -> float:
+    """
+    Return the largest singular value of a continuous system over frequency; inf if unstable.
+
+    Bruinsma and Steinbuch's method: a frequency response gives a lower bound g; where the
+    Hamiltonian matrix of g (1 + tolerance) has eigenvalues on the imaginary axis, the response
+    crosses that level, and between two crossings there is a higher one. Without a crossing g is
+    the norm. Eigenvalues that might be on the axis only cost time, as the response decides.
+    """
+    poles = np.linalg.eigvals(system.a)
+    if np.any(poles.real >= 0.0):
+        return math.inf
+    trial = np.concatenate([[0.0], np.abs(poles), np.abs(poles.imag)])
+    norm = max(float(np.linalg.norm(system.d, 2)), _highest(system, trial))
+    if norm == 0.0:
+        return 0.0
+    for _ in range(_ROUNDS):
+        level = norm * (1.0 + _NORM_TOLERANCE)
+        crossings = _crossings(system, level)
+        if not crossings.size:
+            return norm
+        middles = np.sqrt(crossings[1:] * crossings[:-1])
+        higher = _highest(system, np.concatenate([crossings, middles]))
+        if higher <= level:
+            return max(norm, higher)
+        norm = higher
+    return norm
+
+
+def _highest(system: StateSpace, omega: np.ndarray) -> float:
+    """Return the largest singular value at frequencies in rad/s."""
+    resolvent = 1j * omega.reshape(-1, 1, 1) * np.eye(len(system.a)) - system.a
+    states = np.linalg.solve(resolvent, np.broadcast_to(system.b, (omega.size, *system.b.shape)))
+    return float(np.linalg.norm(system.c @ states + system.d, 2, axis=(1, 2)).max())
+
+
+def _crossings(system: StateSpace, level: float) -> np.ndarray:
+    """Return the frequencies in rad/s, rising, at which a singular value may be `level`."""
+    a, b, c, d = system.a, system.b, system.c, system.d
+    inputs = np.linalg.inv(level**2 * np.eye(b.shape[1]) - d.T @ d)
+    drift = a + b @ inputs @ d.T @ c
+    coupling = c.T @ (np.eye(len(c)) + d @ inputs @ d.T) @ c
+    hamiltonian = np.block([[drift, b @ inputs @ b.T], [-coupling, -drift.T]])
+    found = np.linalg.eigvals(hamiltonian)
+    near = np.abs(found.real) <= _ON_AXIS * np.abs(found)
+    return np.unique(np.abs(found[near].imag))
