@@ -5,7 +5,7 @@ They are ours because run-time controllers are designed and verified with them: 
 takes a second to load, and its realisation of factors through polynomials is off by percents.
 """
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from scipy.linalg import eigvals
@@ -14,9 +14,6 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-
-if TYPE_CHECKING:
-    import control
 
 _REAL = 1e-9
 """Imaginary part, relative to the magnitude, below which a root counts as real."""
@@ -70,8 +67,8 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
     return ((system.c @ states)[:, 0, 0] + system.d[0, 0]).reshape(omega.shape)
 
 
-def to_control(system: StateSpace) -> 'control.StateSpace':
-    """Return the system as python-control's."""
+def to_control(system: StateSpace) -> Any:
+    """Return the system as python-control's StateSpace."""
     # Only here: see above.
     import control
 

@@ -25,7 +25,7 @@ from ddct_controllers.design.loop_shaping.design import (
 )
 from ddct_controllers.design.loop_shaping.networks import (
     integrators,
-    network_phase,
+    lead_network,
     poles_at_zero,
     required_integrators,
     stabilising_sign,
@@ -124,11 +124,12 @@ def _networks() -> dict[str, Value | None]:
     response = continuous_loop(integrators(-1.0, 1)).response(np.array([_CROSSOVER_RAD_S]))[0]
     wanted = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
     s_peak, t_peak = contours(LoopCurve(continuous_loop(g_c1)), NETWORK_SPECIFICATIONS)
+    lead = lead_network(1.0, _LEAD_RATIO).frequency_response(np.ones(1))[0]
     made = in_the_form_of(g_c1, network_steps()[-1].controller)
     put_in = {'G_c1.zero 2', 'G_c1.zero 3', 'G_c1.pole 1', 'G_c1.pole 4'}
     return {
         'missing phase': math.degrees(wanted - float(np.angle(-response))),
-        'lead phase': math.degrees(network_phase(_LEAD_RATIO, 1.0)),
+        'lead phase': math.degrees(float(np.angle(lead))),
         # w_c = 8 rad/s over the printed zero of the leads.
         'lead zero': f'w_c / {_CROSSOVER_RAD_S / real(g_c1.numerator[1]):g}',
         **{name: x for name, x in coefficients('G_c1', made).items() if name not in put_in},

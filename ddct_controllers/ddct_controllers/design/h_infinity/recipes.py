@@ -1,10 +1,9 @@
 """Recipes of weights: the thesis's, those behind its Hinf1, and our own; S_p and T_p unrounded."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import BACK_OFF
 from ddct_controllers.design.h_infinity.weights import (
-    BUTTERWORTH,
     ComplementaryWeight,
     EffortWeight,
     SensitivityWeight,
@@ -18,41 +17,6 @@ THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
 
 
 @dataclass(frozen=True)
-class WeightRecipe:
-    """Weights for a rise time of 0.3 s; other rise times scale every frequency alike."""
-
-    low_frequency_gain: float
-    """K."""
-    bandwidth_rad_s: float
-    """w_2."""
-    damping: float
-    """Of W_t."""
-    effort: EffortWeight | None = None
-    """Only the sampled design has one."""
-    sampled: bool = False
-    """Whether the design plant has the hold and the delay of the actuator."""
-    back_off: float = BACK_OFF
-    """Level over optimum; 1 where the thesis too stopped at the optimum and cleaned."""
-
-
-RECIPES = {
-    'thesis': WeightRecipe(0.15, 28.0, BUTTERWORTH),
-    'fitted': WeightRecipe(0.35, 28.0, damping=1.0, back_off=1.0),
-    'sampled': WeightRecipe(
-        *(0.15, 28.0, BUTTERWORTH),
-        effort=EffortWeight(torque_n_m_per_rpm=0.055, corner_rad_s=30.0),
-        sampled=True,
-    ),
-}
-"""
-By the name that `design h-infinity --weights` takes.
-
-Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
-first with one more on the torque, and hold and delay in the plant.
-"""
-
-
-@dataclass(frozen=True)
 class HinfWeights:
     """The weights of one design."""
 
@@ -62,9 +26,36 @@ class HinfWeights:
     sampled: bool
     """Whether the design plant has hold and delay."""
     back_off: float
-    """Level of the controller over the optimum."""
+    """Level of the controller over the optimum; 1 where the thesis too stopped and cleaned."""
 
 
+_THESIS = HinfWeights(
+    SensitivityWeight(low_frequency_gain=0.15, peak=THESIS_SPECIFICATIONS.sensitivity_peak),
+    ComplementaryWeight(peak=THESIS_SPECIFICATIONS.complementary_peak, corner_rad_s=28.0),
+    effort=None,
+    sampled=False,
+    back_off=BACK_OFF,
+)
+RECIPES = {
+    'thesis': _THESIS,
+    'fitted': replace(
+        _THESIS,
+        sensitivity=replace(_THESIS.sensitivity, low_frequency_gain=0.35),
+        complementary=replace(_THESIS.complementary, damping=1.0),
+        back_off=1.0,
+    ),
+    'sampled': replace(
+        _THESIS,
+        effort=EffortWeight(torque_n_m_per_rpm=0.055, corner_rad_s=30.0),
+        sampled=True,
+    ),
+}
+"""
+By the name that `design h-infinity --weights` takes, for the specifications of Section 3.2.
+
+Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
+first with one more on the torque, and hold and delay in the plant.
+"""
 PRINTED_WEIGHTS = HinfWeights(
     SensitivityWeight(low_frequency_gain=0.15, peak=1.33),
     ComplementaryWeight(peak=1.02, corner_rad_s=28.0),
@@ -92,19 +83,20 @@ def make_weights(
     require_choice('weights', recipe, tuple(RECIPES))
     chosen = RECIPES[recipe]
     slower = specifications.rise_time_s / THESIS_SPECIFICATIONS.rise_time_s
-    return HinfWeights(
-        SensitivityWeight(
-            _either(low_frequency_gain, chosen.low_frequency_gain * slower**2),
+    sensitivity, complementary = chosen.sensitivity, chosen.complementary
+    return replace(
+        chosen,
+        sensitivity=SensitivityWeight(
+            _either(low_frequency_gain, sensitivity.low_frequency_gain * slower**2),
             specifications.sensitivity_peak,
         ),
-        ComplementaryWeight(
+        complementary=ComplementaryWeight(
             specifications.complementary_peak,
-            _either(bandwidth_rad_s, chosen.bandwidth_rad_s / slower),
-            chosen.damping,
+            _either(bandwidth_rad_s, complementary.corner_rad_s / slower),
+            complementary.damping,
         ),
-        _effort(chosen.effort, effort_n_m_per_rpm, slower),
-        chosen.sampled,
-        _either(back_off, chosen.back_off),
+        effort=_effort(chosen.effort, effort_n_m_per_rpm, slower),
+        back_off=_either(back_off, chosen.back_off),
     )
 
 

@@ -1,7 +1,5 @@
 """What a controller of Section 2.2 is made of: sign, integrators, networks and gain."""
 
-import math
-
 import numpy as np
 
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
@@ -78,11 +76,6 @@ def lag_network(pole_rad_s: float, ratio: float) -> FactoredTransferFunction:
     require_number('lag network: p_i', pole_rad_s, unit='rad/s', above=0.0)
     require_number('lag network: m_i', ratio, above=1.0)
     return FactoredTransferFunction(1.0 / ratio, (ratio * pole_rad_s,), (pole_rad_s,))
-
-
-def network_phase(ratio: float, normalised_frequency: float) -> float:
-    """Return arctan(x) - arctan(x/m) in rad, x = w/z_d of a lead (negated: w/p_i of a lag)."""
-    return math.atan(normalised_frequency) - math.atan(normalised_frequency / ratio)
 
 
 def with_crossover(
