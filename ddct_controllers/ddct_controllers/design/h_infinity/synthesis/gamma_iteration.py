@@ -1,7 +1,7 @@
 """H-infinity synthesis by gamma-iteration: nothing is accepted that the closed loop denies."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -85,16 +85,10 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
         else:
             refused = middle
     chosen = _reached(plant, best.gamma * back_off) or best
-    return Synthesis(chosen.controller, chosen.gamma, best.gamma, refused, 'riccati')
+    return replace(chosen, optimum=best.gamma, lower_bound=refused)
 
 
-@dataclass(frozen=True, eq=False)
-class _Reached:
-    controller: StateSpace
-    gamma: float
-
-
-def _first_reached(plant: GeneralisedPlant) -> _Reached:
+def _first_reached(plant: GeneralisedPlant) -> Synthesis:
     level = 1.0
     while level <= _HIGHEST:
         found = _reached(plant, level)
@@ -108,13 +102,15 @@ def _first_reached(plant: GeneralisedPlant) -> _Reached:
     )
 
 
-def _reached(plant: GeneralisedPlant, gamma: float) -> _Reached | None:
+def _reached(plant: GeneralisedPlant, gamma: float) -> Synthesis | None:
+    """Return the central controller for a level if its closed loop keeps it."""
     try:
         controller = central_controller(plant, gamma, *stabilising_solutions(plant, gamma))
     except (np.linalg.LinAlgError, ParameterError):
         return None
     norm = verified_norm(plant, controller)
-    return _Reached(controller, norm) if norm <= gamma * (1.0 + _AGREEMENT) else None
+    found = Synthesis(controller, norm, norm, 0.0, 'riccati')
+    return found if norm <= gamma * (1.0 + _AGREEMENT) else None
 
 
 def h_infinity_norm(system: StateSpace) -> float:
