@@ -27,7 +27,7 @@ def step_response(
     import control  # takes a second
 
     closed = control.feedback(to_control(system))
-    return time, control.step_response(closed, time).outputs
+    return time, np.asarray(control.step_response(closed, time).outputs)
 
 
 def step_figures(

@@ -52,6 +52,7 @@ def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
     controller = discretise_zoh(PRINTED_CONTROLLERS['hinf2'].to_state_space(), PERIOD_S)
     time, output = step_response(sampled_loop(controller), 2.0)
     assert time[1] == PERIOD_S
+    assert type(output) is np.ndarray
     assert overshoot(time, output) == pytest.approx(0.760, abs=0.001)
 
 
