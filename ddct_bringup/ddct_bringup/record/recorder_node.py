@@ -85,8 +85,8 @@ class RecorderNode(GraphNode):
         self._held: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
-        self._limit = None if self.settings.lockstep else StampLimit(tick_names(), from_t0=True)
-        self._refusals = Refusals(self)
+        limit = None if self.settings.lockstep else StampLimit(tick_names(), from_t0=True)
+        self._refusals = Refusals(self, limit)
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
@@ -138,14 +138,12 @@ class RecorderNode(GraphNode):
         return self.guarded(special.get(topic, partial(self._record_unordered, topic)))
 
     def _tick_receiver(self, topic: Topic) -> Callable[[bytes], None]:
-        offer, limit, name = self._buffer.offer, self._limit, topic.name
+        offer, name = self._buffer.offer, topic.name
         asks_again = topic is ASKS_AGAIN
 
         def receive(cdr: bytes) -> None:
             stamp = stamp_of_cdr(cdr)
-            reason = limit.why_refused(name, stamp) if limit else ''
-            if reason:
-                self._refusals.add(reason)
+            if not self._refusals.admits(name, stamp):
                 return
             try:
                 ready = offer(name, stamp, cdr)

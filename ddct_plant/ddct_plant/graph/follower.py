@@ -39,7 +39,7 @@ class FollowerNode(GraphNode):
         lockstep = self.settings.lockstep
         self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
         self.limit = None if lockstep else StampLimit(tick_names())
-        self.refusals = Refusals(self)
+        self.refusals = Refusals(self, self.limit)
         self._reply: Reply = ()
         self._answered: Any = None
         self._disputed = False
@@ -57,11 +57,8 @@ class FollowerNode(GraphNode):
         """Take a tick in real time, after whatever else it stands for; may come again."""
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; count and tell where it may not."""
-        reason = self.limit.why_refused(topic, stamp) if self.limit else ''
-        if reason:
-            self.refusals.add(reason)
-        return not reason
+        """Say whether a stamp may be true; a refused message counts as missing."""
+        return self.refusals.admits(topic, stamp)
 
     def _receiver(self, topic: str, read: Read) -> Callable[[Any], None]:
         offer, complete, repeat = self.join.offer, Verdict.COMPLETE, Verdict.REPEAT
@@ -75,7 +72,7 @@ class FollowerNode(GraphNode):
             try:
                 values = read(message)
             except DdctError as error:
-                self._on_bad_values(stamp, error)
+                self.refusals.bad_values(stamp, error)
                 return
             verdict = offer(topic, stamp, values)
             if verdict is complete:
@@ -88,12 +85,6 @@ class FollowerNode(GraphNode):
                     self.publish_reply()
 
         return receive
-
-    def _on_bad_values(self, stamp: int, error: DdctError) -> None:
-        reason = f'at stamp {stamp} ns: {error}'
-        if self.settings.lockstep:
-            raise DdctError(reason) from error
-        self.refusals.add(reason)
 
     def _on_clock(self, message: Any) -> None:
         stamp = stamp_ns(message)

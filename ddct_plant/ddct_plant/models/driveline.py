@@ -8,9 +8,35 @@ import numpy as np
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.lti import StateSpace, discretise_zoh, lift_piecewise_linear
 from ddct_plant.models.driveline_model import driveline_matrices
-from ddct_plant.models.initial_state import InitialState
-from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.vehicle import VehicleParameters
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
+
+
+@dataclass(frozen=True)
+class InitialState:
+    """
+    Speeds, driveshaft twist and the torques that hold before t_0.
+
+    The wheel turns with the primary shaft (w_sr = 0); theta_sr balances the load, and with the
+    equilibrium `full` what accelerates the vehicle too. The actuator is at rest on
+    `torque_request`, which the clutch transmits times the wear gain.
+    """
+
+    engine_speed: float
+    """w_m(0) in rad/s."""
+    shaft_speed: float
+    """w_p(0) in rad/s."""
+    wheel_speed: float
+    """w_r(0) in rad/s."""
+    twist: float
+    """theta_sr(0) in rad."""
+    engine_torque: float
+    """C_m(0) in N m."""
+    load_torque: float
+    """C_load(0) in N m."""
+    torque_request: float
+    """What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere."""
+    clutch_torque: float
+    """What it transmits then, in N m."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_number, require_rising
+from ddct_plant.base.checks import require_fields, require_number, require_rising
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
@@ -67,17 +67,10 @@ class EngineAuthority:
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        for name in ('deviation_n_m', 'slew_n_m_s', 'lag_s'):
-            require_number(
-                f'engine_authority.{name}',
-                getattr(self, name),
-                at_least=0.0,
-                at_most=MOST_AUTHORITY,
-            )
-        for name in ('minimum_torque_n_m', 'maximum_torque_n_m'):
-            require_number(
-                f'engine_authority.{name}', getattr(self, name), at_least=-1e4, at_most=1e4
-            )
+        shape, prefix = ('deviation_n_m', 'slew_n_m_s', 'lag_s'), 'engine_authority'
+        require_fields(self, prefix, *shape, at_least=0.0, at_most=MOST_AUTHORITY)
+        torques = ('minimum_torque_n_m', 'maximum_torque_n_m')
+        require_fields(self, prefix, *torques, at_least=-1e4, at_most=1e4)
         if self.minimum_torque_n_m >= self.maximum_torque_n_m:
             raise ParameterError(
                 f'engine_authority.minimum_torque_n_m is {self.minimum_torque_n_m:g} N m: it must '

@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.models.vehicle import VehicleParameters
+from ddct_plant.base.checks import require_fields
+from ddct_plant.models.parameters import VehicleParameters
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,10 @@ class LoadParameters:
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        require_number('load.air_density_kg_m3', self.air_density_kg_m3, at_least=0.0)
-        require_number('load.frontal_area_m2', self.frontal_area_m2, at_least=0.0)
-        require_number('load.drag_coefficient', self.drag_coefficient, at_least=0.0)
-        require_number('load.rolling_coefficient', self.rolling_coefficient, at_least=0.0)
-        require_number('load.wind_speed_m_s', self.wind_speed_m_s, at_least=-60.0, at_most=60.0)
-        require_number('load.slope_rad', self.slope_rad, at_least=-0.6, at_most=0.6)
+        resistances = ('air_density_kg_m3', 'frontal_area_m2', 'drag_coefficient')
+        require_fields(self, 'load', *resistances, 'rolling_coefficient', at_least=0.0)
+        require_fields(self, 'load', 'wind_speed_m_s', at_least=-60.0, at_most=60.0)
+        require_fields(self, 'load', 'slope_rad', at_least=-0.6, at_most=0.6)
 
 
 class RoadLoad:

@@ -1,8 +1,9 @@
-"""Driveline parameters, with the values that the identification derives as defaults."""
+"""Parameters of driveline, with the values that the identification derives, and of vehicle."""
 
+import math
 from dataclasses import dataclass, fields
 
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.checks import require_fields
 
 DEFAULT_DIGITS = 8
 """
@@ -36,9 +37,34 @@ class DrivelineParameters:
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        for field in fields(self):
-            name, value = f'driveline.{field.name}', getattr(self, field.name)
-            if field.name.endswith('_damping'):
-                require_number(name, value, at_least=0.0)
-            else:
-                require_number(name, value, above=0.0)
+        names = [field.name for field in fields(self)]
+        dampings = [name for name in names if name.endswith('_damping')]
+        require_fields(self, 'driveline', *dampings, at_least=0.0)
+        require_fields(
+            self, 'driveline', *(name for name in names if name not in dampings), above=0.0
+        )
+
+
+_MASS_KG = 1500.0
+_WHEEL_RADIUS_M = math.sqrt(DrivelineParameters().vehicle_inertia / _MASS_KG)
+
+
+@dataclass(frozen=True)
+class VehicleParameters:
+    """
+    Mass, wheel radius and gravity.
+
+    The thesis prints none of them. With J_v = m r_w^2 (no inertia of the wheels themselves) the
+    identified J_v fixes only the product: 1500 kg is our choice, the radius follows from it.
+    """
+
+    mass_kg: float = _MASS_KG
+    """m_v."""
+    wheel_radius_m: float = _WHEEL_RADIUS_M
+    """r_w, rolling radius: sqrt(J_v / m_v) of the default driveline and mass."""
+    gravity_m_s2: float = 9.81
+    """g."""
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        require_fields(self, 'vehicle', *(field.name for field in fields(self)), above=0.0)

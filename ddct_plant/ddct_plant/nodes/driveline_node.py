@@ -130,16 +130,11 @@ class DrivelineNode(GraphNode):
             try:
                 reply = topic.read(message)
             except DdctError as error:
-                self._on_bad_values(DdctError(f'at stamp {stamp} ns: {error}'))
+                self.refusals.bad_values(stamp, error)
                 return
             self.owner.offer(topic.name, stamp, reply)
 
         return receive
-
-    def _on_bad_values(self, error: DdctError) -> None:
-        if self.settings.lockstep:
-            raise error
-        self.refusals.add(str(error))
 
     def _start_timers(self) -> None:
         self._start_timer = self.create_timer(0.0, self.guarded(self._begin), clock=_STEADY)

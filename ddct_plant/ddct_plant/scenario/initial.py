@@ -1,8 +1,8 @@
 """The state a run starts from."""
 
 from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import InitialState
 from ddct_plant.models.engine import Engine
-from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings

@@ -9,9 +9,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.load import LoadParameters
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
-from ddct_plant.models.vehicle import VehicleParameters
 from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')

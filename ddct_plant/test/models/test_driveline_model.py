@@ -13,9 +13,8 @@ from ddct_plant.models.driveline_model import (
     engine_to_slip,
     load_to_slip,
 )
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.printed import ACTUATOR, ENGINE_TO_SLIP, LOAD_TO_SLIP, PrintedNumber
-from ddct_plant.models.vehicle import VehicleParameters
 
 DEFAULT = DrivelineParameters()
 VARIANTS = {

@@ -9,9 +9,9 @@ from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.engine import Engine, TorqueProfile
 from ddct_plant.models.load import LoadParameters, RoadLoad
+from ddct_plant.models.parameters import VehicleParameters
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
-from ddct_plant.models.vehicle import VehicleParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
