@@ -4,7 +4,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
@@ -37,7 +36,6 @@ _BEAT_S = 0.01
 """How often viewers are told the time; in lock-step a tick takes far less."""
 _PATIENCE_S = 5.0
 """How long to look for a graph before saying that there is none."""
-_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 class LiveNode(GraphNode):
@@ -64,8 +62,8 @@ class LiveNode(GraphNode):
         self._domain = self.context.get_domain_id()
         say(f'serving the graph of ROS domain {self._domain} at {self._server.url}')
         self._subscribe(latched=True)
-        self.create_timer(_BEAT_S, self._beat, clock=_STEADY)
-        self._search = self.create_timer(_PATIENCE_S, self._look_for_graph, clock=_STEADY)
+        self.every(_BEAT_S, self._beat)
+        self._search = self.every(_PATIENCE_S, self._look_for_graph)
 
     def close(self) -> None:
         """Stop serving."""

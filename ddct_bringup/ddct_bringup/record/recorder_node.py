@@ -6,7 +6,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
-from rclpy.clock import Clock, ClockType
 from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
@@ -46,7 +45,6 @@ ASKS_AGAIN = JOINT_STATES
 """A message of this topic that comes again after the acknowledgement says that it was lost."""
 PATIENCE_S = 5.0
 """How long to wait for the other nodes before saying for whom."""
-_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 class RecorderNode(GraphNode):
@@ -97,7 +95,7 @@ class RecorderNode(GraphNode):
         self._second_node: DdctError | None = None
         self._subscribe_all()
         self.publish_run_info()
-        self._patience = self.create_timer(PATIENCE_S, self._say_who_is_silent, clock=_STEADY)
+        self._patience = self.every(PATIENCE_S, self._say_who_is_silent)
 
     def close(self) -> None:
         """

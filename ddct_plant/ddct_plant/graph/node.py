@@ -3,8 +3,10 @@
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.task import Future
+from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
@@ -12,6 +14,9 @@ from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.graph.topics import RUN_INFO, Topic
+
+STEADY = Clock(clock_type=ClockType.STEADY_TIME)
+"""What every timer goes by: on a ROS clock it would wait for simulated time."""
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """Parameters that rclpy declares itself begin with one of these."""
@@ -78,6 +83,10 @@ class GraphNode(Node):
             for name in given
             if not self.has_parameter(name) and not name.startswith(_FOREIGN)
         ]
+
+    def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
+        """Call `callback` again and again, by a steady clock; a DdctError ends the node."""
+        return self.create_timer(period_s, self.guarded(callback), clock=STEADY)
 
     def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """Wrap a callback so that a DdctError ends the node with its one-line reason."""

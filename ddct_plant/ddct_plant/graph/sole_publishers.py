@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable
 
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
@@ -20,7 +19,6 @@ PROOF_S = 1.0
 """How long the end of a run waits for a second publisher in the graph to be heard."""
 OPEN_S = 1.0
 """How long a real-time run goes on with a second publisher: until then the clutch is open."""
-_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 def publishers_of(node: Node, topic: str) -> str:
@@ -71,7 +69,7 @@ class SolePublishers:
         self._listener: Node | None = None
         self._probes: dict[str, _Probe] = {}
         self._at_end = False
-        node.create_timer(LOOK_S, node.guarded(self._on_timer), clock=_STEADY)
+        node.every(LOOK_S, self._on_timer)
 
     def finish(self, error: DdctError | None = None) -> None:
         """End the node, but not well before it is sure that there is no second publisher."""

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
-from rclpy.clock import Clock, ClockType
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.task import Future
 
@@ -20,7 +19,7 @@ from ddct_plant.graph.arguments import (
     require_declared,
     require_ros_arguments,
 )
-from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.node import STEADY, GraphNode
 from ddct_plant.program.command_line import run_program
 from ddct_plant.program.pulse import pulse
 from ddct_plant.program.stop_signals import stop_signals
@@ -33,9 +32,6 @@ _GARBAGE_THRESHOLD = 50_000
 """Objects that a node makes between two collections; Python's own value is 700."""
 LAST_SLICE_S = 0.03
 """How long a stopped node still takes in messages that are on their way."""
-
-
-_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 def make_executor(context: Any = None) -> Executor:
@@ -61,7 +57,7 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
 
     for node in nodes:
         node.done.add_done_callback(end)
-    nodes[0].create_timer(SLICE_S, lambda: end() if stopped() else None, clock=_STEADY)
+    nodes[0].create_timer(SLICE_S, lambda: end() if stopped() else None, clock=STEADY)
     return over
 
 
@@ -99,7 +95,7 @@ def finish_node(executor: Executor, node: GraphNode) -> None:
     if not node.done.done():
         over: Future = Future()
         timer = node.create_timer(
-            LAST_SLICE_S, lambda: over.done() or over.set_result(None), clock=_STEADY
+            LAST_SLICE_S, lambda: over.done() or over.set_result(None), clock=STEADY
         )
         executor.spin_until_future_complete(over, SLICE_S)
         # In one process these would add up, and rclpy complain of too many timers.

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any, ClassVar
 
-from rclpy.clock import Clock, ClockType
-
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
@@ -33,7 +31,6 @@ from ddct_plant.scenario.initial import initial_state
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
 
-_STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 REPLIES = Replies(ENGINE_TORQUE.name, LOAD_TORQUE.name, CLUTCH_TORQUE.name, RECORDER_ACK.name)
 TICK = (CLOCK, SLIP, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
 """What makes a tick, in the order of sending: the slip has the longest way round the loop."""
@@ -115,7 +112,7 @@ class DrivelineNode(GraphNode):
         return owner
 
     def _start_ticks(self, owner: RealtimeOwner) -> None:
-        self.create_timer(PERIOD_S, self.guarded(owner.tick), clock=_STEADY)
+        self.every(PERIOD_S, owner.tick)
 
     def _create_publishers(self) -> None:
         self._outputs = [(Output(self, topic), topic.signals) for topic in TICK]
@@ -137,8 +134,8 @@ class DrivelineNode(GraphNode):
         return receive
 
     def _start_timers(self) -> None:
-        self._start_timer = self.create_timer(0.0, self.guarded(self._begin), clock=_STEADY)
-        self.create_timer(WATCH_PERIOD_S, self.guarded(self.owner.watch), clock=_STEADY)
+        self._start_timer = self.every(0.0, self._begin)
+        self.every(WATCH_PERIOD_S, self.owner.watch)
 
     def _begin(self) -> None:
         self._start_timer.cancel()
