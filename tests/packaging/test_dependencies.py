@@ -34,12 +34,16 @@ FROM_PYPI = {
     'zstandard': ('zstandard', None),
 }
 """By module its name on PyPI, and its key in ros/rosdistro's rosdep/python.yaml if it has one."""
-NOT_IMPORTED = {'ddct_controllers': {'control'}, 'ddct_reference': {'rclpy'}}
+NOT_IMPORTED = {'ddct_reference': {'rclpy'}}
 """Modules that a package declares and does not import: not yet, or only by another's class."""
 
 
 def imported(package: str) -> set[str]:
-    """Return the top-level modules that a package's code imports, other than Python's own."""
+    """
+    Return the top-level modules that a package's code imports, other than Python's own.
+
+    `solver_package` imports the solver of quadratic programs that it is asked for.
+    """
     modules = {package}
     for file in (ROOT / package / package).rglob('*.py'):
         for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
@@ -47,6 +51,8 @@ def imported(package: str) -> set[str]:
                 modules |= {alias.name.partition('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 modules.add(node.module.partition('.')[0])
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) == 'solver_package':
+                modules.add(ast.literal_eval(node.args[0]))
     return modules - {package} - set(sys.stdlib_module_names)
 
 
