@@ -1,13 +1,14 @@
 """Install the programs that run, record, score and compare engagements."""
 
 from glob import glob
+from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
 setup(
     name=PACKAGE,
-    version='0.1.0',
+    version=ElementTree.parse('package.xml').findtext('version'),
     packages=find_packages(exclude=['test']),
     package_data={
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],

@@ -1,6 +1,7 @@
 """Install the controllers and their node."""
 
 from glob import glob
+from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
@@ -8,7 +9,7 @@ PACKAGE = 'ddct_controllers'
 
 setup(
     name=PACKAGE,
-    version='0.1.0',
+    version=ElementTree.parse('package.xml').findtext('version'),
     packages=find_packages(exclude=['test']),
     package_data={PACKAGE: ['mpc/export/c/*.c', 'mpc/export/c/*.h']},
     data_files=[

@@ -9,7 +9,6 @@ from rclpy.utilities import remove_ros_args
 from ddct_bringup.live.live_node import LiveNode
 from ddct_bringup.processes.live_process import DEFAULT_PORT
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.graph.run_info import package_version
 from ddct_plant.graph.spin import run_node
 from ddct_plant.program.command_line import ProgramParser, run_program
 
@@ -56,7 +55,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('--host', default='127.0.0.1', help='default: %(default)s')
     parser.add_argument('--port', type=int, default=DEFAULT_PORT, help='default: %(default)s')
-    parser.add_argument('--version', action='version', version=package_version())
     return parser
 
 

@@ -4,7 +4,6 @@ from ddct_bringup.reproduction.calibration import command as calibration_command
 from ddct_bringup.reproduction.figures import command as figures_command
 from ddct_bringup.reproduction.numbers import command as numbers_command
 from ddct_bringup.reproduction.studies import command as studies_command
-from ddct_plant.graph.run_info import package_version
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'reproduce'
@@ -24,7 +23,7 @@ Each of them has its own --help."""
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_subcommands(parser, _COMMANDS, argv, metavar='WHAT', version=package_version())
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WHAT')
 
 
 if __name__ == '__main__':

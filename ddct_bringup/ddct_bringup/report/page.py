@@ -24,7 +24,7 @@ from ddct_bringup.report.summary import FURTHER, TABLE_5_1, comparable_rows, met
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
-from ddct_plant.graph.run_info import package_version
+from ddct_plant.program.command_line import package_version
 
 SHOWN_AT_FIRST = 12
 """Of more runs than this only those of Table 5.1, or the first ones, are on at first."""

@@ -7,7 +7,8 @@ from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.fail_safe.guarded_engine import engine_info
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
-from ddct_plant.graph.run_info import package_version, run_info_pairs
+from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.ticks.tick_owner import driveline_info

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.printable import printable
-from ddct_plant.graph.run_info import package_version
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.options import add_scenario_options
@@ -58,7 +57,6 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
     parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
-    parser.add_argument('--version', action='version', version=package_version())
 
 
 def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:

@@ -6,7 +6,6 @@ from ddct_controllers.workflows import (
     margins_command,
     mpc_command,
 )
-from ddct_plant.graph.run_info import package_version
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'design'
@@ -27,7 +26,7 @@ Each workflow has its own --help. The thesis's numbers, figures and studies: rep
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW', version=package_version())
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW')
 
 
 if __name__ == '__main__':

@@ -1,18 +1,10 @@
 """The latched `run_info` message: what a node is and which settings it runs with."""
 
-import importlib.metadata
 from collections.abc import Mapping
 
+from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
-
-
-def package_version() -> str:
-    """Return the version of the installed packages, or 'unknown' in a bare source tree."""
-    try:
-        return importlib.metadata.version('ddct_plant')
-    except importlib.metadata.PackageNotFoundError:
-        return 'unknown'
 
 
 def run_info_pairs(

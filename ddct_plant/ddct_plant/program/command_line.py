@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import errno
+import importlib.metadata
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -25,13 +26,23 @@ _ADVICE = {
 }
 
 
+def package_version() -> str:
+    """Return the version of the installed packages, or 'unknown' in a bare source tree."""
+    try:
+        return importlib.metadata.version('ddct_plant')
+    except importlib.metadata.PackageNotFoundError:
+        return 'unknown'
+
+
 class ProgramParser(argparse.ArgumentParser):
-    """Keeps the lines of descriptions and examples, and complains in one line."""
+    """Keeps the lines of descriptions and examples, knows --version, complains in one line."""
 
     def __init__(self, **options: Any) -> None:
         """Take what ArgumentParser takes."""
         options.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         super().__init__(**options)
+        version = package_version()
+        self.add_argument('--version', action='version', version=version, help='print it, and end')
 
     def error(self, message: str) -> NoReturn:
         """End the program."""
@@ -80,7 +91,6 @@ def run_subcommands(
     argv: list[str] | None,
     *,
     metavar: str,
-    version: str,
 ) -> int:
     """
     Run the subcommand that `argv` chooses, by `run_program`, and return the exit code.
@@ -90,7 +100,6 @@ def run_subcommands(
     """
 
     def chosen(argv: list[str]) -> int:
-        parser.add_argument('--version', action='version', version=version)
         subparsers = parser.add_subparsers(required=True, metavar=metavar)
         for command in commands:
             command.add_parser(subparsers)

@@ -15,7 +15,7 @@ from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_file
 from ddct_plant.files.output_file import write_text
-from ddct_plant.graph.run_info import package_version
+from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import RunSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'

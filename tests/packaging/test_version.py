@@ -1,0 +1,65 @@
+"""The version stands in package.xml, the same in all four packages; everything else tells that."""
+
+import importlib
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+PROGRAMS = (
+    *(f'ddct_bringup.programs.{name}' for name in ('bringup', 'compare', 'live', 'report')),
+    *(f'ddct_bringup.programs.{name}' for name in ('reproduce', 'score')),
+    'ddct_controllers.workflows.design_program',
+    'ddct_plant.identification.identify',
+)
+
+
+def version_of(package: str) -> str:
+    version = ElementTree.parse(ROOT / package / 'package.xml').findtext('version')
+    assert version
+    return version
+
+
+def test_the_four_packages_have_one_version() -> None:
+    assert len({version_of(package) for package in PACKAGES}) == 1
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_setup_takes_the_version_from_package_xml(package: str) -> None:
+    text = (ROOT / package / 'setup.py').read_text(encoding='utf-8')
+    assert version_of(package) not in text
+    told = subprocess.run(
+        [sys.executable, 'setup.py', '--version'],
+        cwd=ROOT / package,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.split()[-1] == version_of(package)
+
+
+def test_the_newest_version_of_the_changelog_is_this_one() -> None:
+    changelog = (ROOT / 'CHANGELOG.md').read_text(encoding='utf-8')
+    assert re.findall(r'^## (\d\S*)$', changelog, re.MULTILINE)[0] == version_of('ddct_plant')
+
+
+@pytest.mark.parametrize('module', PROGRAMS)
+def test_every_program_tells_the_version(module: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        importlib.import_module(module).main(['--version'])
+    assert end.value.code == 0
+    assert capsys.readouterr().out.strip() == version_of('ddct_plant')
+
+
+def test_nodes_tell_the_version_on_run_info() -> None:
+    pairs = dict(run_info_pairs(RunSettings(load_scenario('thesis'))))
+    assert pairs['version'] == version_of('ddct_plant')
