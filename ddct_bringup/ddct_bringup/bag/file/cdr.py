@@ -6,8 +6,9 @@ CDR aligns numbers with bytes that the ROS serialiser leaves as it finds them in
 """
 
 import struct
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from ddct_bringup.bag.file.message_definitions import MessageDefinition
@@ -24,6 +25,7 @@ _NESTED = 1
 _STRING = 17
 _SIZES = {2: 1, 3: 1, 4: 2, 5: 2, 6: 4, 7: 4, 8: 8, 9: 8, 10: 4, 11: 8, 13: 1, 15: 1, 16: 1}
 """Size of each primitive by its number in type_description_interfaces/msg/FieldType."""
+_KNOWN = {_NESTED, _STRING, *_SIZES}
 _SHAPE = 48
 """Added to a primitive's number once for an array, more often for kinds of sequences."""
 _ARRAY = 1
@@ -42,40 +44,55 @@ class _Layout:
 
 
 class _Walk:
-    """A position in a message body that notes the bytes it passes over."""
+    """Passes over a message body and notes which bytes carry no value, and where lengths are."""
 
-    def __init__(self, body: memoryview) -> None:
+    def __init__(self, definition: MessageDefinition, body: memoryview) -> None:
+        self._fields = definition.fields
         self._body = body
         self.at = 0
         self.gaps: list[range] = []
         self.lengths: list[int] = []
 
-    def numbers(self, size: int, count: int) -> None:
-        """Pass `count` numbers of `size` bytes."""
+    def message(self, type_name: str) -> None:
+        """Pass a message; raise ValueError or struct.error where the body holds none."""
+        for field in self._fields[type_name]:
+            self._field(field['type'])
+
+    def _field(self, field: dict[str, Any]) -> None:
+        shape, element = divmod(field['type_id'], _SHAPE)
+        count = field['capacity'] if shape == _ARRAY else 1
+        if shape > _ARRAY:
+            count = self._length()
+        if element in _SIZES:
+            self._numbers(_SIZES[element], count)
+            return
+        for _ in range(count):
+            if element == _STRING:
+                self._string()
+            else:
+                self.message(field['nested_type_name'])
+
+    def _numbers(self, size: int, count: int) -> None:
         if count:
             start, self.at = self.at, self.at + -self.at % size
-            if self.at > start:
-                self.gaps.append(range(start, self.at))
+            self.gaps.append(range(start, self.at))
             self.at += size * count
 
-    def length(self) -> int:
+    def _length(self) -> int:
         """Pass the length of a string or sequence and return it; raise ValueError if too long."""
-        self.numbers(4, 1)
+        self._numbers(4, 1)
         self.lengths.append(self.at - 4)
         (count,) = struct.unpack_from('<I', self._body, self.at - 4)
         if count > len(self._body) - self.at:
             raise ValueError('a length runs past the end')
         return count
 
-    def string(self) -> None:
+    def _string(self) -> None:
         """Pass a string, whose length counts the zero byte at its end."""
-        count = self.length()
-        self.numbers(1, count)
+        count = self._length()
+        self._numbers(1, count)
         if count:
             self.gaps.append(range(self.at - 1, self.at))
-
-
-_Step = Callable[[_Walk], None]
 
 
 class CdrNormaliser:
@@ -83,8 +100,13 @@ class CdrNormaliser:
 
     def __init__(self, definition: MessageDefinition) -> None:
         """Raise DdctError for a type with fields that this reader does not know."""
-        self._type_name = definition.type_name
-        self._walk = _struct(definition, definition.type_name)
+        self._definition = definition
+        for field in chain.from_iterable(definition.fields.values()):
+            if field['type']['type_id'] % _SHAPE not in _KNOWN:
+                raise DdctError(
+                    f'{definition.type_name}: field type {field["type"]["type_id"]} is not '
+                    'supported'
+                )
         self._layouts: dict[int, list[_Layout]] = {}
 
     def normalise(self, cdr: bytes) -> bytes:
@@ -102,62 +124,30 @@ class CdrNormaliser:
         return (value & layout.keep).to_bytes(layout.size, 'little')
 
     def _layout(self, cdr: bytes) -> _Layout:
-        walk = _Walk(memoryview(cdr)[_BODY:])
+        type_name = self._definition.type_name
+        walk = _Walk(self._definition, memoryview(cdr)[_BODY:])
         try:
             if cdr[: len(_HEADER)] != _HEADER:
                 raise ValueError('not little-endian CDR')
-            self._walk(walk)
+            walk.message(type_name)
             if _BODY + walk.at > len(cdr):
                 raise ValueError('it is cut short')
         except struct.error as error:
-            raise DdctError(f'a message is no {self._type_name}: it is cut short') from error
+            raise DdctError(f'a message is no {type_name}: it is cut short') from error
         except ValueError as error:
-            raise DdctError(f'a message is no {self._type_name}: {error}') from error
-        keep = bytearray(b'\xff' * (_BODY + walk.at))
-        keep[len(_HEADER) : _BODY] = bytes(_BODY - len(_HEADER))
-        for gap in walk.gaps:
-            keep[_BODY + gap.start : _BODY + gap.stop] = bytes(len(gap))
-        lengths = bytearray(len(keep))
-        lengths[: len(_HEADER)] = b'\xff' * len(_HEADER)
-        for at in walk.lengths:
-            lengths[_BODY + at : _BODY + at + 4] = b'\xff' * 4
-        mask = int.from_bytes(lengths, 'little')
-        return _Layout(
-            len(keep), int.from_bytes(keep, 'little'), mask, int.from_bytes(cdr, 'little') & mask
-        )
+            raise DdctError(f'a message is no {type_name}: {error}') from error
+        size = _BODY + walk.at
+        options = range(len(_HEADER), _BODY)
+        gaps = [range(_BODY + gap.start, _BODY + gap.stop) for gap in walk.gaps]
+        lengths = [range(_BODY + at, _BODY + at + 4) for at in walk.lengths]
+        depends = _ones(size, [range(len(_HEADER)), *lengths])
+        keep = _ones(size, [range(size)]) & ~_ones(size, [options, *gaps])
+        return _Layout(size, keep, depends, int.from_bytes(cdr, 'little') & depends)
 
 
-def _struct(definition: MessageDefinition, type_name: str) -> _Step:
-    steps = [_field(definition, field['type']) for field in definition.fields[type_name]]
-
-    def walk(at: _Walk) -> None:
-        for step in steps:
-            step(at)
-
-    return walk
-
-
-def _field(definition: MessageDefinition, field: dict[str, Any]) -> _Step:
-    shape, element = divmod(field['type_id'], _SHAPE)
-    capacity = field['capacity']
-    if element in _SIZES:
-        size = _SIZES[element]
-        if shape == _ARRAY:
-            return lambda at: at.numbers(size, capacity)
-        if shape:
-            return lambda at: at.numbers(size, at.length())
-        return lambda at: at.numbers(size, 1)
-    if element == _NESTED:
-        step = _struct(definition, field['nested_type_name'])
-    elif element == _STRING:
-        step = _Walk.string
-    else:
-        raise DdctError(f'{definition.type_name}: field type {field["type_id"]} is not supported')
-    if shape == _ARRAY:
-        return lambda at: _repeat(step, at, capacity)
-    return (lambda at: _repeat(step, at, at.length())) if shape else step
-
-
-def _repeat(step: _Step, at: _Walk, count: int) -> None:
-    for _ in range(count):
-        step(at)
+def _ones(size: int, places: Sequence[range]) -> int:
+    """Return the mask of `size` bytes with ones over the bytes in `places`."""
+    mask = bytearray(size)
+    for place in places:
+        mask[place.start : place.stop] = b'\xff' * len(place)
+    return int.from_bytes(mask, 'little')
