@@ -5,8 +5,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.bag.file.mcap_file import METADATA_FILE, Channel, McapFile, write_metadata
-from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY
+from ddct_bringup.bag.file.mcap_file import METADATA_FILE, McapFile, write_metadata
+from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY, Channel
 from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records, salvage_records
 from ddct_bringup.bag.reader import recording_of
 from ddct_bringup.bag.run_facts import RunFacts

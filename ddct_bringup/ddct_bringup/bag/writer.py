@@ -5,9 +5,9 @@ from pathlib import Path
 from types import TracebackType
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
-from ddct_bringup.bag.file.mcap_file import Channel, McapFile
+from ddct_bringup.bag.file.mcap_file import McapFile
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.file.metadata import offered_qos
+from ddct_bringup.bag.file.metadata import Channel, offered_qos
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.topics import Topic
 

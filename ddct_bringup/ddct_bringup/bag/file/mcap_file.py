@@ -1,7 +1,6 @@
 """Write one MCAP file as rosbag2 does, so that the same messages give the same bytes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, cast
 
@@ -12,7 +11,7 @@ from ddct_bringup.bag.file.metadata import (
     QOS_KEY,
     RECORD_NAME,
     SERIALIZATION,
-    TopicCount,
+    Channel,
     bag_information,
     metadata_record,
     metadata_yaml,
@@ -23,19 +22,6 @@ METADATA_FILE = 'metadata.yaml'
 
 _CHUNK_BYTES = 64 * 1024
 """About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
-
-
-@dataclass(frozen=True)
-class Channel:
-    """One topic of the file and what readers need to know of it."""
-
-    topic: str
-    """Resolved name, with its leading slash."""
-    type_name: str
-    schema_text: str
-    type_hash: str
-    qos: str
-    """As `bag_metadata.offered_qos` gives it."""
 
 
 class McapFile:
@@ -99,10 +85,8 @@ class McapFile:
     def _add_metadata(self) -> dict[str, Any]:
         information = bag_information(
             self._path.name,
-            [
-                TopicCount(each.topic, each.type_name, each.type_hash, each.qos, count)
-                for each, count in zip(self._channels, self._counts, strict=True)
-            ],
+            self._channels,
+            self._counts,
             self._first_ns,
             self._last_ns,
             self._custom_data,

@@ -21,15 +21,16 @@ _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
 @dataclass(frozen=True)
-class TopicCount:
-    """What the metadata says of one topic."""
+class Channel:
+    """One topic of a bag and what readers need to know of it."""
 
-    name: str
+    topic: str
+    """Resolved name, with its leading slash."""
     type_name: str
+    schema_text: str
     type_hash: str
     qos: str
     """As `offered_qos` gives it."""
-    messages: int
 
 
 def offered_qos(*, latched: bool) -> str:
@@ -50,13 +51,18 @@ def offered_qos(*, latched: bool) -> str:
 
 def bag_information(
     file_name: str,
-    topics: Sequence[TopicCount],
+    channels: Sequence[Channel],
+    counts: Sequence[int],
     first_ns: int,
     last_ns: int,
     custom_data: Mapping[str, str],
 ) -> dict[str, Any]:
-    """Return every key of version 9 for a bag of one MCAP file, in rosbag2's order."""
-    count = sum(topic.messages for topic in topics)
+    """
+    Return every key of version 9 for a bag of one MCAP file, in rosbag2's order.
+
+    `counts` are the messages per channel.
+    """
+    count = sum(counts)
     duration = {'nanoseconds': last_ns - first_ns}
     start = {'nanoseconds_since_epoch': first_ns}
     return {
@@ -68,15 +74,15 @@ def bag_information(
         'topics_with_message_count': [
             {
                 'topic_metadata': {
-                    'name': topic.name,
-                    'type': topic.type_name,
+                    'name': channel.topic,
+                    'type': channel.type_name,
                     'serialization_format': SERIALIZATION,
-                    'offered_qos_profiles': parse_yaml(topic.qos),
-                    'type_description_hash': topic.type_hash,
+                    'offered_qos_profiles': parse_yaml(channel.qos),
+                    'type_description_hash': channel.type_hash,
                 },
-                'message_count': topic.messages,
+                'message_count': messages,
             }
-            for topic in topics
+            for channel, messages in zip(channels, counts, strict=True)
         ],
         'compression_format': '',
         'compression_mode': '',
