@@ -7,7 +7,7 @@ import pytest
 from support.runs import plan, record
 
 from ddct_bringup.programs.report import main
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.scenario.file import scenario_digest
 

@@ -15,7 +15,7 @@ from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.programs import compare
 from ddct_bringup.programs.report import main
 from ddct_bringup.programs.score import main as score
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
+from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.thesis.conditions import predicted_range
 from ddct_plant.scenario.settings import RunSettings
 

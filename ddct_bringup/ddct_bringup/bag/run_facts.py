@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ddct_plant.base.checks import require_name
+from ddct_plant.base.checks import require_name, require_number
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
@@ -68,54 +68,26 @@ class RunFacts:
     @classmethod
     def from_custom_data(cls, custom_data: Mapping[str, str]) -> 'RunFacts':
         """Return the facts; raise DdctError that names a missing or unusable one."""
-        missing = [field.name for field in fields(cls) if field.name not in custom_data]
-        if missing:
-            raise DdctError(f'no {missing[0]} in the custom data: not a recording of this project')
-        first, last = _number_list('score_window_s', custom_data, 2)
-        return cls(
-            controller=custom_data['controller'],
-            architecture=custom_data['architecture'],
-            scenario=custom_data['scenario'],
-            clutch=custom_data['clutch'],
-            wear_gain=_number('wear_gain', custom_data),
-            mode=custom_data['mode'],
-            seed=int(_number('seed', custom_data)),
-            control_start_s=_number('control_start_s', custom_data),
-            score_window_s=(first, last),
-            duration_s=_number('duration_s', custom_data),
-        )
+        values: dict[str, Any] = {}
+        for name in (field.name for field in fields(cls)):
+            if name not in custom_data:
+                raise DdctError(f'no {name} in the custom data: not a recording of this project')
+            text = custom_data[name]
+            values[name] = text if name in _NAMES else _parsed(name, text)
+        return cls(**{**values, 'seed': int(values['seed'])})
 
 
-def _number(key: str, custom_data: Mapping[str, str]) -> float:
-    value = _parsed(key, custom_data)
-    if not _is_number(value):
-        raise _unusable(key, custom_data)
-    return value
-
-
-def _number_list(key: str, custom_data: Mapping[str, str], length: int) -> list[float]:
-    values = _parsed(key, custom_data)
-    if not isinstance(values, list) or len(values) != length:
-        raise _unusable(key, custom_data)
-    if not all(_is_number(value) for value in values):
-        raise _unusable(key, custom_data)
-    return values
-
-
-def _is_number(value: Any) -> bool:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
-    return abs(value) <= _LARGEST
-
-
-def _parsed(key: str, custom_data: Mapping[str, str]) -> Any:
+def _parsed(name: str, text: str) -> Any:
+    """Return the number that `text` is, or the two of the score window."""
     try:
-        return parse_json(custom_data[key])
-    except ParameterError as error:
-        raise _unusable(key, custom_data) from error
-
-
-def _unusable(key: str, custom_data: Mapping[str, str]) -> DdctError:
-    return DdctError(
-        f'{key} is {custom_data[key]!r} in the custom data: not a recording of this project'
-    )
+        value = parse_json(text)
+        if name == 'score_window_s':
+            first, last = value
+            value = (first, last)
+        for number in value if isinstance(value, tuple) else (value,):
+            require_number(name, number, at_least=-_LARGEST, at_most=_LARGEST)
+    except (ParameterError, TypeError, ValueError) as error:
+        raise DdctError(
+            f'{name} is {text!r} in the custom data: not a recording of this project'
+        ) from error
+    return value

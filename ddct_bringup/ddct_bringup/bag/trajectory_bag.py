@@ -6,7 +6,7 @@ from pathlib import Path
 from rclpy.serialization import serialize_message
 
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.bag.run_info_order import run_info_order
+from ddct_bringup.bag.run_info import run_info_order
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.base.timebase import START_NS, stamp_of_step

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_bringup.programs.report import REPORT_FILE, write_report
+from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.output import require_chart_library
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
 from ddct_bringup.run.execution import kept_logs
@@ -15,9 +16,9 @@ from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.progress import run_with_progress
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE, write_frequency_evidence
 from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
+from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
@@ -74,7 +75,8 @@ def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Name
     if failed:
         _tell_of_logs(folder.path, plans)
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
-    write_frequency_evidence(folder.path, [plan.controller for plan in plans], settings)
+    evidence = frequency_evidence([plan.controller for plan in plans], settings)
+    write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE))
     folder.commit()
     _tell_of_logs(folder.final, plans)

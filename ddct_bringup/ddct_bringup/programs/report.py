@@ -16,8 +16,7 @@ from ddct_bringup.report.runs import (
     require_one_scenario,
 )
 from ddct_bringup.run.folder_lock import held, is_ours
-from ddct_bringup.scores.bag_progress import with_progress
-from ddct_bringup.scores.scoring import bags_in
+from ddct_bringup.scores.bags import bags_in, with_progress
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program

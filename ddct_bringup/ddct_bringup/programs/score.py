@@ -10,13 +10,11 @@ from pathlib import Path
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
-from ddct_bringup.scores.bag_progress import with_progress
+from ddct_bringup.scores.bags import bag_name, bags_in, with_progress
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
     Entry,
-    bag_name,
-    bags_in,
     flat,
     score_recording,
     scores_document,

@@ -7,12 +7,13 @@ from typing import Any
 
 from ddct_bringup.report.loop_columns import is_whole
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_text import parse_json
 
+FREQUENCY_FILE = 'frequency.json'
+"""What `compare` leaves beside the scores."""
 COMPUTED = 'computed for this page'
 
 

@@ -6,11 +6,10 @@ from functools import cached_property
 from pathlib import Path
 
 from ddct_bringup.bag.reader import Recording, read_bag
-from ddct_bringup.run.run_timing import RunTiming
-from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.run.run_timing import RunTiming, read_timing
+from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scoring import (
     Entry,
-    bag_name,
     score_recording,
     unreadable_entry,
 )

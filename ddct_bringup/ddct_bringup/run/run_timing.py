@@ -1,13 +1,18 @@
-"""Wall-clock figures of a run, kept out of the bag so that the bag is deterministic."""
+"""Wall-clock figures of a run: `timing.json` beside the bag, which is deterministic without."""
 
 import json
 import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_text import parse_json
 
 TIMING_FILE = 'timing.json'
+MOST_BYTES = 50_000_000
+"""An hour's run has an eighth of that."""
 
 
 @dataclass
@@ -39,3 +44,46 @@ class RunTiming:
             path.write_text(json.dumps(asdict(self)) + os.linesep, encoding='utf-8')
         except OSError as error:
             raise DdctError(f'{path}: cannot be written ({error.strerror})') from error
+
+
+def read_timing(folder: Path) -> RunTiming | None:
+    """Return the timing of a bag folder, None without one; raise DdctError if it is unusable."""
+    path = folder / TIMING_FILE
+    try:
+        text = read_text_file(path, MOST_BYTES)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise DdctError(f'{path}: cannot read the timing: {error.strerror}') from error
+    try:
+        values = parse_json(text)
+        return RunTiming(
+            update_times_us=[_positive('update_times_us', x) for x in values['update_times_us']],
+            missed_steps=_count('missed_steps', values['missed_steps']),
+            resends=_count('resends', values['resends']),
+            late_messages=_count('late_messages', values['late_messages']),
+            refused_messages=_count('refused_messages', values.get('refused_messages', 0)),
+            worst_lateness_us=_optional(values.get('worst_lateness_us')),
+            safe_states={
+                str(node): _count('safe_states', stamp)
+                for node, stamp in values.get('safe_states', {}).items()
+            },
+            wall_time_s=_positive('wall_time_s', values['wall_time_s']),
+            steps=_count('steps', values['steps']),
+        )
+    except (DdctError, LookupError, TypeError, AttributeError) as error:
+        raise DdctError(
+            f'{path}: not the timing of a run ({error!r}): delete it to score without'
+        ) from error
+
+
+def _positive(name: str, value: object) -> float:
+    return require_number(name, value, at_least=0.0)
+
+
+def _count(name: str, value: object) -> int:
+    return int(_positive(name, value))
+
+
+def _optional(value: object) -> float | None:
+    return None if value is None else _positive('worst_lateness_us', value)

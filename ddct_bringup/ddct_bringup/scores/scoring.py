@@ -12,7 +12,8 @@ from ddct_bringup.bag.file.records import mcap_of, salvage_records
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.run.run_timing import read_timing
+from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
 from ddct_plant.base.errors import DdctError
@@ -111,51 +112,6 @@ def _why_early(recording: Recording) -> str:
     if recording.realtime.steps >= wanted:
         return f'{early}: the driveline took them all, but the recorder did not hear the last'
     return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
-
-
-def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
-    """
-    Return (bag, the folder that was searched or None) for every bag at the paths, each once.
-
-    Raise DdctError for a path without any.
-    """
-    found: dict[Path, tuple[Path, Path | None]] = {}
-    for path in paths:
-        for bag in find_bags(path):
-            found.setdefault(bag.resolve(), (bag, None if bag == path else path))
-    return list(found.values())
-
-
-def bag_name(path: Path, relative_to: Path | None) -> str:
-    """Return the path as scores name it, with forward slashes."""
-    if relative_to is not None and path.is_relative_to(relative_to):
-        return path.relative_to(relative_to).as_posix()
-    return path.as_posix()
-
-
-def find_bags(path: Path) -> list[Path]:
-    """
-    Return the bags in a folder and below it, or the one that `path` is, in alphabetical order.
-
-    A folder with one .mcap file is a bag; of several, each file is one. Hidden files and folders
-    do not count. Raise DdctError without any.
-    """
-    if not path.is_dir():
-        if not path.exists():
-            raise DdctError(f'{path}: no such file or folder')
-        return [path]
-    files = [
-        file
-        for file in sorted(path.rglob('*.mcap'))
-        if not any(part.startswith('.') for part in file.relative_to(path).parts)
-    ]
-    if not files:
-        raise DdctError(f'{path}: no .mcap file in this folder or below it: give a bag')
-    folders = [file.parent for file in files]
-    return [
-        folder if folders.count(folder) == 1 else file
-        for file, folder in zip(files, folders, strict=True)
-    ]
 
 
 def scores_document(runs: Sequence[Entry]) -> dict[str, list[Entry]]:

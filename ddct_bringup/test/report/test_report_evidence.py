@@ -8,10 +8,9 @@ import pytest
 from test_report_escaping import SETTINGS, recording
 
 from ddct_bringup.report import evidence
-from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
+from ddct_bringup.report.evidence import COMPUTED, FREQUENCY_FILE, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
 from ddct_controllers.workflows.evidence import frequency_evidence
 
 

@@ -6,8 +6,7 @@ from dataclasses import asdict
 
 import pytest
 
-from ddct_bringup.run.run_timing import RunTiming
-from ddct_bringup.run.timing_file import read_timing
+from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_plant.base.errors import DdctError
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from ddct_bringup.programs import compare
+from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.frequency_evidence import FREQUENCY_FILE
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement

@@ -1,11 +1,13 @@
-"""What each node has said on `run_info`: one thing, however often it says it."""
+"""What the nodes say on `run_info`: each one thing, however often, and kept in one order."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from ddct_plant.base.errors import DdctError
 
 RunInfoOfNodes = dict[str, Mapping[str, str]]
 """Per node name what it says of itself."""
+
+_CONTROLLER_NODE = 'controller'
 
 
 def note_run_info(said: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
@@ -19,3 +21,13 @@ def note_run_info(said: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> 
         f'{pairs.get(key, "missing")}: two nodes had this name, record the run again with one of '
         'them, or in another ROS_DOMAIN_ID'
     )
+
+
+def run_info_order(nodes: Iterable[str]) -> list[str]:
+    """
+    Return the names of the nodes sorted, `controller` last.
+
+    Viewers such as Foxglove keep only the last message of a topic when they are opened or moved
+    in time; the controller's is the one that says which controller runs, and with which gains.
+    """
+    return sorted(nodes, key=lambda node: (node == _CONTROLLER_NODE, node))

@@ -1,0 +1,64 @@
+"""Find the bags at the paths that a user gives, name them, and go through them."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from rich.console import Console
+from rich.progress import track
+
+from ddct_plant.base.errors import DdctError
+
+Bag = TypeVar('Bag')
+
+
+def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
+    """
+    Return (bag, the folder that was searched or None) for every bag at the paths, each once.
+
+    Raise DdctError for a path without any.
+    """
+    found: dict[Path, tuple[Path, Path | None]] = {}
+    for path in paths:
+        for bag in find_bags(path):
+            found.setdefault(bag.resolve(), (bag, None if bag == path else path))
+    return list(found.values())
+
+
+def bag_name(path: Path, relative_to: Path | None) -> str:
+    """Return the path as scores name it, with forward slashes."""
+    if relative_to is not None and path.is_relative_to(relative_to):
+        return path.relative_to(relative_to).as_posix()
+    return path.as_posix()
+
+
+def find_bags(path: Path) -> list[Path]:
+    """
+    Return the bags in a folder and below it, or the one that `path` is, in alphabetical order.
+
+    A folder with one .mcap file is a bag; of several, each file is one. Hidden files and folders
+    do not count. Raise DdctError without any.
+    """
+    if not path.is_dir():
+        if not path.exists():
+            raise DdctError(f'{path}: no such file or folder')
+        return [path]
+    files = [
+        file
+        for file in sorted(path.rglob('*.mcap'))
+        if not any(part.startswith('.') for part in file.relative_to(path).parts)
+    ]
+    if not files:
+        raise DdctError(f'{path}: no .mcap file in this folder or below it: give a bag')
+    folders = [file.parent for file in files]
+    return [
+        folder if folders.count(folder) == 1 else file
+        for file, folder in zip(files, folders, strict=True)
+    ]
+
+
+def with_progress(bags: Sequence[Bag], description: str) -> Iterable[Bag]:
+    """Show progress on standard error while the bags are gone through, on a terminal only."""
+    console = Console(stderr=True)
+    hidden = not console.is_terminal or len(bags) < 2
+    return track(bags, description, console=console, transient=True, disable=hidden)
