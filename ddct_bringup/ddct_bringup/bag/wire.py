@@ -13,8 +13,3 @@ def stamp_of_cdr(cdr: bytes) -> int:
     """Return the stamp in ns of a serialised message."""
     seconds, nanoseconds = _STAMP.unpack_from(cdr, _STAMP_AT)
     return seconds * NS_PER_S + nanoseconds
-
-
-def set_stamp_of_cdr(cdr: bytearray, stamp_ns: int) -> None:
-    """Stamp a serialised message anew, in place."""
-    _STAMP.pack_into(cdr, _STAMP_AT, *divmod(stamp_ns, NS_PER_S))

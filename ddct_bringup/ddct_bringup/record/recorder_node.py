@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from ddct_bringup.bag.file.cdr import CdrNormaliser
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.wire import set_stamp_of_cdr, stamp_of_cdr
+from ddct_bringup.bag.wire import stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_bringup.record.heard_nodes import HeardNodes
@@ -89,8 +89,6 @@ class RecorderNode(GraphNode):
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
         self._ack = self.create_publisher(RECORDER_ACK.message_class, RECORDER_ACK.name, LOOP_QOS)
-        # Acknowledgements differ in nothing but the stamp.
-        self._ack_cdr = bytearray(serialize_message(RECORDER_ACK.message(START_NS)))
         self._acknowledged = 0
         self._second_node: DdctError | None = None
         self._subscribe_all()
@@ -108,7 +106,12 @@ class RecorderNode(GraphNode):
             if self._bag is None:
                 raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
-            self._timing.late_messages += self._buffer.dropped
+            facts = self._realtime
+            self._timing.resends = facts.resends
+            self._timing.missed_steps = facts.missed_steps
+            self._timing.late_messages = facts.late_messages + self._buffer.dropped
+            self._timing.worst_lateness_us = facts.worst_lateness_us
+            self._timing.safe_states = facts.safe_states
             self._timing.refused_messages = self._refusals.count
             self._timing.write(self._folder)
             if self._second_node is not None:
@@ -127,7 +130,7 @@ class RecorderNode(GraphNode):
 
     def _receiver(self, topic: Topic) -> Callable[[bytes], None]:
         if topic.every_tick:
-            return self.guarded(self._tick_receiver(topic))
+            return self.guarded(partial(self._on_tick, topic))
         special = {
             RUN_INFO: self._on_run_info,
             CONTROLLER_TIMING: self._on_timing,
@@ -135,26 +138,20 @@ class RecorderNode(GraphNode):
         }
         return self.guarded(special.get(topic, partial(self._record_unordered, topic)))
 
-    def _tick_receiver(self, topic: Topic) -> Callable[[bytes], None]:
-        offer, name = self._buffer.offer, topic.name
-        asks_again = topic is ASKS_AGAIN
-
-        def receive(cdr: bytes) -> None:
-            stamp = stamp_of_cdr(cdr)
-            if not self._refusals.admits(name, stamp):
-                return
-            try:
-                ready = offer(name, stamp, cdr)
-            except TwoMessagesError as error:
-                publishers = publishers_of(self, name)
-                self._on_second_node(DdctError(f'{error}; publishers: {publishers}'))
-                return
-            if ready:
-                self._write_ticks(ready)
-            elif asks_again and stamp == self._acknowledged:
-                self._ack.publish(bytes(self._ack_cdr))
-
-        return receive
+    def _on_tick(self, topic: Topic, cdr: bytes) -> None:
+        stamp = stamp_of_cdr(cdr)
+        if not self._refusals.admits(topic.name, stamp):
+            return
+        try:
+            ready = self._buffer.offer(topic.name, stamp, cdr)
+        except TwoMessagesError as error:
+            publishers = publishers_of(self, topic.name)
+            self._on_second_node(DdctError(f'{error}; publishers: {publishers}'))
+            return
+        if ready:
+            self._write_ticks(ready)
+        elif topic is ASKS_AGAIN and stamp == self._acknowledged:
+            self._acknowledge(stamp)
 
     def _on_run_info(self, cdr: bytes) -> None:
         node, pairs = RUN_INFO.read(_message(RUN_INFO, cdr))
@@ -180,15 +177,8 @@ class RecorderNode(GraphNode):
 
     def _on_diagnostics(self, cdr: bytes) -> None:
         message = _message(DIAGNOSTICS, cdr)
-        facts = self._realtime
-        if not message.status or not facts.hear(*DIAGNOSTICS.read(message)):
-            return
-        self._timing.resends = facts.resends
-        self._timing.missed_steps = facts.missed_steps
-        self._timing.late_messages = facts.late_messages
-        self._timing.worst_lateness_us = facts.worst_lateness_us
-        self._timing.safe_states = facts.safe_states
-        self._record_unordered(DIAGNOSTICS, cdr)
+        if message.status and self._realtime.hear(*DIAGNOSTICS.read(message)):
+            self._record_unordered(DIAGNOSTICS, cdr)
 
     def _record_unordered(self, topic: Topic, cdr: bytes) -> None:
         if topic not in self._topics:
@@ -210,15 +200,18 @@ class RecorderNode(GraphNode):
 
     def _write_tick(self, stamp: int, tick: Tick) -> None:
         assert self._bag is not None
-        set_stamp_of_cdr(self._ack_cdr, stamp)
-        ack = bytes(self._ack_cdr)
         # The tick is safe here now: the graph goes on while it is being written.
+        tick[RECORDER_ACK.name] = self._acknowledge(stamp)
+        for topic in self._tick_topics:
+            if topic in tick:
+                self._bag.write(topic, stamp, tick[topic])
+
+    def _acknowledge(self, stamp: int) -> bytes:
+        """Publish the acknowledgement of a tick and return it, serialised."""
+        ack = serialize_message(RECORDER_ACK.message(stamp))
         self._ack.publish(ack)
         self._acknowledged = stamp
-        for topic in self._tick_topics:
-            cdr = ack if topic == RECORDER_ACK.name else tick.get(topic)
-            if cdr is not None:
-                self._bag.write(topic, stamp, cdr)
+        return ack
 
     def _open_bag(self) -> bool:
         if self._nodes.silent():
@@ -238,8 +231,7 @@ class RecorderNode(GraphNode):
         return normaliser.normalise(first) == normaliser.normalise(second)
 
     def _waiting_for(self) -> str:
-        silent = self._nodes.silent()
-        if silent:
+        if silent := self._nodes.silent():
             return (
                 f'no run_info came from {", ".join(silent)}: start them, or leave them out of '
                 '--ros-args -p nodes:=[...]'
