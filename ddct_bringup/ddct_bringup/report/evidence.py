@@ -5,16 +5,30 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.report.loop_columns import is_whole
 from ddct_bringup.report.runs import ReportRun
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_text import parse_json
 
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""
 COMPUTED = 'computed for this page'
+
+LOOP_COLUMNS = (
+    ('gain_margin_db', 'GM', 'dB', '.1f', 'Least increase of the gain that makes it unstable'),
+    ('phase_margin_deg', 'PM', '°', '.1f', 'Least change of phase that does'),
+    ('delay_margin_s', 'DM', 's', '.3f', 'Least additional delay that does'),
+    ('disk_margin', 'disk', '', '.2f', 'Disk margin α = 2 / max |S − T|'),
+    ('sensitivity_peak', 'M_s', '', '.2f', 'Peak of |1/(1 + L)|'),
+    ('complementary_peak', 'M_t', '', '.2f', 'Peak of |L/(1 + L)|'),
+    ('crossover_rad_s', 'w_c', 'rad/s', '.2f', 'Highest frequency with |L| = 1'),
+    ('bandwidth_rad_s', 'w_b', 'rad/s', '.2f', 'Lowest frequency with |T| below 0.71'),
+    ('driveline_mode_hz', 'mode', 'Hz', '.2f', 'Closed-loop pole pair nearest the zeros of P_2'),
+    ('driveline_mode_damping', 'damping', '', '.3f', 'Of that mode'),
+)
+"""Key of the evidence, symbol, unit, format and meaning."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +79,28 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
         return None
     for entry in entries:
         if isinstance(entry, dict) and entry.get('controller') == controller:
-            whole = is_whole(entry, wear_gain)
+            whole = _is_whole(entry, wear_gain)
             return LoopEvidence(controller, wear_gain, entry) if whole else None
     return None
+
+
+def _is_whole(entry: Any, wear_gain: float) -> bool:
+    """Say whether an entry that stood in a file holds everything that the page shows of it."""
+    try:
+        if entry['linear'] is not True:
+            return entry['linear'] is False and not entry['wear']
+        point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
+        interval = entry['stable_wear_gain'] or {}
+        for value in (
+            *(point[key] for key, *_ in LOOP_COLUMNS),
+            *(interval.get(end) for end in ('lowest', 'highest')),
+            entry['corners']['sensitivity_peak'],
+        ):
+            if value is not None:
+                require_number('evidence', value)
+        return isinstance(point['stable'], bool) and isinstance(entry['corners']['unstable'], int)
+    except (LookupError, TypeError, AttributeError, StopIteration, ParameterError):
+        return False
 
 
 def _content(file: Path) -> dict[str, Any]:

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_bringup.report.evidence import LoopEvidence
-from ddct_bringup.report.loop_columns import LOOP_COLUMNS
+from ddct_bringup.report.evidence import LOOP_COLUMNS, LoopEvidence
 from ddct_controllers.workflows.evidence import Evidence
 
 NOT_LINEAR = 'not linear, so without a frequency response'

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.base.timebase import PERIOD_S
 
 _FIRST_US, _LAST_US = 1.0, 1e5
@@ -23,12 +24,8 @@ class UpdateTimes:
     median_us: float
     p99_us: float
     largest_us: float
-    missed_steps: int
-    worst_lateness_us: float | None
-    """None in lock-step."""
-    resends: int
-    late_messages: int
-    wall_time_s: float
+    timing: RunTiming
+    """What else it holds."""
     median_place: float
     p99_place: float
     largest_place: float
@@ -47,11 +44,7 @@ def update_times(run: ReportRun) -> UpdateTimes | None:
         median_us=median,
         p99_us=p99,
         largest_us=largest,
-        missed_steps=timing.missed_steps,
-        worst_lateness_us=timing.worst_lateness_us,
-        resends=timing.resends,
-        late_messages=timing.late_messages,
-        wall_time_s=timing.wall_time_s,
+        timing=timing,
         median_place=_place(median),
         p99_place=_place(p99),
         largest_place=_place(largest),
