@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from headless_chromium import PRINT, chromium, visit
 
-from ddct_bringup.report.line_looks import LIGHT_COLOURS
+from ddct_bringup.report.run_marks import LIGHT_COLOURS
 
 pytestmark = pytest.mark.browser
 

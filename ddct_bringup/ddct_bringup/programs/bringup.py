@@ -7,12 +7,11 @@ from pathlib import Path
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
-from ddct_bringup.run.execution import kept_logs
+from ddct_bringup.run.execution import run_with_progress, tell_of_logs
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.progress import run_with_progress
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import why_invalid
 from ddct_controllers.registry import controller_label
@@ -73,8 +72,7 @@ def _run(plan: RunPlan, options: argparse.Namespace) -> None:
 
 def _tell(recording: Recording, folder: Path) -> None:
     """Say on standard error what a real-time run was like, and which logs hold warnings."""
-    if logs := kept_logs(folder):
-        print(f'{PROGRAM}: warnings are in {", ".join(map(str, logs))}', file=sys.stderr)
+    tell_of_logs(PROGRAM, [folder])
     if not recording.facts.lockstep:
         print(f'{PROGRAM}: {realtime_summary(recording)}', file=sys.stderr)
 

@@ -2,19 +2,17 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_bringup.programs.report import REPORT_FILE, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.output import require_chart_library
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
-from ddct_bringup.run.execution import kept_logs
+from ddct_bringup.run.execution import run_with_progress, tell_of_logs
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.progress import run_with_progress
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
@@ -73,13 +71,13 @@ def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Name
     _report(entries, settings, options)
     failed = [entry['controller'] for entry in entries if not entry['valid']]
     if failed:
-        _tell_of_logs(folder.path, plans)
+        tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
         raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
     evidence = frequency_evidence([plan.controller for plan in plans], settings)
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE))
     folder.commit()
-    _tell_of_logs(folder.final, plans)
+    tell_of_logs(PROGRAM, [folder.final / plan.name for plan in plans])
     print(
         f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
         f'{folder.final}',
@@ -100,12 +98,6 @@ def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
         return run
     complain(PROGRAM, f'{plan.name}: {run.entry["reason"]}')
     return ReportRun({**run.entry, 'controller': plan.name})
-
-
-def _tell_of_logs(folder: Path, plans: Sequence[RunPlan]) -> None:
-    logs = [str(log) for plan in plans for log in kept_logs(folder / plan.name)]
-    if logs:
-        print(f'{PROGRAM}: warnings are in {", ".join(logs)}', file=sys.stderr)
 
 
 def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:

@@ -1,8 +1,6 @@
 """Program `score`: compute the metrics of recorded runs."""
 
 import argparse
-import csv
-import io
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,18 +10,16 @@ from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in, with_progress
 from ddct_bringup.scores.comfort import VDV_WEIGHTING
+from ddct_bringup.scores.csv_text import scores_csv, signals_csv
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
     Entry,
-    flat,
     score_recording,
     scores_document,
     unreadable_entry,
 )
-from ddct_bringup.scores.signals_csv import signals_csv
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
@@ -62,7 +58,7 @@ def _score(argv: list[str]) -> int:
         if options.json:
             write_json(options.json, scores_document(runs))
         if options.csv:
-            write_text(options.csv, _csv(runs))
+            write_text(options.csv, scores_csv(runs))
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
     print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
     return 0 if all(run['valid'] for run in runs) else 1
@@ -109,18 +105,6 @@ def _write_signals(folder: Path, name: str, text: str) -> None:
         raise DdctError(f'{folder}: cannot make the folder: {error.strerror}') from error
     file = name.strip('./').replace('/', '_').removesuffix('.mcap')
     write_text(str(folder / f'{file}.csv'), text)
-
-
-def _csv(runs: Sequence[Entry]) -> str:
-    text = io.StringIO()
-    rows = [
-        {key: printable(value) if isinstance(value, str) else value for key, value in row.items()}
-        for row in flat(runs)
-    ]
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator='\n')
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _parser() -> argparse.ArgumentParser:

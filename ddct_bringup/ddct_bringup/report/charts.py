@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.report.line_looks import LIGHT_COLOURS, LineLook
+from ddct_bringup.report.run_marks import LIGHT_COLOURS, LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300

@@ -14,11 +14,16 @@ from markupsafe import Markup, escape
 
 from ddct_bringup.report.charts import NEUTRAL, QUANTITIES, ChartRun, chart_document
 from ddct_bringup.report.evidence import COMPUTED, LOOP_COLUMNS, LoopEvidence
-from ddct_bringup.report.labels import common_conditions, run_labels
-from ddct_bringup.report.line_looks import DARK_COLOURS, LIGHT_COLOURS, line_looks
 from ddct_bringup.report.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.origin import run_origin, scenario_text
 from ddct_bringup.report.output import MARKER
+from ddct_bringup.report.run_marks import (
+    DARK_COLOURS,
+    LIGHT_COLOURS,
+    common_conditions,
+    line_looks,
+    run_labels,
+)
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times

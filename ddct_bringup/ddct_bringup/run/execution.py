@@ -1,8 +1,12 @@
 """Carry out one planned run in its layout and leave its bag in a folder."""
 
 import re
-from collections.abc import Callable
+import sys
+import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
+
+from rich.console import Console
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
@@ -14,10 +18,31 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.stop_signals import stop_signals
 
 WORK_FOLDER = 'work'
 """Scenario, parameters and logs of a run; of a run that ends well only logs with warnings stay."""
 _WARNING = re.compile(rb'^\[(WARN|ERROR|FATAL)\]', re.MULTILINE)
+
+
+def run_with_progress(
+    plan: RunPlan, folder: Path, label: str = '', live: LiveView | None = None
+) -> None:
+    """
+    Carry out `plan` into `folder`, saying what runs and how fast it went.
+
+    Raise DdctError when the run does not end well, KeyboardInterrupt after SIGINT or SIGTERM.
+    """
+    scenario = plan.settings.scenario
+    what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
+    started = time.monotonic()
+    with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
+        execute(plan, folder, lambda: bool(stops), live)
+    if stops:
+        # It came when the run had ended already: whatever would follow is not wanted.
+        raise KeyboardInterrupt
+    elapsed = time.monotonic() - started
+    print(f'{what} in {elapsed:.1f} s ({plan.layout})', file=sys.stderr, flush=True)
 
 
 def execute(
@@ -52,6 +77,12 @@ def execute(
 def kept_logs(folder: Path) -> list[Path]:
     """Return the logs with warnings that a run has left in its bag's folder."""
     return sorted((folder / WORK_FOLDER).glob('*.log'))
+
+
+def tell_of_logs(program: str, folders: Iterable[Path]) -> None:
+    """Say on standard error which logs of the runs in these folders hold warnings, if any do."""
+    if logs := [str(log) for folder in folders for log in kept_logs(folder)]:
+        print(f'{program}: warnings are in {", ".join(logs)}', file=sys.stderr)
 
 
 def _keep_warnings(work: Path) -> None:

@@ -1,5 +1,5 @@
 """
-Run the closed loop without ROS.
+Run the closed loop without ROS: one step at a time, the same classes as the nodes.
 
     from ddct_bringup.run.headless import run_headless
     trajectory = run_headless(RunSettings(load_scenario('thesis')), 'pi')
@@ -8,13 +8,91 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
+from typing import Any, Protocol
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.closed_loop import ClosedLoop
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_controllers.interface import Controller
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import make_controller
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.engine import Engine
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
+from ddct_reference.factory import make_reference
+
+
+class TorqueActuator(Protocol):
+    """What turns torque requests into torque."""
+
+    def update(self, request: float) -> list[float]:
+        """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and take the next request in."""
+
+
+class ClosedLoop:
+    """Engine, load, driveline, reference, controller, actuator and clutch, wired as the graph."""
+
+    def __init__(self, settings: RunSettings, controller: Controller) -> None:
+        """Start in the run's initial state."""
+        scenario = settings.scenario
+        initial = initial_state(settings)
+        self._driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
+        self._engine = Engine(scenario.engine, scenario.engine_authority)
+        self._load = RoadLoad(scenario.load, scenario.vehicle)
+        self._reference = make_reference(settings, controller.preview_steps)
+        self._architecture = make_architecture(settings, controller)
+        self._actuator: TorqueActuator = Actuator(initial.torque_request)
+        self._clutch = LinearClutch(settings.wear_gain)
+        self.update_time_us = 0.0
+        """Wall time that the controller took for the last reply."""
+
+    def reply(self, step: int) -> dict[str, Any]:
+        """Return every signal of step k by its name in `Trajectory`; advances all but time."""
+        now = self._driveline.outputs()
+        demand = self._engine.demand(step)
+        # A controller that commands the engine is told the demand, any other what is delivered;
+        # both are the same number until there is a request.
+        speeds, rates = self._reference.update(step, now.slip_speed)
+        measurement = Measurement(
+            step=step,
+            engine_speed=now.joint_speed[0],
+            shaft_speed=now.joint_speed[1],
+            wheel_speed=now.joint_speed[2],
+            vehicle_speed=now.vehicle_speed,
+            engine_torque=demand,
+            slip_reference=speeds,
+            slip_reference_rate=rates,
+        )
+        started = time.perf_counter()
+        request = self._architecture.update(measurement)
+        self.update_time_us = 1e6 * (time.perf_counter() - started)
+        actuator_torque = self._actuator.update(request.torque)
+        engine_torque = self._engine.torque(step, request.engine_torque)
+        return {
+            'joint_position': now.joint_position,
+            'joint_speed': now.joint_speed,
+            'joint_effort': now.joint_effort,
+            'slip_speed': now.slip_speed,
+            'vehicle_speed': now.vehicle_speed,
+            'vehicle_accel': now.vehicle_accel,
+            'torque_demand': demand,
+            'engine_torque': engine_torque,
+            'load_torque': self._load.torque(now.vehicle_speed),
+            'slip_reference': speeds,
+            'slip_reference_rate': rates,
+            'torque_request': request.torque,
+            'actuator_torque': actuator_torque,
+            'clutch_torque': self._clutch.transmit(actuator_torque),
+            'status': request.status,
+            'engine_torque_request': request.engine_torque,
+        }
+
+    def advance(self, reply: dict[str, Any]) -> None:
+        """Integrate the driveline over the period that `reply` answered."""
+        self._driveline.step(reply['engine_torque'], reply['load_torque'], reply['clutch_torque'])
 
 
 def run_headless(

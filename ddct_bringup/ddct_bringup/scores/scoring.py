@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -117,11 +117,3 @@ def _why_early(recording: Recording) -> str:
 def scores_document(runs: Sequence[Entry]) -> dict[str, list[Entry]]:
     """Return the content of `scores.json`."""
     return {'runs': list(runs)}
-
-
-def flat(runs: Iterable[Entry]) -> list[dict[str, Any]]:
-    """Return the entries with their metrics as keys of their own, for tables of text."""
-    return [
-        {**{key: value for key, value in run.items() if key != 'metrics'}, **run['metrics']}
-        for run in runs
-    ]

@@ -10,7 +10,7 @@ from bokeh.models import GlyphRenderer
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.charts import QUANTITIES, ChartRun, chart_document
-from ddct_bringup.report.line_looks import LineLook
+from ddct_bringup.report.run_marks import LineLook
 from ddct_plant.graph.topics import all_signals
 
 STEPS = 20

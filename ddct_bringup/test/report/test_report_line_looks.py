@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from ddct_bringup.report.line_looks import DARK_COLOURS, DASHES, LIGHT_COLOURS, line_looks
+from ddct_bringup.report.run_marks import DARK_COLOURS, DASHES, LIGHT_COLOURS, line_looks
 
 LINEAR_TO_XYZ = np.array(
     [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]

@@ -18,8 +18,7 @@ from ddct_bringup.reproduction.studies.two_input.two_input_figures import (
     close_time_s,
     deviation_range,
 )
-from ddct_bringup.run.closed_loop import ClosedLoop
-from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import mpc4_settings
 from ddct_controllers.mpc.estimators import make_observer

@@ -10,8 +10,7 @@ from ddct_bringup.reproduction.studies.scored_run import scored_run
 from ddct_bringup.reproduction.studies.torsion_weight import torsion_weight
 from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, WEAR_GAINS
 from ddct_bringup.reproduction.studies.wear_estimate import wear_estimate
-from ddct_bringup.run.closed_loop import ClosedLoop
-from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.estimate.gains import NoiseLevels
 from ddct_controllers.mpc.estimate.wear_model import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_controllers.mpc.model.transmission_model import transmission_model

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_bringup.run.closed_loop import ClosedLoop
+from ddct_bringup.run.headless import ClosedLoop
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.scenario.settings import RunSettings
 

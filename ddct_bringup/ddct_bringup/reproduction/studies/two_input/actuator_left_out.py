@@ -1,6 +1,6 @@
 """Readings of the thesis in which the clutch transmits its request at once."""
 
-from ddct_bringup.run.closed_loop import ClosedLoop
+from ddct_bringup.run.headless import ClosedLoop
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.model.transmission_model import (
     REQUEST,

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ddct_bringup.run.closed_loop import ClosedLoop
+from ddct_bringup.run.headless import ClosedLoop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import run_start

@@ -1,12 +1,16 @@
-"""The signals of a recording as a CSV file, one row per tick, units in the names."""
+"""Scores and signals as CSV."""
 
 import csv
 import io
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.scores.scoring import Entry
+from ddct_plant.base.printable import printable
 from ddct_plant.graph.topics import (
     JOINT_STATES,
     JOINTS,
@@ -17,8 +21,19 @@ from ddct_plant.graph.topics import (
 )
 
 
+def scores_csv(runs: Sequence[Entry]) -> str:
+    """Return one row per run, its metrics beside its facts."""
+    rows = [{**run, **run['metrics']} for run in runs]
+    columns = [key for key in rows[0] if key != 'metrics']
+    return _csv(columns, ([_text(row[key]) for key in columns] for row in rows))
+
+
 def signals_csv(recording: Recording) -> str:
-    """Return the text; of previews and torques within the period the value at the tick."""
+    """
+    Return one row per tick, units in the names.
+
+    Of previews and torques within the period it is the value at the tick.
+    """
     trajectory = recording.trajectory
     columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
     for signal in sorted(all_signals(), key=_place):
@@ -29,12 +44,21 @@ def signals_csv(recording: Recording) -> str:
         ):
             values = trajectory.signals[signal.name]
             columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
+    # Python's floats print with the digits that give them back to the last bit.
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return _csv(columns, rows)
+
+
+def _csv(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator='\n')
-    writer.writerow(columns)
-    # Python's floats print with the digits that give them back to the last bit.
-    writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+    writer.writerow(names)
+    writer.writerows(rows)
     return text.getvalue()
+
+
+def _text(value: Any) -> Any:
+    return printable(value) if isinstance(value, str) else value
 
 
 def _joint_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
