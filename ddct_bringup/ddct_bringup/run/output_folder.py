@@ -37,10 +37,9 @@ class StagedFolder:
         try:
             if self.path.exists():
                 shutil.rmtree(self.path)
-            self.path.mkdir(parents=True)
-            (self.path / MARKER).write_text(_MARKER_TEXT, encoding='utf-8')
         except OSError as error:
             raise DdctError(f'{self.path}: cannot be written ({error.strerror})') from error
+        mark_folder(self.path)
 
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""
