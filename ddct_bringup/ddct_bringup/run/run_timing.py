@@ -1,7 +1,6 @@
 """Wall-clock figures of a run: `timing.json` beside the bag, which is deterministic without."""
 
 import json
-import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -9,6 +8,7 @@ from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.output_file import write_text
 
 TIMING_FILE = 'timing.json'
 MOST_BYTES = 50_000_000
@@ -39,11 +39,8 @@ class RunTiming:
 
     def write(self, folder: Path) -> None:
         """Write `timing.json` into a bag's folder; raise DdctError when that fails."""
-        path = folder / TIMING_FILE
-        try:
-            path.write_text(json.dumps(asdict(self)) + os.linesep, encoding='utf-8')
-        except OSError as error:
-            raise DdctError(f'{path}: cannot be written ({error.strerror})') from error
+        text = json.dumps(asdict(self)) + '\n'
+        write_text(str(folder / TIMING_FILE), text, 'choose another output folder')
 
 
 def read_timing(folder: Path) -> RunTiming | None:

@@ -63,6 +63,15 @@ class Metrics:
         return dataclasses.asdict(self)
 
 
+_OF_WINDOW = (
+    'torsion_speed_std_rpm',
+    'acceleration_std_m_s2',
+    'slip_rmse_rpm',
+    'peak_jerk_m_s3',
+    'vdv_m_s1_75',
+)
+
+
 def compute_metrics(
     trajectory: Trajectory,
     *,
@@ -112,33 +121,20 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[float | None, floa
 
 def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, float | None]:
     """Return the metrics over the samples `first` to `last`, both included."""
-    names = (
-        'torsion_speed_std_rpm',
-        'acceleration_std_m_s2',
-        'slip_rmse_rpm',
-        'peak_jerk_m_s3',
-        'vdv_m_s1_75',
-    )
     if trajectory.steps < last:
-        return dict.fromkeys(names)
+        return dict.fromkeys(_OF_WINDOW)
     window = slice(first, last + 1)
     # Filters see no sample beyond the window, so that a longer run scores the same.
     acceleration = trajectory.vehicle_accel[: last + 1]
     error = (trajectory.slip_reference[:, 0] - trajectory.slip_speed)[window]
-    peak = np.max(np.abs(jerk(acceleration)[first:]), initial=-math.inf)
-    return dict(
-        zip(
-            names,
-            (
-                rpm_from_rad_s(np.std(trajectory.joint_speed[window, 3])),
-                np.std(acceleration[window]),
-                rpm_from_rad_s(np.sqrt(np.mean(error**2))),
-                peak,
-                vibration_dose(weighted_acceleration(acceleration)[window]),
-            ),
-            strict=True,
-        )
+    values = (
+        rpm_from_rad_s(np.std(trajectory.joint_speed[window, 3])),
+        np.std(acceleration[window]),
+        rpm_from_rad_s(np.sqrt(np.mean(error**2))),
+        np.max(np.abs(jerk(acceleration)[first:]), initial=-math.inf),
+        vibration_dose(weighted_acceleration(acceleration)[window]),
     )
+    return dict(zip(_OF_WINDOW, values, strict=True))
 
 
 def _update_times(timing: RunTiming | None) -> dict[str, float | None]:

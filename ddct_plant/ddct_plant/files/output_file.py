@@ -29,11 +29,12 @@ def write_json(target: str, content: Any) -> None:
     write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n')
 
 
-def write_text(target: str, text: str) -> None:
+def write_text(target: str, text: str, advice: str = 'give another file') -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
-    A file appears complete or keeps what it held. Raise DdctError when it cannot be written.
+    A file appears complete or keeps what it held. Raise DdctError, with an advice, when it cannot
+    be written.
     """
     if target == STDOUT:
         sys.stdout.write(text)
@@ -45,9 +46,7 @@ def write_text(target: str, text: str) -> None:
         else:
             _replace(path, text)
     except OSError as error:
-        raise DdctError(
-            f'{target}: cannot be written ({error.strerror}); give another file'
-        ) from error
+        raise DdctError(f'{target}: cannot be written ({error.strerror}); {advice}') from error
 
 
 def _replace(path: Path, text: str) -> None:

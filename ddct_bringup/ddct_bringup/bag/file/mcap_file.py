@@ -17,8 +17,10 @@ from ddct_bringup.bag.file.metadata import (
     metadata_yaml,
 )
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_text
 
 METADATA_FILE = 'metadata.yaml'
+_ADVICE = 'free some space or choose another output folder'
 
 _CHUNK_BYTES = 64 * 1024
 """About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
@@ -97,20 +99,11 @@ class McapFile:
 
 def write_metadata(folder: Path, information: Mapping[str, Any]) -> None:
     """Write `metadata.yaml` whole or not at all; raise DdctError when it fails."""
-    path = folder / METADATA_FILE
-    part = path.with_suffix('.part')
-    try:
-        part.write_text(metadata_yaml(information), encoding='utf-8')
-        part.replace(path)
-    except OSError as error:
-        raise _cannot_write(path, error) from error
+    write_text(str(folder / METADATA_FILE), metadata_yaml(information), _ADVICE)
 
 
 def _cannot_write(path: Path, error: OSError) -> DdctError:
-    return DdctError(
-        f'{path}: cannot write the recording ({error.strerror}): '
-        'free some space or choose another output folder'
-    )
+    return DdctError(f'{path}: cannot write the recording ({error.strerror}): {_ADVICE}')
 
 
 class _Sink:
