@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from support.runs import bag_bytes, expected, plan, record
 
-from ddct_bringup.run.plan import LAYOUTS
+LAYOUTS = ('processes', 'single-process', 'headless')
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.report.columns import LOOP_COLUMNS
 from ddct_bringup.report.runs import ReportRun
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.checks import require_number
@@ -15,20 +16,6 @@ from ddct_plant.files.json_text import parse_json
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""
 COMPUTED = 'computed for this page'
-
-LOOP_COLUMNS = (
-    ('gain_margin_db', 'GM', 'dB', '.1f', 'Least increase of the gain that makes it unstable'),
-    ('phase_margin_deg', 'PM', '°', '.1f', 'Least change of phase that does'),
-    ('delay_margin_s', 'DM', 's', '.3f', 'Least additional delay that does'),
-    ('disk_margin', 'disk', '', '.2f', 'Disk margin α = 2 / max |S − T|'),
-    ('sensitivity_peak', 'M_s', '', '.2f', 'Peak of |1/(1 + L)|'),
-    ('complementary_peak', 'M_t', '', '.2f', 'Peak of |L/(1 + L)|'),
-    ('crossover_rad_s', 'w_c', 'rad/s', '.2f', 'Highest frequency with |L| = 1'),
-    ('bandwidth_rad_s', 'w_b', 'rad/s', '.2f', 'Lowest frequency with |T| below 0.71'),
-    ('driveline_mode_hz', 'mode', 'Hz', '.2f', 'Closed-loop pole pair nearest the zeros of P_2'),
-    ('driveline_mode_damping', 'damping', '', '.3f', 'Of that mode'),
-)
-"""Key of the evidence, symbol, unit, format and meaning."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +79,7 @@ def _is_whole(entry: Any, wear_gain: float) -> bool:
         point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
         interval = entry['stable_wear_gain'] or {}
         for value in (
-            *(point[key] for key, *_ in LOOP_COLUMNS),
+            *(point[column.key] for column in LOOP_COLUMNS),
             *(interval.get(end) for end in ('lowest', 'highest')),
             entry['corners']['sensitivity_peak'],
         ):

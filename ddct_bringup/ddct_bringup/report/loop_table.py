@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_bringup.report.evidence import LOOP_COLUMNS, LoopEvidence
+from ddct_bringup.report.columns import LOOP_COLUMNS, number_text
+from ddct_bringup.report.evidence import LoopEvidence
 from ddct_controllers.workflows.evidence import Evidence
 
 NOT_LINEAR = 'not linear, so without a frequency response'
@@ -53,14 +54,10 @@ def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
         controller=evidence.controller,
         wear_gain=f'{evidence.wear_gain:g}',
         stable=point['stable'],
-        cells=tuple((point[key], _text(point[key], form)) for key, _, _, form, _ in LOOP_COLUMNS),
-        stable_wear=f'{_text(interval.get("lowest"), ".2f")} to '
-        f'{_text(interval.get("highest"), ".2f")}',
-        corner_peak=_text(entry['corners']['sensitivity_peak'], '.2f'),
+        cells=tuple((point[each.key], each.text(point[each.key])) for each in LOOP_COLUMNS),
+        stable_wear=f'{number_text(interval.get("lowest"), ".2f")} to '
+        f'{number_text(interval.get("highest"), ".2f")}',
+        corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),
         corners_unstable=str(entry['corners']['unstable']),
         remark=evidence.remark,
     )
-
-
-def _text(value: float | None, form: str) -> str:
-    return '–' if value is None else format(value, form)

@@ -13,7 +13,8 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 from markupsafe import Markup, escape
 
 from ddct_bringup.report.charts import NEUTRAL, QUANTITIES, ChartRun, chart_document
-from ddct_bringup.report.evidence import COMPUTED, LOOP_COLUMNS, LoopEvidence
+from ddct_bringup.report.columns import FURTHER, LOOP_COLUMNS, TABLE_5_1
+from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.origin import run_origin, scenario_text
 from ddct_bringup.report.output import MARKER
@@ -25,7 +26,7 @@ from ddct_bringup.report.run_marks import (
     run_labels,
 )
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.summary import FURTHER, TABLE_5_1, comparable_rows, metric_cells
+from ddct_bringup.report.summary import comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE

@@ -3,84 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ddct_bringup.report.columns import FigureColumn
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.thesis.conditions import is_thesis_run, predicted_range, verdict
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, thesis_row
-
-
-@dataclass(frozen=True)
-class MetricColumn:
-    """A metric as the page shows it."""
-
-    key: str
-    """Name in `scores.json`."""
-    symbol: str
-    """An underscore begins the index."""
-    unit: str
-    form: str
-    """Format of the number."""
-    meaning: str
-
-
-TABLE_5_1 = (
-    MetricColumn('engagement_time_s', 't_a', 's', '.3f', 'Control start to w_d = 0'),
-    MetricColumn(
-        'torsion_speed_std_rpm',
-        'σ w_sr',
-        'rpm',
-        '.3f',
-        'Standard deviation of w_sr over the score window',
-    ),
-    MetricColumn(
-        'acceleration_std_m_s2',
-        'σ A_x',
-        'm/s²',
-        '.3f',
-        'Standard deviation of A_x over the score window',
-    ),
-)
-"""The metrics that the thesis prints."""
-
-FURTHER = (
-    MetricColumn(
-        'slip_rmse_rpm', 'RMSE w_d', 'rpm', '.2f', 'Reference less w_d over the score window'
-    ),
-    MetricColumn('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'Last sample'),
-    MetricColumn(
-        'peak_jerk_m_s3',
-        'peak jerk',
-        'm/s³',
-        '.2f',
-        'A_x through a 20 Hz low-pass without delay, over the score window',
-    ),
-    MetricColumn(
-        'vdv_m_s1_75',
-        'VDV',
-        'm/s¹·⁷⁵',
-        '.3f',
-        f'Vibration dose over the score window, weighted by {VDV_WEIGHTING}',
-    ),
-    MetricColumn(
-        'friction_energy_j', 'friction energy', 'J', '.0f', 'Integral of |C_f w_d|, whole run'
-    ),
-    MetricColumn(
-        'lockup_slip_acceleration_rad_s2',
-        'dw_d/dt at lock-up',
-        'rad/s²',
-        '.2f',
-        'Slope of w_d where it first changes its sign',
-    ),
-    MetricColumn(
-        'torque_total_variation_n_m',
-        'variation C_f',
-        'N m',
-        '.0f',
-        'Sum of all changes of the torque request, whole run',
-    ),
-    MetricColumn('steps', 'steps', '', '.0f', 'Periods of 10 ms'),
-)
-"""The other metrics but those of `timing.json`."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +40,7 @@ def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
 
 
 def metric_cells(
-    column: MetricColumn, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
+    column: FigureColumn, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars share the scale of the largest figure, ours or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
@@ -128,9 +54,9 @@ def metric_cells(
 
 
 def _cell(
-    column: MetricColumn, value: float | None, row: ThesisRow | None, largest: float
+    column: FigureColumn, value: float | None, row: ThesisRow | None, largest: float
 ) -> Cell:
-    text = '–' if value is None else format(value, column.form)
+    text = column.text(value)
     share = 0.0 if value is None else abs(value) / largest
     if row is None:
         return Cell(value, text, share)

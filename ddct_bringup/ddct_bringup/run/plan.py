@@ -13,9 +13,6 @@ from ddct_plant.graph.domain import require_domain
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
-LAYOUTS = ('processes', 'single-process', 'headless')
-"""One process per node, all nodes in one process, or no ROS graph at all."""
-
 
 @dataclass(frozen=True)
 class RunPlan:
@@ -25,6 +22,7 @@ class RunPlan:
     controller: str
     """A name of the registry or the path of a controller's YAML file."""
     layout: str = 'processes'
+    """'processes', one per node; 'single-process'; or 'headless', without any ROS graph."""
 
     def __post_init__(self) -> None:
         """Refuse now what would fail in the graph; raise DdctError."""

@@ -5,15 +5,11 @@ import re
 
 import pytest
 
+from ddct_bringup.report.columns import LOOP_COLUMNS, TABLE_5_1
 from ddct_bringup.report.evidence import LoopEvidence
-from ddct_bringup.report.loop_table import (
-    LOOP_COLUMNS,
-    NOT_LINEAR,
-    loop_rows,
-    without_evidence,
-)
+from ddct_bringup.report.loop_table import NOT_LINEAR, loop_rows, without_evidence
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.summary import TABLE_5_1, comparable_rows, metric_cells
+from ddct_bringup.report.summary import comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
@@ -94,7 +90,7 @@ def test_a_run_without_update_times_has_none():
 
 
 def test_evidence_is_shown_at_the_wear_gain_of_the_run():
-    figures = {key: 1.0 for key, *_ in LOOP_COLUMNS}
+    figures = {column.key: 1.0 for column in LOOP_COLUMNS}
     entry = {
         'linear': True,
         'wear': [
