@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support.documented import ROOT, blocks
 
-from ddct_bringup.run import progress
+from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.registry import controller_names
 from ddct_plant.scenario.file import scenario_to_yaml
@@ -70,7 +70,7 @@ def run_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[RunPlan, Pat
             original(plan, folders[key])
         shutil.copytree(folders[key], folder, dirs_exist_ok=True)
 
-    original = progress.execute
+    original = execution.execute
     return execute
 
 
@@ -81,5 +81,5 @@ def shared_runs(
     """Let the commands of this process run in the workplace, which it returns, and share runs."""
     monkeypatch.chdir(workplace)
     monkeypatch.syspath_prepend(workplace / 'site')
-    monkeypatch.setattr(progress, 'execute', run_once)
+    monkeypatch.setattr(execution, 'execute', run_once)
     return workplace

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from support.runs import bag_bytes, expected, record
+from support.runs import LAYOUTS, bag_bytes, expected, record
 
-from ddct_bringup.run.plan import LAYOUTS, RunPlan
+from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-from support.runs import bag_bytes, expected, plan, record
+from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
-from ddct_bringup.run.plan import LAYOUTS
 from ddct_controllers.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 

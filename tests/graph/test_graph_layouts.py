@@ -4,9 +4,7 @@ import gc
 from pathlib import Path
 
 import pytest
-from support.runs import bag_bytes, expected, plan, record
-
-LAYOUTS = ('processes', 'single-process', 'headless')
+from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
 
 @pytest.mark.parametrize(

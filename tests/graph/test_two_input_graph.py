@@ -13,10 +13,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import START_S, Programs
-from support.runs import bag_bytes, expected, plan, record
+from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from support.silent_controller import run_until_silent
 
-from ddct_bringup.run.plan import LAYOUTS
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.message_kinds import stamp_ns

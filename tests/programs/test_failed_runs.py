@@ -8,12 +8,12 @@ import pytest
 from support.runs import SHORT_S, plan
 
 from ddct_bringup.programs import bringup, compare
-from ddct_bringup.run import progress
+from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.errors import DdctError
 
 Spoil = Callable[[RunPlan, Path], None]
-REAL = progress.execute
+REAL = execution.execute
 WHOLE = ['--headless', '--duration', str(SHORT_S)]
 
 
@@ -44,7 +44,7 @@ def bad_ls8(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
         else:
             REAL(run, folder, *rest)
 
-    monkeypatch.setattr(progress, 'execute', execute)
+    monkeypatch.setattr(execution, 'execute', execute)
     return request.param
 
 

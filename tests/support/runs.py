@@ -10,6 +10,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+LAYOUTS = ('processes', 'single-process', 'headless')
 SHORT_S = 1.0
 """Long enough for 40 steps under control, which starts at 0.6 s."""
 
