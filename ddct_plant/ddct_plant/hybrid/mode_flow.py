@@ -1,0 +1,103 @@
+"""The exact flow of one mode: which elements stick, which slip, and which way."""
+
+import math
+
+import numpy as np
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.hybrid.friction_system import FrictionSystem
+
+Signs = tuple[int, ...]
+"""A mode: by element 0 where it sticks, else the sign of its slip."""
+MOST_RATE = 2.0
+"""Rates (the balanced norm of a) times the length of a piece may be this."""
+
+
+def series_degree(system: FrictionSystem, stuck_sets: list[Signs], piece_s: float) -> int:
+    """Return the degree at which the series over one piece is exact to rounding, in any mode."""
+    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
+    from scipy.linalg import matrix_balance
+
+    rates = 0.0
+    for signs in stuck_sets:
+        a = _projection(system, signs)[0] @ system.a
+        rates = max(rates, float(np.linalg.norm(matrix_balance(a)[0], 1)))
+    size = rates * piece_s
+    if size > MOST_RATE:
+        raise ParameterError(
+            f'friction system: its rates are up to {rates:g} rad/s: take pieces of at most '
+            f'{MOST_RATE / rates:.3g} s in place of {piece_s:g} s'
+        )
+    degree = 2
+    while size ** (degree + 1) / math.factorial(degree + 1) > 2.0**-53:
+        degree += 1
+    return degree
+
+
+def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
+    """Return P (n, n), which takes the slip of the stuck elements away, and (h_S g_S)^-1 h_S."""
+    stuck = [i for i, sign in enumerate(signs) if sign == 0]
+    rows, columns = system.h[stuck], system.g[:, stuck]
+    hold = np.linalg.solve(rows @ columns, rows)
+    return np.eye(len(system.a)) - columns @ hold, hold
+
+
+class ModeFlow:
+    """
+    exp(M t) as a series, in one mode: of states, and of guards that are positive as it lasts.
+
+    y = [x, w, dw] holds the states, the inputs w = [u, c] (c the kinetic capacity of an element
+    that slips, the static one of an element that sticks) and their change over one piece. With
+    t from 0 to 1 over the piece dy/dt = M y is autonomous: dx = piece (P a x + P [b, g sign] w),
+    w' = dw. Guards: the slip times its sign; c - f and c + f of an element that sticks.
+    """
+
+    def __init__(self, system: FrictionSystem, signs: Signs, piece_s: float, degree: int) -> None:
+        self.signs = signs
+        states, inputs = system.b.shape
+        self.states, self.inputs = states, inputs + system.elements
+        self.degree = degree
+        self.projection, hold = _projection(system, signs)
+        driven = np.hstack([system.b, system.g * signs])
+        moved = np.hstack([system.a, driven])
+        self.stuck = np.array(signs) == 0
+        size = states + 2 * self.inputs
+        generator = np.zeros((size, size))
+        generator[:states, : states + self.inputs] = piece_s * self.projection @ moved
+        generator[states : states + self.inputs, states + self.inputs :] = np.eye(self.inputs)
+        self.force = np.zeros((system.elements, states + self.inputs))
+        """(N, n + w): the friction torques as rows on [x, w]."""
+        self.force[:, states + inputs :] = np.diag(signs)
+        self.force[self.stuck] = -hold @ moved
+        guards, self.guarded = self._guards(system)
+        rows = np.zeros((states + len(guards), size))
+        rows[:states, :states] = self.projection
+        rows[states:, : states + self.inputs] = guards
+        powers = [rows]
+        for order in range(1, degree + 1):
+            powers.append(powers[-1] @ generator / order)
+        self.series = np.array(powers)
+        self._sizes = np.abs(self.series[:, states:])
+
+    def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
+        """Return the rows of the guards on [x, w], and by guard its element."""
+        rows, guarded = [], []
+        capacities = np.eye(self.states + self.inputs)[-system.elements :]
+        for i, sign in enumerate(self.signs):
+            if sign:
+                slip = np.zeros(self.states + self.inputs)
+                slip[: self.states] = sign * system.h[i]
+                rows.append(slip)
+            else:
+                rows += [capacities[i] - self.force[i], capacities[i] + self.force[i]]
+            guarded += [i] * (len(rows) - len(guarded))
+        return np.array(rows), guarded
+
+    def polynomials(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return states (d+1, n) and guards (guards, d+1) in powers of t, from y at t = 0."""
+        values = self.series @ y
+        return values[:, : self.states], values[:, self.states :].T
+
+    def guard_sizes(self, y: np.ndarray) -> np.ndarray:
+        """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
+        return (self._sizes @ np.abs(y)).T

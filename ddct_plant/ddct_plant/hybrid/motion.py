@@ -1,0 +1,124 @@
+"""The motion from event to event."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.hybrid.forcing import Forcing
+from ddct_plant.hybrid.friction_system import FrictionSystem
+from ddct_plant.hybrid.mode_choice import choose_mode
+from ddct_plant.hybrid.mode_flow import ModeFlow, Signs
+from ddct_plant.hybrid.polynomials import first_negative, linear_weights, on_interval
+
+MOST_EVENTS = 1000
+"""In one piece; a motion with more is not one of dry friction between inertias."""
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An element locks, is released, or changes the direction of its slip."""
+
+    time_s: float
+    """From the start of the interval."""
+    element: int
+    kind: str
+    """`lock`, `release` or `reverse`."""
+
+
+class Motion:
+    """State, mode, events and friction work as they come about in an interval with events."""
+
+    def __init__(
+        self,
+        system: FrictionSystem,
+        flows: Mapping[Signs, ModeFlow],
+        piece_s: float,
+        forcing: Forcing,
+        state: np.ndarray,
+        signs: Signs,
+    ) -> None:
+        self._system, self._flows, self._piece_s = system, flows, piece_s
+        self._forcing = forcing
+        self.state, self.signs = state, signs
+        self.events: list[Event] = []
+        self.work = [0.0] * system.elements
+
+    def add_work(self, guards: np.ndarray, forcing: np.ndarray, part: float) -> None:
+        """
+        Add the integral of capacity times slip over a part of a piece, exactly.
+
+        `guards` (guards, d+1) are in Bernstein form on that part; `forcing` is [w, dw] at its
+        start.
+        """
+        start, change = np.split(forcing, 2)
+        capacities = np.stack([start, start + part * change])[:, -self._system.elements :]
+        weights = part * self._piece_s * linear_weights(guards.shape[1] - 1)
+        for guard, element in zip(guards, self._flows[self.signs].guarded, strict=True):
+            if self.signs[element]:
+                self.work[element] += float(capacities[:, element] @ weights @ guard)
+
+    def friction(self) -> list[float]:
+        """Return the friction torques (N,) at the present instant, which ends a piece."""
+        w = self._forcing.at(self.signs, -2, 1.0)[: self._flows[self.signs].inputs]
+        return (self._flows[self.signs].force @ np.concatenate((self.state, w))).tolist()
+
+    def pass_piece(self, piece: int) -> None:
+        """Go on to the end of a piece."""
+        done = 0.0
+        orders: np.ndarray | None = None
+        for _ in range(MOST_EVENTS):
+            flow = self._flows[self.signs]
+            forcing = self._forcing.at(self.signs, piece, done)
+            states, guards = flow.polynomials(np.concatenate([self.state, forcing]))
+            if orders is not None:
+                guards[np.arange(flow.degree + 1) < orders[:, None]] = 0.0
+            part, guard = _first_event(guards, orders, 1.0 - done)
+            self.add_work(on_interval(guards, part), forcing, part)
+            self.state = part ** np.arange(flow.degree + 1) @ states
+            done += part
+            if guard is None:
+                return
+            orders = self._change_mode(piece, done, flow.guarded[guard])
+        raise DdctError(
+            f'friction: more than {MOST_EVENTS} events in {self._piece_s:g} s: '
+            'look for values that are far too large'
+        )
+
+    def _change_mode(self, piece: int, done: float, element: int) -> np.ndarray:
+        """Choose the mode that goes on, note what changes, return the orders of its guards."""
+        before = self.signs
+        self.state, self.signs, orders = choose_mode(
+            self._system,
+            self._flows,
+            self.state,
+            before,
+            element,
+            lambda flow: self._forcing.at(flow.signs, piece, done),
+        )
+        time_s = (piece + done) * self._piece_s
+        for i, (old, new) in enumerate(zip(before, self.signs, strict=True)):
+            if old != new:
+                kind = 'lock' if new == 0 else 'release' if old == 0 else 'reverse'
+                self.events.append(Event(time_s, i, kind))
+        return orders
+
+
+def _first_event(
+    guards: np.ndarray, orders: np.ndarray | None, end: float
+) -> tuple[float, int | None]:
+    """
+    Return when within [0, end] the first guard turns negative, and which; or `end` and None.
+
+    A guard of order k is zero at 0 with k - 1 derivatives, so that its next root is that of the
+    guard divided by t^k.
+    """
+    first, which = end, None
+    suspects = (on_interval(guards, end) < 0.0).any(axis=1).nonzero()[0]
+    for guard in suspects.tolist():
+        order = 0 if orders is None else int(orders[guard])
+        at = first_negative(guards[guard, order:], end)
+        if at is not None and (which is None or at < first):
+            first, which = at, guard
+    return first, which

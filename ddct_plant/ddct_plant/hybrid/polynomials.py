@@ -1,0 +1,86 @@
+"""
+Polynomials on an interval in Bernstein form: where one turns negative, and exact integrals.
+
+A polynomial lies within the hull of its Bernstein coefficients. Without a negative coefficient it
+is nowhere negative, so an interior extremum cannot be missed; with one change of sign among the
+coefficients it has exactly one root.
+"""
+
+from functools import lru_cache
+from math import comb
+
+import numpy as np
+
+ROUNDING = 2.0**-50
+"""Coefficients below this part of the largest one are zero."""
+_STEPS = 200
+
+
+@lru_cache
+def bernstein_of_powers(degree: int) -> np.ndarray:
+    """Return the (d+1, d+1) map from coefficients of t^k to those of Bernstein on [0, 1]."""
+    size = range(degree + 1)
+    return np.array([[comb(j, k) / comb(degree, k) for k in size] for j in size])
+
+
+@lru_cache
+def linear_weights(degree: int) -> np.ndarray:
+    """Return (2, d+1): the integrals over [0, 1] of p(t) (1 - t) and p(t) t, by coefficient."""
+    rising = np.arange(1.0, degree + 2.0) / ((degree + 1.0) * (degree + 2.0))
+    return np.stack([rising[::-1], rising])
+
+
+@lru_cache
+def _left_half(degree: int) -> np.ndarray:
+    size = range(degree + 1)
+    return np.array([[comb(j, k) / 2.0**j for k in size] for j in size])
+
+
+def on_interval(powers: np.ndarray, end: float) -> np.ndarray:
+    """Return the Bernstein coefficients on [0, end] of polynomials (..., d+1) in t^k."""
+    degree = powers.shape[-1] - 1
+    scaled = powers * end ** np.arange(degree + 1)
+    return scaled @ bernstein_of_powers(degree).T
+
+
+def first_negative(powers: np.ndarray, end: float) -> float | None:
+    """Return where in [0, end] the polynomial (d+1,) in t^k first turns negative, or None."""
+    coefficients = on_interval(powers, end)
+    left = _left_half(len(powers) - 1)
+    zero = ROUNDING * float(np.abs(coefficients).max())
+    pending = [(0.0, end, coefficients)]
+    while pending:
+        low, high, coefficients = pending.pop()
+        negative = coefficients < -zero
+        if not negative.any():
+            continue
+        if negative[0]:
+            return low
+        if negative[negative.argmax() :].all():
+            return _root(powers, low, high)
+        middle = 0.5 * (low + high)
+        pending.append((middle, high, (left @ coefficients[::-1])[::-1]))
+        pending.append((low, middle, left @ coefficients))
+    return None
+
+
+def _root(powers: np.ndarray, low: float, high: float) -> float:
+    """Return the one root in [low, high], by Newton's rule kept within its bracket."""
+    falling = powers[::-1].tolist()
+    at = 0.5 * (low + high)
+    for _ in range(_STEPS):
+        value = slope = 0.0
+        for coefficient in falling:
+            slope = slope * at + value
+            value = value * at + coefficient
+        if value >= 0.0:
+            low = at
+        else:
+            high = at
+        following = at - value / slope if slope else low
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - at) <= 2.0**-53 * high:
+            break
+        at = following
+    return following
