@@ -1,24 +1,22 @@
 """The exact integration of a linear system with dry friction, from event to event."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
-from operator import lt
+from typing import NamedTuple
 
 import numpy as np
 
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.hybrid.forcing import Forcing, Value
+from ddct_plant.hybrid.forcing import Forcing, Value, require_capacities
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.interval_map import IntervalMap
-from ddct_plant.hybrid.mode_choice import SLACKS, choose_mode
-from ddct_plant.hybrid.mode_flow import ModeFlow, Signs, series_degree
+from ddct_plant.hybrid.mode_choice import SLACKS
+from ddct_plant.hybrid.mode_flow import ModeFlow, Signs
 from ddct_plant.hybrid.motion import Event, Motion
 
 
-@dataclass(frozen=True, slots=True)
-class Interval:
+class Interval(NamedTuple):
     """What an interval ends with, and what happened in it."""
 
     states: np.ndarray
@@ -57,16 +55,16 @@ class HybridIntegrator:
         self._states, inputs = system.b.shape
         self._first_capacity = inputs
         self._columns = self._layout(set(held))
-        stuck_sets = list(product((0, 1), repeat=system.elements))
-        degree = series_degree(system, stuck_sets, piece_s)
         self._flows = {
-            signs: ModeFlow(system, signs, piece_s, degree)
+            signs: ModeFlow(system, signs, piece_s)
             for signs in product((-1, 0, 1), repeat=system.elements)
         }
         self._maps = {
             signs: IntervalMap(flow, piece_s, self._pieces, self._columns)
             for signs, flow in self._flows.items()
         }
+        # A single number by its index: numpy writes it in a third of the time.
+        self._places = [c.start if c.stop - c.start == 1 else c for c in self._columns]
         self._v = np.zeros(self._columns[-1].stop)
 
     def _layout(self, held: set[int]) -> list[slice]:
@@ -107,36 +105,49 @@ class HybridIntegrator:
         `inputs` are u (m entries), `kinetic` and `static` the capacities (N entries). Raise
         ParameterError for a capacity that is negative or a static one below the kinetic one.
         """
-        for element, (low, high) in enumerate(zip(kinetic, static, strict=True)):
-            _require_capacity(element, low, high)
-        forcing = Forcing(inputs, kinetic, static)
+        require_capacities(kinetic, static)
         interval_map = self._maps[signs]
-        v = self._argument(state, forcing.in_force(signs))
+        v = self._argument(state, signs, inputs, kinetic, static)
         product = interval_map.apply(v)
-        if product[interval_map.first_guard :].min() >= 0.0:
-            work = [0.0] * self.system.elements
-            for element, integrals, column in interval_map.work:
-                work[element] = float(product[integrals] @ v[column])
+        guards = product[interval_map.first_guard :]
+        if guards[guards.argmin()] >= 0.0:
+            work = [0.0] * len(signs)
+            for element, integrals, capacities in interval_map.work:
+                work[element] = float(product[integrals].dot(v[capacities]))
             friction = product[interval_map.friction].tolist()
             return Interval(interval_map.states(product), signs, [], work, friction)
+        forcing = Forcing(inputs, kinetic, static, self._pieces + 1)
         return self._through_events(state, signs, forcing)
 
     def _argument(
-        self, state: np.ndarray, in_force: Sequence[Value], piece: int = 0
+        self,
+        state: np.ndarray,
+        signs: Signs,
+        inputs: Sequence[Value],
+        kinetic: Sequence[Value],
+        static: Sequence[Value],
     ) -> np.ndarray:
-        """Return v for the interval from `piece` on; behind its end the nodes are zero."""
+        """Return v, the argument of the map of a mode, for a whole interval."""
         v = self._v
         v[: self._states] = state
-        for column, value in zip(self._columns, in_force, strict=True):
-            try:
-                v[column] = value
-            except ValueError as error:
-                raise ParameterError(
-                    f'friction: {value} cannot be an input: give {column.stop - column.start} numbers'
-                ) from error
-            if piece and column.stop - column.start > 1:
-                v[column] = np.append(v[column][piece:], np.zeros(piece))
+        in_force = [low if sign else high for sign, low, high in zip(signs, kinetic, static, strict=True)]
+        try:
+            for where, value in zip(self._places, (*inputs, *in_force), strict=True):
+                v[where] = value
+        except ValueError as error:
+            raise ParameterError(
+                f'friction: the inputs {inputs} and capacities {in_force} do not fit the '
+                f'interval: {error}'
+            ) from error
         return v
+
+    def _rest_argument(
+        self, state: np.ndarray, signs: Signs, forcing: Forcing, piece: int
+    ) -> np.ndarray:
+        """Return v for the rest of the interval from `piece` on."""
+        nodes = np.roll(forcing.nodes(signs), -piece, axis=0)
+        values = [nodes[: c.stop - c.start, j] for j, c in enumerate(self._columns)]
+        return np.concatenate((state, *values))
 
     def _through_events(self, state: np.ndarray, signs: Signs, forcing: Forcing) -> Interval:
         """Advance over pieces without an event at once, and through the others one by one."""
@@ -145,30 +156,17 @@ class HybridIntegrator:
         piece = 0
         while piece < self._pieces:
             interval_map = self._maps[motion.signs]
-            v = self._argument(motion.state, forcing.in_force(motion.signs), piece)
-            product = interval_map.apply(v)
+            product = interval_map.apply(
+                self._rest_argument(motion.state, motion.signs, forcing, piece)
+            )
             ends, guards = interval_map.states(product), interval_map.guards(product)
-            for ahead in range(self._pieces - piece):
-                if not guards[:, :, ahead].min() >= 0.0:
-                    motion.pass_piece(piece)
-                    states[piece] = motion.state
-                    piece += 1
-                    break
-                motion.add_work(guards[:, :, ahead], forcing.at(motion.signs, piece, 0.0), 1.0)
-                states[piece] = motion.state = ends[ahead]
+            left = self._pieces - piece
+            eventful = ~(guards[:, :, :left] >= 0.0).all(axis=(0, 1))
+            quiet = int(eventful.argmax()) if eventful.any() else left
+            motion.pass_quiet_pieces(piece, ends[:quiet], guards[:, :, :quiet])
+            states[piece : piece + quiet] = ends[:quiet]
+            piece += quiet
+            if quiet < left:
+                states[piece] = motion.pass_piece(piece)
                 piece += 1
         return Interval(states, motion.signs, motion.events, motion.work, motion.friction())
-
-
-def _require_capacity(element: int, kinetic: Value, static: Value) -> None:
-    low = (kinetic,) if isinstance(kinetic, float | int) else kinetic
-    high = (static,) if isinstance(static, float | int) else static
-    if min(low) < 0.0:
-        raise ParameterError(
-            f'friction element {element}: its capacity is {min(low):g}, it must not be negative'
-        )
-    if any(map(lt, high, low)):
-        raise ParameterError(
-            f'friction element {element}: its static capacity {static} is below the kinetic one '
-            f'{kinetic}: give at least that'
-        )

@@ -40,19 +40,19 @@ class IntervalMap:
             if flow.signs[element]:
                 column = columns[first_capacity + element]
                 integrals = piece_s * _by_node(guards[guard], column)
-                self.work.append((element, slice(len(rows), len(rows) + len(integrals)), column))
+                stop = len(rows) + len(integrals)
+                self.work.append((element, slice(len(rows), stop), column))
                 rows += list(integrals)
         self.first_guard = len(rows)
         rows += list(guards.reshape(-1, starts.shape[2]))
-        blocks = -(-len(rows) * starts.shape[2] // BLOCK)
-        self._rows = len(rows)
-        height = -(-len(rows) // blocks)
-        padding = np.zeros((blocks * height - len(rows), starts.shape[2]))
-        self._blocks = np.vstack([*rows, padding]).reshape(blocks, height, -1)
+        height = BLOCK // starts.shape[2]
+        self._blocks = [np.array(rows[i : i + height]) for i in range(0, len(rows), height)]
 
     def apply(self, v: np.ndarray) -> np.ndarray:
-        """Return the product with v, flat; rows of zeros may follow the guards."""
-        return (self._blocks @ v).ravel()
+        """Return the product with v, flat."""
+        if len(self._blocks) == 1:
+            return self._blocks[0].dot(v)
+        return np.concatenate([block.dot(v) for block in self._blocks])
 
     def states(self, product: np.ndarray) -> np.ndarray:
         """Return the states (pieces, n) at the end of each piece."""
@@ -61,7 +61,7 @@ class IntervalMap:
     def guards(self, product: np.ndarray) -> np.ndarray:
         """Return the Bernstein coefficients (guards, d+1, pieces) of the guards."""
         shape = (len(self.flow.guarded), self.flow.degree + 1, self._pieces)
-        return product[self.first_guard : self._rows].reshape(shape)
+        return product[self.first_guard :].reshape(shape)
 
 
 def _piece_starts(flow: ModeFlow, pieces: int, columns: list[slice]) -> np.ndarray:

@@ -1,7 +1,5 @@
 """The exact flow of one mode: which elements stick, which slip, and which way."""
 
-import math
-
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
@@ -9,29 +7,8 @@ from ddct_plant.hybrid.friction_system import FrictionSystem
 
 Signs = tuple[int, ...]
 """A mode: by element 0 where it sticks, else the sign of its slip."""
-MOST_RATE = 2.0
-"""Rates (the balanced norm of a) times the length of a piece may be this."""
-
-
-def series_degree(system: FrictionSystem, stuck_sets: list[Signs], piece_s: float) -> int:
-    """Return the degree at which the series over one piece is exact to rounding, in any mode."""
-    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
-    from scipy.linalg import matrix_balance
-
-    rates = 0.0
-    for signs in stuck_sets:
-        a = _projection(system, signs)[0] @ system.a
-        rates = max(rates, float(np.linalg.norm(matrix_balance(a)[0], 1)))
-    size = rates * piece_s
-    if size > MOST_RATE:
-        raise ParameterError(
-            f'friction system: its rates are up to {rates:g} rad/s: take pieces of at most '
-            f'{MOST_RATE / rates:.3g} s in place of {piece_s:g} s'
-        )
-    degree = 2
-    while size ** (degree + 1) / math.factorial(degree + 1) > 2.0**-53:
-        degree += 1
-    return degree
+LONGEST = 2.0
+"""A piece may be this long in units of 1 / (the balanced norm of a)."""
 
 
 def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
@@ -52,12 +29,12 @@ class ModeFlow:
     w' = dw. Guards: the slip times its sign; c - f and c + f of an element that sticks.
     """
 
-    def __init__(self, system: FrictionSystem, signs: Signs, piece_s: float, degree: int) -> None:
+    def __init__(self, system: FrictionSystem, signs: Signs, piece_s: float) -> None:
         self.signs = signs
         states, inputs = system.b.shape
         self.states, self.inputs = states, inputs + system.elements
-        self.degree = degree
         self.projection, hold = _projection(system, signs)
+        self.degree = _series_degree(self.projection @ system.a, piece_s)
         driven = np.hstack([system.b, system.g * signs])
         moved = np.hstack([system.a, driven])
         self.stuck = np.array(signs) == 0
@@ -74,14 +51,15 @@ class ModeFlow:
         rows[:states, :states] = self.projection
         rows[states:, : states + self.inputs] = guards
         powers = [rows]
-        for order in range(1, degree + 1):
+        for order in range(1, self.degree + 1):
             powers.append(powers[-1] @ generator / order)
         self.series = np.array(powers)
         self._sizes = np.abs(self.series[:, states:])
 
     def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
         """Return the rows of the guards on [x, w], and by guard its element."""
-        rows, guarded = [], []
+        rows: list[np.ndarray] = []
+        guarded: list[int] = []
         capacities = np.eye(self.states + self.inputs)[-system.elements :]
         for i, sign in enumerate(self.signs):
             if sign:
@@ -101,3 +79,22 @@ class ModeFlow:
     def guard_sizes(self, y: np.ndarray) -> np.ndarray:
         """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
         return (self._sizes @ np.abs(y)).T
+
+
+def _series_degree(a: np.ndarray, piece_s: float) -> int:
+    """Return the order from which on the terms of exp(a piece) are below rounding."""
+    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
+    from scipy.linalg import matrix_balance
+
+    balanced = matrix_balance(a * piece_s)[0]
+    size = float(np.linalg.norm(balanced, 1))
+    if size > LONGEST:
+        raise ParameterError(
+            f'friction system: it has rates of {size / piece_s:g} rad/s: take pieces of at most '
+            f'{LONGEST * piece_s / size:.3g} s in place of {piece_s:g} s'
+        )
+    degree, term = 2, balanced @ balanced / 2.0
+    while np.linalg.norm(term, 1) > 2.0**-53:
+        degree += 1
+        term = term @ balanced / degree
+    return degree

@@ -45,46 +45,57 @@ class Motion:
         self.events: list[Event] = []
         self.work = [0.0] * system.elements
 
-    def add_work(self, guards: np.ndarray, forcing: np.ndarray, part: float) -> None:
-        """
-        Add the integral of capacity times slip over a part of a piece, exactly.
-
-        `guards` (guards, d+1) are in Bernstein form on that part; `forcing` is [w, dw] at its
-        start.
-        """
-        start, change = np.split(forcing, 2)
-        capacities = np.stack([start, start + part * change])[:, -self._system.elements :]
-        weights = part * self._piece_s * linear_weights(guards.shape[1] - 1)
-        for guard, element in zip(guards, self._flows[self.signs].guarded, strict=True):
-            if self.signs[element]:
-                self.work[element] += float(capacities[:, element] @ weights @ guard)
-
     def friction(self) -> list[float]:
-        """Return the friction torques (N,) at the present instant, which ends a piece."""
-        w = self._forcing.at(self.signs, -2, 1.0)[: self._flows[self.signs].inputs]
+        """Return the friction torques (N,) at the end of the interval."""
+        w = self._forcing.nodes(self.signs)[-1]
         return (self._flows[self.signs].force @ np.concatenate((self.state, w))).tolist()
 
-    def pass_piece(self, piece: int) -> None:
-        """Go on to the end of a piece."""
+    def pass_quiet_pieces(self, piece: int, ends: np.ndarray, guards: np.ndarray) -> None:
+        """
+        Go on from a `piece` over k pieces without an event.
+
+        `ends` (k, n) are the states at their ends, `guards` (guards, d+1, k) in Bernstein form.
+        """
+        if len(ends):
+            nodes = self._forcing.nodes(self.signs)[piece : piece + len(ends) + 1]
+            self._add_work(guards, nodes, self._piece_s)
+            self.state = ends[-1]
+
+    def pass_piece(self, piece: int) -> np.ndarray:
+        """Go on to the end of a piece, and return the state there."""
         done = 0.0
         orders: np.ndarray | None = None
         for _ in range(MOST_EVENTS):
             flow = self._flows[self.signs]
             forcing = self._forcing.at(self.signs, piece, done)
-            states, guards = flow.polynomials(np.concatenate([self.state, forcing]))
+            states, guards = flow.polynomials(np.concatenate((self.state, forcing)))
             if orders is not None:
                 guards[np.arange(flow.degree + 1) < orders[:, None]] = 0.0
             part, guard = _first_event(guards, orders, 1.0 - done)
-            self.add_work(on_interval(guards, part), forcing, part)
+            w, change = forcing[: flow.inputs], forcing[flow.inputs :]
+            nodes = np.stack((w, w + part * change))
+            self._add_work(on_interval(guards, part)[:, :, None], nodes, part * self._piece_s)
             self.state = part ** np.arange(flow.degree + 1) @ states
             done += part
             if guard is None:
-                return
+                return self.state
             orders = self._change_mode(piece, done, flow.guarded[guard])
         raise DdctError(
             f'friction: more than {MOST_EVENTS} events in {self._piece_s:g} s: '
             'look for values that are far too large'
         )
+
+    def _add_work(self, guards: np.ndarray, nodes: np.ndarray, length_s: float) -> None:
+        """Add the exact integrals of slip times capacity over k stretches with k + 1 nodes w."""
+        weights = linear_weights(guards.shape[1] - 1)
+        capacities = nodes[:, -self._system.elements :]
+        for guard, element in zip(guards, self._flows[self.signs].guarded, strict=True):
+            if self.signs[element]:
+                before, after = weights @ guard
+                capacity = capacities[:, element]
+                self.work[element] += length_s * float(
+                    before @ capacity[:-1] + after @ capacity[1:]
+                )
 
     def _change_mode(self, piece: int, done: float, element: int) -> np.ndarray:
         """Choose the mode that goes on, note what changes, return the orders of its guards."""
@@ -115,7 +126,7 @@ def _first_event(
     guard divided by t^k.
     """
     first, which = end, None
-    suspects = (on_interval(guards, end) < 0.0).any(axis=1).nonzero()[0]
+    suspects = np.flatnonzero((on_interval(guards, end) < 0.0).any(axis=1))
     for guard in suspects.tolist():
         order = 0 if orders is None else int(orders[guard])
         at = first_negative(guards[guard, order:], end)

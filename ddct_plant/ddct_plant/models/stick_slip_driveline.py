@@ -1,7 +1,7 @@
 """The driveline with a clutch that sticks and wheels that dry friction holds."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,19 +22,18 @@ _HELD = (0, 1, 3)
 """Of C_m, C_load, clutch capacity, holding torque: all but the clutch capacity are held."""
 
 
-@dataclass(frozen=True, slots=True)
-class FrictionPeriod:
+class FrictionPeriod(NamedTuple):
     """What the friction elements did in the period that has ended; at t_0 nothing."""
 
     clutch_phase: str
     """`open`, `slipping` or `locked`, at its end."""
     wheel_phase: str
     """The same; `open` is a wheel that turns with neither rolling resistance nor brake."""
-    events: list[Event] = field(default_factory=list)
+    events: list[Event]
     """In the order of time; element 0 is the clutch, 1 the wheel."""
-    clutch_work: float = 0.0
+    clutch_work: float
     """Exact friction work in J."""
-    wheel_work: float = 0.0
+    wheel_work: float
     """The same, of rolling resistance and brake together."""
 
 
@@ -77,6 +76,9 @@ class StickSlipDriveline:
         self.period = FrictionPeriod(
             _phase(self._signs[CLUTCH], initial.clutch_torque),
             _phase(self._signs[WHEEL], wheel_torque),
+            [],
+            0.0,
+            0.0,
         )
 
     def outputs(self) -> DrivelineOutputs:
