@@ -128,7 +128,10 @@ def test_the_closed_form_is_consistent_with_dymola():
     assert ends == pytest.approx(DYMOLA_END, abs=3e-5)
     momentum = ends[0] + 3.0 * ends[1]
     assert momentum == pytest.approx(10.0 + 2.0 / np.pi, abs=1e-12)
-    order = [*times[2, 'lock'], *np.ravel([*zip(times[1, 'lock'], times[1, 'release'])])]
+    order = [
+        *times[2, 'lock'],
+        *np.ravel([*zip(times[1, 'lock'], times[1, 'release'], strict=True)]),
+    ]
     assert all(early < late for early, late in pairwise([*order, *times[3, 'lock']]))
 
 

@@ -130,7 +130,9 @@ class HybridIntegrator:
         """Return v, the argument of the map of a mode, for a whole interval."""
         v = self._v
         v[: self._states] = state
-        in_force = [low if sign else high for sign, low, high in zip(signs, kinetic, static, strict=True)]
+        in_force = [
+            low if sign else high for sign, low, high in zip(signs, kinetic, static, strict=True)
+        ]
         try:
             for where, value in zip(self._places, (*inputs, *in_force), strict=True):
                 v[where] = value

@@ -1,0 +1,361 @@
+"""The hybrid integrator is exact, loses no energy and no event, and decides ties."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.hybrid.friction_system import FrictionSystem
+from ddct_plant.hybrid.integrator import HybridIntegrator
+
+PIECE_S, PIECES = 0.001, 10
+
+
+def rotors(
+    inertias: np.ndarray, stiffness: np.ndarray, slips: np.ndarray, driven: np.ndarray
+) -> FrictionSystem:
+    """Return a system with states [speeds, angles] of inertias, springs and friction elements."""
+    size = len(inertias)
+    over = np.diag(1.0 / inertias)
+    a = np.block([[np.zeros((size, size)), -over @ stiffness], [np.eye(size), 0.0 * over]])
+    none = np.zeros((size, len(slips)))
+    h = np.hstack([slips, none.T])
+    return FrictionSystem(
+        a, np.vstack([over @ driven, 0.0 * driven]), np.vstack([-over @ slips.T, none]), h
+    )
+
+
+def block(a: float = 0.0) -> FrictionSystem:
+    """Return one inertia of 1 on the ground: dw/dt = a w + u - f."""
+    return FrictionSystem([[a]], [[1.0]], [[-1.0]], [[1.0]])
+
+
+class RandomRun:
+    """A random chain of inertias and springs with N friction elements, in random motion."""
+
+    def __init__(self, seed: int) -> None:
+        self.random = np.random.default_rng(seed)
+        self.elements = 1 + seed % 3
+        size = self.elements + 1
+        self.inertias = self.random.uniform(0.05, 2.0, size)
+        springs = self.random.uniform(0.0, 500.0, size - 1)
+        self.stiffness = np.diag(self.random.uniform(0.0, 300.0, size))
+        for i, spring in enumerate(springs):
+            self.stiffness[i : i + 2, i : i + 2] += spring * np.array([[1, -1], [-1, 1]])
+        slips = np.eye(size)[: self.elements] - np.eye(size, k=1)[: self.elements]
+        slips[-1] = np.eye(size)[-1]  # the last element acts against the ground
+        self.system = rotors(self.inertias, self.stiffness, slips, np.eye(size)[:, :1])
+        self.start = np.concatenate([self.random.uniform(-2.0, 2.0, size), np.zeros(size)])
+        self.ratio = self.random.choice([1.0, 1.2])
+        self.intervals = [self._interval() for _ in range(60)]
+
+    def _interval(self) -> tuple[float, np.ndarray, np.ndarray]:
+        torque = self.random.uniform(-60.0, 60.0)
+        kinetic = np.maximum(self.random.uniform(-10.0, 40.0, (self.elements, PIECES + 1)), 0.0)
+        return torque, kinetic, self.ratio * kinetic
+
+    def energy(self, state: np.ndarray) -> float:
+        speeds, angles = np.split(state, 2)
+        return float(self.inertias @ speeds**2 + angles @ self.stiffness @ angles) / 2.0
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_work_done_is_kinetic_and_elastic_energy_and_friction_work(seed):
+    run = RandomRun(seed)
+    integrator = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
+    state, signs = run.start, integrator.mode_of(run.start)
+    size = len(run.inertias)
+    work_in = friction = turnover = 0.0
+    kinds = set()
+    for torque, kinetic, static in run.intervals:
+        done = integrator.advance(state, signs, [torque], kinetic, static)
+        work = torque * (done.states[-1][size] - state[size])
+        work_in, turnover = work_in + work, turnover + abs(work)
+        friction += sum(done.work)
+        assert min(done.work) >= 0.0
+        kinds |= {event.kind for event in done.events}
+        state, signs = done.states[-1], done.signs
+    gained = run.energy(state) - run.energy(run.start)
+    assert kinds >= {'lock', 'release'}
+    assert friction > 0.01
+    assert work_in - gained - friction == pytest.approx(0.0, abs=1e-9 * (turnover + friction))
+
+
+@pytest.mark.parametrize('seed', range(6))
+@pytest.mark.parametrize('cuts', [2, 5])
+def test_the_trajectory_is_the_same_when_the_pieces_are_cut(seed, cuts):
+    run = RandomRun(seed)
+    whole = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
+    cut = HybridIntegrator(run.system, PIECE_S / cuts, PIECES, held=[0])
+    state = other = run.start
+    signs = others = whole.mode_of(state)
+    fine = np.linspace(0.0, PIECES, cuts * PIECES + 1)
+    for torque, kinetic, static in run.intervals:
+        done = whole.advance(state, signs, [torque], kinetic, static)
+        state, signs = done.states[-1], done.signs
+        events, work, points = [], np.zeros(run.elements), []
+        for part in range(cuts):
+            now = slice(part * PIECES, (part + 1) * PIECES + 1)
+            low, high = (
+                [np.interp(fine, range(PIECES + 1), capacity)[now] for capacity in capacities]
+                for capacities in (kinetic, static)
+            )
+            finer = cut.advance(other, others, [torque], low, high)
+            other, others = finer.states[-1], finer.signs
+            work += finer.work
+            points += [*finer.states]
+            start_s = part * PIECES * PIECE_S / cuts
+            events += [(start_s + e.time_s, e.element, e.kind) for e in finer.events]
+        assert others == signs
+        np.testing.assert_allclose(points[cuts - 1 :: cuts], done.states, rtol=0.0, atol=1e-9)
+        np.testing.assert_allclose(work, done.work, rtol=0.0, atol=1e-9)
+        assert [e[1:] for e in events] == [(e.element, e.kind) for e in done.events]
+        expected = [e.time_s for e in done.events]
+        assert [e[0] for e in events] == pytest.approx(expected, abs=1e-9)
+
+
+def by_solve_ivp(
+    system: FrictionSystem, state: np.ndarray, torque: float, capacity: tuple[float, float]
+) -> tuple[np.ndarray, list[float]]:
+    """Return the state after 10 ms and the times of events, for one element and held torques."""
+    kinetic, static = capacity
+    time, times = 0.0, []
+    end = PIECE_S * PIECES
+    row, column = system.h[0], system.g[:, 0]
+
+    def held(x: np.ndarray) -> float:
+        return float(-row @ (system.a @ x + system.b[:, 0] * torque) / (row @ column))
+
+    sign = np.sign(row @ state) if abs(row @ state) > 1e-9 else 0.0
+    while time < end:
+        if sign == 0.0 and abs(held(state)) > static:
+            sign = np.sign(held(state))
+
+        def derivative(_: float, x: np.ndarray, sign: float = sign) -> np.ndarray:
+            friction = sign * kinetic if sign else held(x)
+            return system.a @ x + system.b[:, 0] * torque + column * friction
+
+        def ends(_: float, x: np.ndarray, sign: float = sign) -> float:
+            return sign * (row @ x) if sign else static - abs(held(x))
+
+        ends.terminal, ends.direction = True, -1.0
+        done = solve_ivp(
+            derivative, (time, end), state, 'DOP853', events=ends, rtol=1e-12, atol=1e-13
+        )
+        state, time = done.y[:, -1], done.t[-1]
+        if done.status == 1:
+            times.append(time)
+            sign = np.sign(held(state)) if sign == 0.0 else 0.0
+    return state, times
+
+
+@pytest.mark.parametrize('seed', [0, 3, 6, 9])
+def test_a_random_system_moves_as_scipy_integrates_it(seed):
+    run = RandomRun(seed)
+    integrator = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0, 1])
+    state, signs, count = run.start, integrator.mode_of(run.start), 0
+    for torque, kinetic, _ in run.intervals:
+        capacity = (kinetic[0, 0], 1.2 * kinetic[0, 0])
+        done = integrator.advance(state, signs, [torque], capacity[:1], capacity[1:])
+        expected, times = by_solve_ivp(run.system, state, torque, capacity)
+        np.testing.assert_allclose(done.states[-1], expected, rtol=0.0, atol=1e-9)
+        found = sorted({e.time_s for e in done.events if e.time_s > 0.0})
+        assert found == pytest.approx(times, abs=1e-8)
+        count += len(times)
+        state, signs = done.states[-1], done.signs
+    assert count >= 3
+
+
+@pytest.mark.parametrize(('depth', 'events'), [(1e-9, 2), (-1e-9, 0)])
+def test_a_slip_that_grazes_zero_between_two_nodes_is_found(depth, events):
+    """The slip is s_0 - U t + U t^2 / h, least at h/2, where it is -depth."""
+    strength = 8.0
+    slip = strength * PIECE_S / 4.0 - depth
+    integrator = HybridIntegrator(block(), PIECE_S, 1)
+    done = integrator.advance([slip], (1,), [[-strength, strength]], [[0.0, 0.0]], [[0.0, 0.0]])
+    assert [e.kind for e in done.events] == ['reverse'] * events
+    if events:
+        half = np.sqrt(depth * PIECE_S / strength)
+        expected = [PIECE_S / 2.0 - half, PIECE_S / 2.0 + half]
+        assert [e.time_s for e in done.events] == pytest.approx(expected, abs=1e-12)
+    assert done.states[-1] == pytest.approx([slip], abs=1e-15)
+
+
+@pytest.mark.parametrize('excess', [1e-9, -1e-9])
+def test_a_margin_that_is_short_between_two_nodes_releases(excess):
+    """A torque sin(w t) peaks between the nodes; the capacity is the same at rest and slipping."""
+    rate = np.pi / PIECE_S
+    a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, rate], [0.0, -rate, 0.0]])
+    system = FrictionSystem(a, np.zeros((3, 0)), [[-1.0], [0.0], [0.0]], [[1.0, 0.0, 0.0]])
+    capacity = 1.0 - excess
+    integrator = HybridIntegrator(system, PIECE_S / 3.0, 3, held=[0])
+    done = integrator.advance([0.0, 0.0, 1.0], (0,), [], [capacity], [capacity])
+    assert [e.kind for e in done.events] == (['release', 'lock'] if excess > 0.0 else [])
+    if excess > 0.0:
+        half = np.sqrt(2.0 * excess) / rate  # of the time for which the torque is too large
+        expected = [PIECE_S / 2.0 - half, PIECE_S / 2.0 + 2.0 * half]
+        assert [e.time_s for e in done.events] == pytest.approx(expected, abs=1e-5 * half)
+
+
+@pytest.mark.parametrize('ratio', [1.0, 1.0 + 1e-12, 1.3])
+def test_a_release_is_one_event_at_any_ratio_of_static_to_kinetic_capacity(ratio):
+    """With ratio 1 the slip begins without acceleration: the tie is decided by its derivative."""
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES)
+    torque = np.linspace(0.0, 10.0, PIECES + 1)
+    capacity = np.full((1, PIECES + 1), 4.05)
+    done = integrator.advance([0.0], (0,), [torque], capacity, ratio * capacity)
+    assert [(e.element, e.kind) for e in done.events] == [(0, 'release')]
+    start_s = done.events[0].time_s
+    assert start_s == pytest.approx(ratio * 4.05e-3, abs=1e-15)
+    left_s = PIECE_S * PIECES - start_s
+    gained = (ratio - 1.0) * 4.05 * left_s + 1000.0 * left_s**2 / 2.0
+    assert done.states[-1] == pytest.approx([gained], rel=1e-12)
+
+
+def symmetric_star(arms: int) -> FrictionSystem:
+    """Return a driven hub with equal inertias around it, each on a friction element."""
+    slips = np.hstack([np.ones((arms, 1)), -np.eye(arms)])
+    size = arms + 1
+    return rotors(np.ones(size), np.zeros((size, size)), slips, np.eye(size)[:, :1])
+
+
+@pytest.mark.parametrize('arms', [2, 3])
+@pytest.mark.parametrize('ratio', [1.0, 1.25])
+def test_elements_that_release_together_do_so_in_one_instant(arms, ratio):
+    """Each arm of inertia 1 takes u / (arms + 1) while it sticks."""
+    system = symmetric_star(arms)
+    integrator = HybridIntegrator(system, PIECE_S, PIECES)
+    torque = np.linspace(0.0, 100.0, PIECES + 1)
+    capacity = np.full((arms, PIECES + 1), 8.0)
+    state = np.zeros(2 * arms + 2)
+    done = integrator.advance(state, (0,) * arms, [torque], capacity, ratio * capacity)
+    assert sorted((e.element, e.kind) for e in done.events) == [
+        (i, 'release') for i in range(arms)
+    ]
+    expected = ratio * 8.0 * (arms + 1) / 1e4
+    assert [e.time_s for e in done.events] == pytest.approx([expected] * arms, abs=1e-15)
+    hub, *others = done.states[-1][: arms + 1]
+    assert done.signs == (1,) * arms
+    assert others == pytest.approx([others[0]] * arms, rel=1e-13)
+
+
+@pytest.mark.parametrize('arms', [2, 3])
+def test_elements_that_lock_together_do_so_in_one_instant(arms):
+    integrator = HybridIntegrator(symmetric_star(arms), PIECE_S, PIECES, held=range(arms + 1))
+    state = np.zeros(2 * arms + 2)
+    state[0] = 0.1
+    signs = integrator.mode_of(state)
+    assert signs == (1,) * arms
+    done = integrator.advance(state, signs, [0.0], [8.0] * arms, [8.0] * arms)
+    assert done.signs == (0,) * arms
+    assert {e.kind for e in done.events} == {'lock'}
+    assert [e.time_s for e in done.events] == pytest.approx([0.1 / (8.0 * (arms + 1))] * arms)
+
+
+def test_capacity_that_equals_the_held_torque_lets_it_stick_without_events():
+    """A tie in every derivative: neither chatter nor drift, for a second."""
+    integrator = HybridIntegrator(symmetric_star(2), PIECE_S, PIECES, held=range(3))
+    state, signs = np.zeros(6), (0, 0)
+    for _ in range(100):
+        done = integrator.advance(state, signs, [0.3], [0.1, 0.1], [0.1, 0.1])
+        assert done.events == []
+        state, signs = done.states[-1], done.signs
+    assert state[:3] == pytest.approx([0.1] * 3, rel=1e-12)
+
+
+def test_two_events_in_one_piece():
+    """A block at -1e-3 is pushed through zero: it locks, and slips the other way."""
+    integrator = HybridIntegrator(block(), PIECE_S, 1)
+    done = integrator.advance([-0.001], (-1,), [[0.0, 12.0]], [[2.0, 2.0]], [[3.0, 3.0]])
+    assert [e.kind for e in done.events] == ['lock', 'release']
+    # w(t) = -0.001 + 2 t + 6000 t^2, then at rest until u = 3 at a quarter of the piece.
+    lock_s = (-2.0 + np.sqrt(4.0 + 4.0 * 6000.0 * 0.001)) / 12000.0
+    assert [e.time_s for e in done.events] == pytest.approx([lock_s, 0.00025], abs=1e-15)
+    moved_s = 0.00075
+    expected = (3.0 - 2.0) * moved_s + 12000.0 * moved_s**2 / 2.0
+    assert done.states[-1] == pytest.approx([expected], rel=1e-12)
+    moved = (3.0 - 2.0) * moved_s**2 / 2.0 + 12000.0 * moved_s**3 / 6.0
+    before = 0.001 * lock_s - lock_s**2 - 2000.0 * lock_s**3
+    assert done.work == pytest.approx([2.0 * (moved + before)], rel=1e-10)
+
+
+def test_an_open_element_reverses_without_locking():
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[0, 1])
+    done = integrator.advance([0.005], (1,), [-1.0], [0.0], [0.0])
+    assert [(e.kind, e.time_s) for e in done.events] == [('reverse', pytest.approx(0.005))]
+    assert done.work == [0.0]
+
+
+@pytest.mark.parametrize(
+    ('system', 'message'),
+    [
+        ({'g': [[1.0], [0.0]]}, 'h g of element 0 is 1, it must be negative'),
+        ({'g': [[0.0], [-1.0]]}, 'h g of element 0 is 0, it must be negative'),
+        ({'h': [[1.0, 0.0]] * 2, 'g': [[-1.0, -1.0], [0.0, 0.0]]}, 'is singular'),
+        ({'h': [[1.0]]}, r'h is \(1, 1\), it must be \(1, 2\)'),
+        ({'a': [[np.nan, 0.0], [0.0, 0.0]]}, 'a must be a matrix of finite numbers'),
+    ],
+)
+def test_an_impossible_system_is_refused(system, message):
+    given = {'a': np.zeros((2, 2)), 'b': np.zeros((2, 0)), 'g': [[-1.0], [0.0]], 'h': [[1.0, 0.0]]}
+    with pytest.raises(ParameterError, match=message):
+        FrictionSystem(**{**given, **system})
+
+
+@pytest.mark.parametrize(
+    ('kinetic', 'static', 'message'),
+    [
+        (-1.0, 1.0, 'its capacity -1.0 must not be negative'),
+        (2.0, 1.0, 'static capacity 1.0 is below the kinetic one 2.0'),
+        (1.0, [1.0] * 11, 'one number for both'),
+    ],
+)
+def test_impossible_capacities_are_refused(kinetic, static, message):
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[1])
+    with pytest.raises(ParameterError, match=message):
+        integrator.advance([1.0], (1,), [[0.0] * 11], [kinetic], [static])
+    nodes = HybridIntegrator(block(), PIECE_S, PIECES, held=[0])
+    with pytest.raises(ParameterError, match='static capacity'):
+        nodes.advance([1.0], (1,), [0.0], [[1.0] * 11], [[1.0] * 10 + [0.9]])
+    with pytest.raises(ParameterError, match='do not fit the interval'):
+        nodes.advance([1.0], (1,), [0.0], [[1.0] * 5], [[1.0] * 5])
+
+
+def test_a_piece_must_be_longer_than_zero_and_short_enough_for_the_rates():
+    with pytest.raises(ParameterError, match='piece_s is 0: it must be above 0'):
+        HybridIntegrator(block(), 0.0, PIECES)
+    with pytest.raises(ParameterError, match='take pieces of at most 0.0002 s'):
+        HybridIntegrator(block(a=-1e4), PIECE_S, PIECES)
+
+
+def test_an_element_called_locked_must_not_slip():
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES)
+    assert integrator.mode_of([1e-9]) == (1,)
+    assert integrator.mode_of([0.0], locked=[0]) == (0,)
+    with pytest.raises(ParameterError, match='element 0 is called locked, but its slip is 1e-09'):
+        integrator.mode_of([1e-9], locked=[0])
+
+
+def test_values_that_are_not_finite_end_in_an_error():
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[0, 1])
+    with pytest.raises(DdctError, match='not finite'):
+        integrator.advance([1.0], (1,), [np.nan], [1.0], [1.0])
+
+
+def test_guards_order_is_decided_after_the_event_not_by_a_dead_zone():
+    """A slip of a femtoradian per second is a slip, and friction ends it when it should."""
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[0, 1])
+    done = integrator.advance([1e-15], (1,), [0.0], [1e-12], [1e-12])
+    assert [(e.kind, e.time_s) for e in done.events] == [('lock', pytest.approx(1e-3, rel=1e-12))]
+
+
+def test_events_come_in_the_order_of_time():
+    run = RandomRun(2)
+    integrator = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
+    state, signs = run.start, integrator.mode_of(run.start)
+    for torque, kinetic, static in run.intervals:
+        done = integrator.advance(state, signs, [torque], kinetic, static)
+        assert all(one.time_s <= two.time_s for one, two in pairwise(done.events))
+        state, signs = done.states[-1], done.signs
