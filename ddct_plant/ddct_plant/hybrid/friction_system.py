@@ -58,7 +58,7 @@ class FrictionSystem:
         for i, own in enumerate(np.diag(mobility)):
             if own <= 0.0:
                 raise ParameterError(
-                    f'friction system: h g of element {i} is {-own:g}, it must be negative: '
+                    f'friction system: h g of element {i} is {0.0 - own:g}, it must be negative: '
                     'friction opposes the slip it acts on'
                 )
         for size in range(2, self.elements + 1):

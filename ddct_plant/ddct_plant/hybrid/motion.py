@@ -69,6 +69,10 @@ class Motion:
             flow = self._flows[self.signs]
             forcing = self._forcing.at(self.signs, piece, done)
             states, guards = flow.polynomials(np.concatenate((self.state, forcing)))
+            if not np.isfinite(states).all():
+                raise DdctError(
+                    'friction: a state, an input or a capacity is not finite or far too large'
+                )
             if orders is not None:
                 guards[np.arange(flow.degree + 1) < orders[:, None]] = 0.0
             part, guard = _first_event(guards, orders, 1.0 - done)

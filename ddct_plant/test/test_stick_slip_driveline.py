@@ -1,0 +1,135 @@
+"""The driveline with a clutch that sticks and wheels that friction holds."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.stick_slip_driveline import CLUTCH, WHEEL, StickSlipDriveline
+from ddct_plant.models.vehicle import VehicleParameters
+
+PARAMETERS, VEHICLE = DrivelineParameters(), VehicleParameters()
+TAU = PARAMETERS.total_ratio
+ROLLING = VEHICLE.mass_kg * VEHICLE.gravity_m_s2 * 0.0125 * VEHICLE.wheel_radius_m
+
+
+def initial(engine: float, shaft: float, twist: float = 0.0, load: float = 0.0) -> InitialState:
+    return InitialState(engine, shaft, shaft / TAU, twist, 0.0, load, 0.0, 0.0)
+
+
+def make(state: InitialState, parameters: DrivelineParameters = PARAMETERS) -> StickSlipDriveline:
+    return StickSlipDriveline(parameters, VEHICLE, state)
+
+
+def test_while_all_slips_it_moves_as_the_linear_driveline_does():
+    random = np.random.default_rng(1)
+    start = initial(300.0, 160.0)
+    stick_slip, linear = make(start), Driveline(PARAMETERS, VEHICLE, start)
+    for _ in range(20):
+        engine, load = random.uniform(100.0, 200.0), random.uniform(0.0, 20.0)
+        clutch = random.uniform(50.0, 200.0, 11).tolist()
+        stick_slip.step(engine, load, clutch, [1.1 * c for c in clutch], ROLLING)
+        linear.step(engine, load + ROLLING, clutch)
+        assert stick_slip.period.events == []
+    found, expected = stick_slip.outputs(), linear.outputs()
+    for name in ('positions', 'speeds', 'efforts', 'slip_speed', 'vehicle_accel'):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-10)
+
+
+@pytest.mark.parametrize('slope', [0.0, 0.12, -0.12])
+def test_a_car_at_rest_stays_at_rest_also_on_a_hill(slope):
+    """The brake holds it: no speed, no motion and no acceleration, to the last bit."""
+    load = VEHICLE.mass_kg * VEHICLE.gravity_m_s2 * math.sin(slope) * VEHICLE.wheel_radius_m
+    driveline = make(initial(100.0, 0.0, load=load))
+    for _ in range(100):
+        driveline.step(0.0, load, [0.0] * 11, [0.0] * 11, ROLLING + 600.0)
+    now = driveline.outputs()
+    assert (now.positions[2], now.speeds[2], now.vehicle_speed, now.vehicle_accel) == (0.0,) * 4
+    assert now.efforts[2] == pytest.approx(0.0, abs=1e-9)  # the friction balances the slope
+    assert driveline.period.wheel_phase == 'locked'
+    assert (driveline.period.clutch_phase, driveline.period.clutch_work) == ('open', 0.0)
+
+
+def test_a_car_rolls_back_when_the_brake_is_released_on_a_hill():
+    load = VEHICLE.mass_kg * VEHICLE.gravity_m_s2 * 0.12 * VEHICLE.wheel_radius_m
+    driveline = make(initial(100.0, 0.0))
+    driveline.step(0.0, load, [0.0] * 11, [0.0] * 11, ROLLING + 600.0)
+    driveline.step(0.0, load, [0.0] * 11, [0.0] * 11, ROLLING)
+    events = [(e.time_s, e.element, e.kind) for e in driveline.period.events]
+    assert (0.0, WHEEL, 'release') in events
+    assert driveline.outputs().vehicle_speed < 0.0
+    assert driveline.period.wheel_work > 0.0
+
+
+def test_the_clutch_locks_once_and_carries_what_keeps_the_plates_together():
+    driveline = make(initial(170.0, 160.0, twist=0.1))
+    events = []
+    for _ in range(100):
+        driveline.step(60.0, 20.0, [150.0] * 11, [180.0] * 11, ROLLING)
+        events += driveline.period.events
+    assert [(e.element, e.kind) for e in events] == [(CLUTCH, 'lock')]
+    now = driveline.outputs()
+    assert now.slip_speed == 0.0
+    assert now.speeds[0] == pytest.approx(now.speeds[1], rel=1e-14)
+    assert (driveline.period.clutch_phase, driveline.period.clutch_work) == ('locked', 0.0)
+    inertia = PARAMETERS.engine_inertia + PARAMETERS.shaft_inertia
+    shaft = now.efforts[3] / TAU + PARAMETERS.shaft_damping * now.speeds[1]
+    accel = (60.0 - shaft) / inertia
+    assert now.efforts[1] == pytest.approx(60.0 - PARAMETERS.engine_inertia * accel, rel=1e-10)
+
+
+def test_it_slips_again_where_the_static_capacity_is_exceeded():
+    driveline = make(initial(160.0, 160.0, twist=0.05))
+    for _ in range(30):
+        driveline.step(60.0, 20.0, [150.0] * 11, [180.0] * 11, ROLLING)
+    assert driveline.period.clutch_phase == 'locked'
+    falling = np.linspace(150.0, 10.0, 11)
+    driveline.step(60.0, 20.0, falling.tolist(), (1.2 * falling).tolist(), ROLLING)
+    (release,) = driveline.period.events
+    assert (release.element, release.kind) == (CLUTCH, 'release')
+    assert driveline.period.clutch_phase == 'slipping'
+    assert driveline.outputs().efforts[1] == 10.0
+    assert driveline.period.clutch_work > 0.0
+
+
+def launch_energies(parameters: DrivelineParameters) -> tuple[list[float], list[str]]:
+    """Return work in, energy gained and friction work of a launch from rest, and its events."""
+    driveline = make(initial(105.0, 0.0), parameters)
+    kinds, friction, work_in, before = [], 0.0, 0.0, driveline.outputs().positions
+    for period in range(250):
+        capacity = np.minimum(0.8 * (period + np.linspace(0.0, 1.0, 11)), 180.0).tolist()
+        engine, load = min(0.8 * period, 120.0), 30.0
+        driveline.step(engine, load, capacity, [1.1 * c for c in capacity], ROLLING)
+        now = driveline.outputs().positions
+        work_in += engine * (now[0] - before[0]) - load * (now[2] - before[2])
+        friction += driveline.period.clutch_work + driveline.period.wheel_work
+        kinds += [e.kind for e in driveline.period.events]
+        before = now
+    out, p = driveline.outputs(), parameters
+    speeds = np.array(out.speeds[:3])
+    kinetic = np.array([p.engine_inertia, p.shaft_inertia, p.vehicle_inertia]) @ speeds**2 / 2.0
+    elastic = p.halfshaft_stiffness * out.positions[3] ** 2 / 2.0
+    return [work_in, kinetic + elastic - p.engine_inertia * 105.0**2 / 2.0, friction], kinds
+
+
+def test_a_launch_without_dampers_loses_no_energy_but_by_friction():
+    undamped = replace(PARAMETERS, shaft_damping=0.0, halfshaft_damping=0.0)
+    (work_in, gained, friction), kinds = launch_energies(undamped)
+    assert {'lock', 'release'} <= set(kinds)
+    assert friction > 1000.0
+    assert work_in - gained - friction == pytest.approx(0.0, abs=1e-9 * (work_in + friction))
+
+
+def test_capacities_that_cannot_be_are_refused():
+    driveline = make(initial(170.0, 160.0))
+    with pytest.raises(ParameterError, match='element 0: its static capacity'):
+        driveline.step(60.0, 20.0, [150.0] * 11, [149.0] * 11, ROLLING)
+    with pytest.raises(ParameterError, match='element 0: its capacity'):
+        driveline.step(60.0, 20.0, [-1.0] * 11, [1.0] * 11, ROLLING)
+    with pytest.raises(ParameterError, match='element 1: its capacity -2.0 must not be negative'):
+        driveline.step(60.0, 20.0, [1.0] * 11, [1.0] * 11, -2.0)
