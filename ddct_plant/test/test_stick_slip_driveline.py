@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.driveline import Driveline
-from ddct_plant.models.initial_state import InitialState
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.stick_slip_driveline import CLUTCH, WHEEL, StickSlipDriveline
-from ddct_plant.models.vehicle import VehicleParameters
 
 PARAMETERS, VEHICLE = DrivelineParameters(), VehicleParameters()
 TAU = PARAMETERS.total_ratio
@@ -37,7 +35,7 @@ def test_while_all_slips_it_moves_as_the_linear_driveline_does():
         linear.step(engine, load + ROLLING, clutch)
         assert stick_slip.period.events == []
     found, expected = stick_slip.outputs(), linear.outputs()
-    for name in ('positions', 'speeds', 'efforts', 'slip_speed', 'vehicle_accel'):
+    for name in ('joint_position', 'joint_speed', 'joint_effort', 'slip_speed', 'vehicle_accel'):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-10)
 
 
@@ -49,8 +47,10 @@ def test_a_car_at_rest_stays_at_rest_also_on_a_hill(slope):
     for _ in range(100):
         driveline.step(0.0, load, [0.0] * 11, [0.0] * 11, ROLLING + 600.0)
     now = driveline.outputs()
-    assert (now.positions[2], now.speeds[2], now.vehicle_speed, now.vehicle_accel) == (0.0,) * 4
-    assert now.efforts[2] == pytest.approx(0.0, abs=1e-9)  # the friction balances the slope
+    assert (now.joint_position[2], now.joint_speed[2], now.vehicle_speed, now.vehicle_accel) == (
+        0.0,
+    ) * 4
+    assert now.joint_effort[2] == pytest.approx(0.0, abs=1e-9)  # the friction balances the slope
     assert driveline.period.wheel_phase == 'locked'
     assert (driveline.period.clutch_phase, driveline.period.clutch_work) == ('open', 0.0)
 
@@ -75,12 +75,14 @@ def test_the_clutch_locks_once_and_carries_what_keeps_the_plates_together():
     assert [(e.element, e.kind) for e in events] == [(CLUTCH, 'lock')]
     now = driveline.outputs()
     assert now.slip_speed == 0.0
-    assert now.speeds[0] == pytest.approx(now.speeds[1], rel=1e-14)
+    assert now.joint_speed[0] == pytest.approx(now.joint_speed[1], rel=1e-14)
     assert (driveline.period.clutch_phase, driveline.period.clutch_work) == ('locked', 0.0)
     inertia = PARAMETERS.engine_inertia + PARAMETERS.shaft_inertia
-    shaft = now.efforts[3] / TAU + PARAMETERS.shaft_damping * now.speeds[1]
+    shaft = now.joint_effort[3] / TAU + PARAMETERS.shaft_damping * now.joint_speed[1]
     accel = (60.0 - shaft) / inertia
-    assert now.efforts[1] == pytest.approx(60.0 - PARAMETERS.engine_inertia * accel, rel=1e-10)
+    assert now.joint_effort[1] == pytest.approx(
+        60.0 - PARAMETERS.engine_inertia * accel, rel=1e-10
+    )
 
 
 def test_it_slips_again_where_the_static_capacity_is_exceeded():
@@ -93,27 +95,27 @@ def test_it_slips_again_where_the_static_capacity_is_exceeded():
     (release,) = driveline.period.events
     assert (release.element, release.kind) == (CLUTCH, 'release')
     assert driveline.period.clutch_phase == 'slipping'
-    assert driveline.outputs().efforts[1] == 10.0
+    assert driveline.outputs().joint_effort[1] == 10.0
     assert driveline.period.clutch_work > 0.0
 
 
 def launch_energies(parameters: DrivelineParameters) -> tuple[list[float], list[str]]:
     """Return work in, energy gained and friction work of a launch from rest, and its events."""
     driveline = make(initial(105.0, 0.0), parameters)
-    kinds, friction, work_in, before = [], 0.0, 0.0, driveline.outputs().positions
+    kinds, friction, work_in, before = [], 0.0, 0.0, driveline.outputs().joint_position
     for period in range(250):
         capacity = np.minimum(0.8 * (period + np.linspace(0.0, 1.0, 11)), 180.0).tolist()
         engine, load = min(0.8 * period, 120.0), 30.0
         driveline.step(engine, load, capacity, [1.1 * c for c in capacity], ROLLING)
-        now = driveline.outputs().positions
+        now = driveline.outputs().joint_position
         work_in += engine * (now[0] - before[0]) - load * (now[2] - before[2])
         friction += driveline.period.clutch_work + driveline.period.wheel_work
         kinds += [e.kind for e in driveline.period.events]
         before = now
     out, p = driveline.outputs(), parameters
-    speeds = np.array(out.speeds[:3])
+    speeds = np.array(out.joint_speed[:3])
     kinetic = np.array([p.engine_inertia, p.shaft_inertia, p.vehicle_inertia]) @ speeds**2 / 2.0
-    elastic = p.halfshaft_stiffness * out.positions[3] ** 2 / 2.0
+    elastic = p.halfshaft_stiffness * out.joint_position[3] ** 2 / 2.0
     return [work_in, kinetic + elastic - p.engine_inertia * 105.0**2 / 2.0, friction], kinds
 
 

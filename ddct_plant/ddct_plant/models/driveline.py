@@ -7,7 +7,7 @@ import numpy as np
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.lti import StateSpace, discretise_zoh, lift_piecewise_linear
-from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.driveline_model import matrices_with_angles
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 
@@ -57,6 +57,36 @@ class DrivelineOutputs:
     """A_x in m/s^2, left limit."""
 
 
+def driveline_outputs(
+    parameters: DrivelineParameters,
+    wheel_radius: float,
+    state: Sequence[float],
+    torques: tuple[float, float, float],
+    clutch_sticks: bool = False,
+    wheels_stick: bool = False,
+) -> DrivelineOutputs:
+    """
+    Return the outputs in a state (7,) with C_m, C_f and C_load just before, in N m.
+
+    While the clutch sticks the slip is 0, and while the wheels stick the acceleration is, not the
+    rounding of a difference.
+    """
+    engine, shaft, wheel, twist, *angles = state
+    p = parameters
+    twist_speed = shaft / p.total_ratio - wheel
+    shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
+    engine_torque, clutch_torque, load_torque = torques
+    wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia
+    return DrivelineOutputs(
+        joint_position=[*angles, twist],
+        joint_speed=[engine, shaft, wheel, twist_speed],
+        joint_effort=[engine_torque, clutch_torque, load_torque, shaft_torque],
+        slip_speed=0.0 if clutch_sticks else engine - shaft,
+        vehicle_speed=wheel_radius * wheel,
+        vehicle_accel=wheel_radius * wheel_accel,
+    )
+
+
 class Driveline:
     """
     The four states of Section 1.5 and the three angles, in one exact integrator.
@@ -84,20 +114,8 @@ class Driveline:
 
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present stamp."""
-        engine, shaft, wheel, twist, *angles = self._state_and_inputs[:7].tolist()
-        p = self._parameters
-        twist_speed = shaft / p.total_ratio - wheel
-        shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
-        engine_torque, clutch_torque, load_torque = self._torques
-        wheel_accel = (shaft_torque - load_torque) / p.vehicle_inertia
-        return DrivelineOutputs(
-            joint_position=[*angles, twist],
-            joint_speed=[engine, shaft, wheel, twist_speed],
-            joint_effort=[engine_torque, clutch_torque, load_torque, shaft_torque],
-            slip_speed=engine - shaft,
-            vehicle_speed=self._wheel_radius * wheel,
-            vehicle_accel=self._wheel_radius * wheel_accel,
-        )
+        state = self._state_and_inputs[:7].tolist()
+        return driveline_outputs(self._parameters, self._wheel_radius, state, self._torques)
 
     def step(
         self, engine_torque: float, load_torque: float, clutch_torque: Sequence[float]
@@ -113,11 +131,7 @@ class Driveline:
 
 def _step_matrix(parameters: DrivelineParameters) -> np.ndarray:
     """Return the (7, 20) map from states, angles, C_m, C_load and C_f nodes to the next states."""
-    model = driveline_matrices(parameters)
-    a = np.zeros((7, 7))
-    a[:4, :4] = model.a
-    a[4:7, :3] = np.eye(3)
-    b = np.vstack([model.b, np.zeros((3, 3))])
+    a, b = matrices_with_angles(parameters)
     engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
     held = discretise_zoh(_inputs_only(a, np.hstack([engine, load])), PERIOD_S)
     transition, nodes = lift_piecewise_linear(a, clutch, PERIOD_S, SUBSTEPS)

@@ -39,6 +39,15 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     return StateSpace(np.array(a), np.array(b), np.array(c), np.zeros((2, 3)))
 
 
+def matrices_with_angles(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
+    """Return a (7, 7) and b (7, 3) of the four states and the angles of w_m, w_p and w_r."""
+    model = driveline_matrices(parameters)
+    a = np.zeros((7, 7))
+    a[:4, :4] = model.a
+    a[4:7, :3] = np.eye(3)
+    return a, np.vstack([model.b, np.zeros((3, 3))])
+
+
 def engine_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:
     """Return P_1 = w_d / C_m = (1/J_m) / (s + c_m/J_m)."""
     gain = 1.0 / parameters.engine_inertia

@@ -9,11 +9,9 @@ from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
 from ddct_plant.hybrid.motion import Event
-from ddct_plant.models.driveline import DrivelineOutputs
-from ddct_plant.models.driveline_model import driveline_matrices
-from ddct_plant.models.initial_state import InitialState
-from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.vehicle import VehicleParameters
+from ddct_plant.models.driveline import DrivelineOutputs, InitialState, driveline_outputs
+from ddct_plant.models.driveline_model import matrices_with_angles
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 CLUTCH, WHEEL = 0, 1
 """The friction elements by number."""
@@ -82,26 +80,16 @@ class StickSlipDriveline:
         )
 
     def outputs(self) -> DrivelineOutputs:
-        """
-        Return the outputs at the present stamp.
-
-        The wheel's effort is C_load with the friction there. While the clutch sticks the slip is
-        0, and while the wheels stick so is the acceleration, not the rounding of differences.
-        """
-        engine, shaft, wheel, twist, *angles = self._state.tolist()
-        p = self._parameters
-        twist_speed = shaft / p.total_ratio - wheel
-        shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
+        """Return the outputs at the present stamp; the wheel's effort has its friction in it."""
         engine_torque, load_torque = self._torques
-        load_torque += self._friction[WHEEL]
-        wheel_accel = (shaft_torque - load_torque) / p.vehicle_inertia
-        return DrivelineOutputs(
-            positions=[*angles, twist],
-            speeds=[engine, shaft, wheel, twist_speed],
-            efforts=[engine_torque, self._friction[CLUTCH], load_torque, shaft_torque],
-            slip_speed=engine - shaft if self._signs[CLUTCH] else 0.0,
-            vehicle_speed=self._wheel_radius * wheel,
-            vehicle_accel=self._wheel_radius * wheel_accel if self._signs[WHEEL] else 0.0,
+        clutch_torque, wheel_torque = self._friction
+        return driveline_outputs(
+            self._parameters,
+            self._wheel_radius,
+            self._state.tolist(),
+            (engine_torque, clutch_torque, load_torque + wheel_torque),
+            clutch_sticks=self._signs[CLUTCH] == 0,
+            wheels_stick=self._signs[WHEEL] == 0,
         )
 
     def step(
@@ -144,11 +132,7 @@ def _phase(sign: int, capacity: float) -> str:
 
 
 def _integrator(parameters: DrivelineParameters) -> HybridIntegrator:
-    model = driveline_matrices(parameters)
-    a = np.zeros((_STATES, _STATES))
-    a[:4, :4] = model.a
-    a[4:7, :3] = np.eye(3)
-    b = np.vstack([model.b, np.zeros((3, 3))])
+    a, b = matrices_with_angles(parameters)
     engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
     h = np.zeros((2, _STATES))
     h[CLUTCH, :2] = 1.0, -1.0
