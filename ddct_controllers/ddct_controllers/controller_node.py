@@ -11,6 +11,7 @@ from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import controller_label, controller_names, make_controller
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
@@ -50,7 +51,9 @@ class ControllerNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the controller that the `controller` parameter names."""
         super().__init__('controller', **kwargs)
-        name = declare(self, 'controller', 'pi', f'One of: {", ".join(controller_names())}')
+        name = declare(
+            self, 'controller', Option('pi', f'one of: {", ".join(controller_names())}')
+        )
         self._controller = make_controller(name, self.settings)
         self._architecture = make_architecture(self.settings, self._controller)
         self._request = Output(self, TORQUE_REQUEST)
@@ -121,7 +124,7 @@ class ControllerNode(FollowerNode):
 
     def _declare_gains(self) -> None:
         for name, value in self._controller.gains().items():
-            declare(self, f'gains.{name}', value, _ABOUT_GAINS, read_only=False)
+            declare(self, f'gains.{name}', Option(value, _ABOUT_GAINS), read_only=False)
             self._controller.set_gain(name, self.get_parameter(f'gains.{name}').value)
         self.add_on_set_parameters_callback(self._set_gains)
 

@@ -2,6 +2,7 @@
 
 from typing import Any, ClassVar
 
+from ddct_plant.base.options import Option
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
@@ -19,7 +20,9 @@ class ReferenceNode(FollowerNode):
         """Build the reference of the run's scenario and architecture."""
         super().__init__('reference', **kwargs)
         preview_steps = declare(
-            self, 'preview_steps', 0, 'Periods to look ahead, as the controller needs', 0, 1000
+            self,
+            'preview_steps',
+            Option(0, 'periods to look ahead, as the controller needs', at_least=0, at_most=1000),
         )
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)

@@ -20,6 +20,7 @@ from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
@@ -61,16 +62,22 @@ class RecorderNode(GraphNode):
         """Subscribe to everything that is recorded."""
         super().__init__('recorder', **kwargs)
         self._folder = Path(
-            declare(self, 'out', 'recording', 'Folder of the bag, created if absent')
+            declare(self, 'out', Option('recording', 'folder of the bag, created if absent'))
         )
-        name = declare(self, 'name', '', 'Name of the bag; empty is that of the folder')
+        name = declare(self, 'name', Option('', 'name of the bag; empty is that of the folder'))
         if name:
             require_name('parameter name', name)
         self._bag_name = name or self._folder.name
         self._two_input = declare(
-            self, 'two_input', False, 'Record engine/torque_request of a two-input controller'
+            self,
+            'two_input',
+            Option(False, 'record engine/torque_request of a two-input controller'),
         )
-        nodes = declare(self, 'nodes', list(NODE_NAMES), 'Nodes whose run_info the bag must hold')
+        nodes = declare(
+            self,
+            'nodes',
+            Option(NODE_NAMES, 'nodes whose run_info the bag must hold', kind=str, many=True),
+        )
         self._nodes = HeardNodes(self.settings, self._two_input, nodes)
         self._run = RunKind(self.settings.lockstep, self._two_input, self.settings.clutch)
         self._topics = recorded_topics(self._run)

@@ -5,43 +5,21 @@ from collections.abc import Sequence
 
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.file import load_scenario, scenario_names
-from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.options import add_option, add_scenario_options
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Add what describes a run, and how it is carried out, to a program's options."""
-    parser.add_argument(
-        '--architecture',
-        default='detailed',
-        metavar='NAME',
-        help=f'{" | ".join(ARCHITECTURES)}; default: %(default)s',
-    )
     add_scenario_options(parser)
-    parser.add_argument(
-        '--clutch', default='linear', metavar='NAME', help='model; default: %(default)s'
-    )
-    parser.add_argument(
-        '--wear-gain',
-        type=float,
-        default=1.0,
-        metavar='X',
-        help='K_usura, 1 for a new clutch; default: %(default)s',
-    )
-    parser.add_argument(
-        '--mode',
-        default='lockstep',
-        metavar='|'.join(MODES),
-        help='wait for every node, or 100 Hz on the wall clock; default: %(default)s',
-    )
+    for name, described in options_of(RunSettings).items():
+        add_option(parser, name, described)
     parser.add_argument(
         '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
-    )
-    parser.add_argument(
-        '--seed', type=int, default=0, metavar='N', help='of random numbers; default: %(default)s'
     )
     layout = parser.add_mutually_exclusive_group()
     layout.add_argument(
@@ -76,14 +54,8 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
             f'controllers.{unknown[0]}: there is no such controller: choose from '
             f'{", ".join(controller_names())}'
         )
-    return RunSettings(
-        scenario=scenario,
-        architecture=options.architecture,
-        clutch=options.clutch,
-        wear_gain=options.wear_gain,
-        mode=options.mode,
-        seed=options.seed,
-    )
+    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
+    return RunSettings(scenario, **settings)
 
 
 def print_choices() -> None:

@@ -52,20 +52,6 @@ def require_name(what: str, name: object) -> None:
         )
 
 
-def require_fields(
-    owner: object,
-    prefix: str,
-    *names: str,
-    above: float | None = None,
-    at_least: float | None = None,
-    at_most: float | None = None,
-) -> None:
-    """Raise ParameterError that names `prefix.name` where one of `owner`'s numbers is bad."""
-    for name in names:
-        value = getattr(owner, name)
-        require_number(f'{prefix}.{name}', value, above=above, at_least=at_least, at_most=at_most)
-
-
 def require_rising(name: str, times: Sequence[float]) -> None:
     """Raise ParameterError where one of `times`, called `name`, is not later than the last."""
     for earlier, later in zip(times, times[1:], strict=False):

@@ -3,12 +3,12 @@
 import math
 from dataclasses import asdict, dataclass
 
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_NS, PERIOD_S
 
 REQUEST_TIMEOUT_S = 0.05
 """How long a missing request is waited for."""
-LEAST_REQUEST_TIMEOUT_S, MOST_REQUEST_TIMEOUT_S = PERIOD_S, 10.0
+MOST_REQUEST_TIMEOUT_S = 10.0
 CLUTCH_TIMEOUT_S = 0.1
 """How long the driveline waits for a missing clutch torque: the actuator's fail-safe is first."""
 MOST_CATCH_UP_STEPS = round(MOST_REQUEST_TIMEOUT_S / PERIOD_S)
@@ -16,23 +16,23 @@ MOST_CATCH_UP_STEPS = round(MOST_REQUEST_TIMEOUT_S / PERIOD_S)
 
 
 @dataclass(frozen=True)
-class FailSafeSettings:
+class FailSafeSettings(OptionGroup):
     """When and how fast the clutch opens."""
 
-    request_timeout_s: float = REQUEST_TIMEOUT_S
-    """A missing request is held this long."""
-    fail_safe_ramp_n_m_s: float = 1000.0
-    """Rate at which the request then runs to zero, in N m/s."""
-
-    def __post_init__(self) -> None:
-        """Check both; raise ParameterError that names a bad one."""
-        require_number(
-            'request_timeout_s',
-            self.request_timeout_s,
-            at_least=LEAST_REQUEST_TIMEOUT_S,
-            at_most=MOST_REQUEST_TIMEOUT_S,
-        )
-        require_number('fail_safe_ramp_n_m_s', self.fail_safe_ramp_n_m_s, above=0.0, at_most=1e6)
+    request_timeout_s: float = option(
+        REQUEST_TIMEOUT_S,
+        'Real time: a missing request is held this long',
+        's',
+        at_least=PERIOD_S,
+        at_most=MOST_REQUEST_TIMEOUT_S,
+    )
+    fail_safe_ramp_n_m_s: float = option(
+        1000.0,
+        'Real time: rate at which the clutch opens in the safe state',
+        'N m/s',
+        above=0.0,
+        at_most=1e6,
+    )
 
     def info(self) -> dict[str, str]:
         """Return both as text for `run_info`."""

@@ -1,6 +1,5 @@
 """What stands on a node's command line: help, which is printed here, and ROS's arguments."""
 
-import difflib
 import inspect
 import os
 import sys
@@ -11,6 +10,7 @@ from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.graph.node import GraphNode
 
@@ -64,9 +64,7 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
 def require_declared(node: GraphNode) -> None:
     """Raise ParameterError for a parameter that was given to the node and that it has not."""
     for name in node.undeclared_parameters():
-        known = node.own_parameters()
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f'did you mean {close[0]}?' if close else f'known: {", ".join(known)}'
+        hint = close_name(name, node.own_parameters())
         raise ParameterError(f'unknown parameter {name}: {hint}')
 
 

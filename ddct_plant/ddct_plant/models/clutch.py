@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.options import Option
 
 CLUTCHES = ('linear',)
 """Names of the clutch models that `--clutch` takes."""
+WEAR_GAIN = Option(
+    1.0, 'K_usura, wear gain of the clutch, 1 for a new one', above=0.0, at_most=3.0
+)
 
 
 class LinearClutch:
@@ -16,8 +19,8 @@ class LinearClutch:
     constant gain commutes with both, so here it is the clutch's, whose friction wears.
     """
 
-    def __init__(self, wear_gain: float = 1.0) -> None:
-        self._wear_gain = require_number('wear_gain', wear_gain, above=0.0, at_most=3.0)
+    def __init__(self, wear_gain: float = WEAR_GAIN.default) -> None:
+        self._wear_gain = WEAR_GAIN.checked('wear_gain', wear_gain)
 
     def transmit(self, actuator_torque: Sequence[float]) -> list[float]:
         """Return the transmitted torque in N m at the same instants as `actuator_torque`."""

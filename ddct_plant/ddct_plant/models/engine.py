@@ -1,11 +1,10 @@
 """Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_fields, require_number, require_rising
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import REQUIRED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
 MOST_AUTHORITY = 1e6
@@ -13,40 +12,35 @@ MOST_AUTHORITY = 1e6
 
 
 @dataclass(frozen=True)
-class TorqueProfile:
+class TorqueProfile(OptionGroup, prefix='engine.'):
     """Engine torque over scenario time, linear between its points and constant outside them."""
 
-    time_s: tuple[float, ...]
-    """Scenario times in s, strictly increasing."""
-    torque_n_m: tuple[float, ...]
-    """C_m in N m at those times, from 0 to 10 kN m."""
+    time_s: tuple[float, ...] = option(
+        REQUIRED, 'scenario times of the points', 's', many=True, rising=True
+    )
+    torque_n_m: tuple[float, ...] = option(
+        REQUIRED,
+        'engine torque C_m at those times, linear between them',
+        'N m',
+        many=True,
+        at_least=0.0,
+        at_most=1e4,
+    )
 
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
-        _require_points('engine.time_s', self.time_s)
-        _require_points('engine.torque_n_m', self.torque_n_m, at_least=0.0, at_most=1e4)
+        super().__post_init__()
+        if not self.time_s:
+            raise ParameterError('engine.time_s is empty: give at least one point')
         if len(self.time_s) != len(self.torque_n_m):
             raise ParameterError(
                 f'engine has {len(self.time_s)} times and {len(self.torque_n_m)} torques: '
                 'give one torque for each time'
             )
-        require_rising('engine.time_s', self.time_s)
-
-
-def _require_points(
-    name: str,
-    values: Sequence[float],
-    at_least: float | None = None,
-    at_most: float | None = None,
-) -> None:
-    if not values:
-        raise ParameterError(f'{name} is empty: give at least one point')
-    for index, value in enumerate(values):
-        require_number(f'{name}[{index}]', value, at_least=at_least, at_most=at_most)
 
 
 @dataclass(frozen=True)
-class EngineAuthority:
+class EngineAuthority(OptionGroup, prefix='engine_authority.'):
     """
     How far and how fast a controller may move the engine away from the driver's demand.
 
@@ -54,23 +48,37 @@ class EngineAuthority:
     it stands the engine follows any request at once, as the thesis assumes (Section 4.3).
     """
 
-    deviation_n_m: float = 1000.0
-    """Largest deviation from the demand, either way."""
-    slew_n_m_s: float = MOST_AUTHORITY
-    """Largest rate of the deviation."""
-    lag_s: float = 0.0
-    """Time constant of the first-order lag with which the deviation comes about; 0 is none."""
-    minimum_torque_n_m: float = 0.0
-    """Lowest torque delivered."""
-    maximum_torque_n_m: float = 1000.0
-    """Highest torque delivered."""
+    deviation_n_m: float = option(
+        1000.0,
+        "how far a controller that commands the engine may move it from the driver's demand",
+        'N m',
+        at_least=0.0,
+        at_most=MOST_AUTHORITY,
+    )
+    slew_n_m_s: float = option(
+        MOST_AUTHORITY,
+        'largest rate of that deviation',
+        'N m/s',
+        at_least=0.0,
+        at_most=MOST_AUTHORITY,
+    )
+    lag_s: float = option(
+        0.0,
+        'time constant of the first-order lag with which it comes about; 0 is none',
+        's',
+        at_least=0.0,
+        at_most=MOST_AUTHORITY,
+    )
+    minimum_torque_n_m: float = option(
+        0.0, 'lowest torque then delivered', 'N m', at_least=-1e4, at_most=1e4
+    )
+    maximum_torque_n_m: float = option(
+        1000.0, 'highest torque then delivered', 'N m', at_least=-1e4, at_most=1e4
+    )
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        shape, prefix = ('deviation_n_m', 'slew_n_m_s', 'lag_s'), 'engine_authority'
-        require_fields(self, prefix, *shape, at_least=0.0, at_most=MOST_AUTHORITY)
-        torques = ('minimum_torque_n_m', 'maximum_torque_n_m')
-        require_fields(self, prefix, *torques, at_least=-1e4, at_most=1e4)
+        super().__post_init__()
         if self.minimum_torque_n_m >= self.maximum_torque_n_m:
             raise ParameterError(
                 f'engine_authority.minimum_torque_n_m is {self.minimum_torque_n_m:g} N m: it must '

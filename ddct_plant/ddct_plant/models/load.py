@@ -3,33 +3,29 @@
 import math
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_fields
+from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.models.parameters import VehicleParameters
 
 
 @dataclass(frozen=True)
-class LoadParameters:
+class LoadParameters(OptionGroup, prefix='load.'):
     """What resists the vehicle, apart from its mass and wheels; the thesis prints no values."""
 
-    air_density_kg_m3: float = 1.2
-    """rho_a."""
-    frontal_area_m2: float = 2.1
-    """A_f."""
-    drag_coefficient: float = 0.32
-    """C_a."""
-    rolling_coefficient: float = 0.0125
-    """mu_r."""
-    wind_speed_m_s: float = 0.0
-    """v_a, positive as a head wind."""
-    slope_rad: float = 0.0
-    """Slope angle of the road, called alpha and beta in the thesis; positive uphill."""
-
-    def __post_init__(self) -> None:
-        """Check every value; raise ParameterError that names a bad one."""
-        resistances = ('air_density_kg_m3', 'frontal_area_m2', 'drag_coefficient')
-        require_fields(self, 'load', *resistances, 'rolling_coefficient', at_least=0.0)
-        require_fields(self, 'load', 'wind_speed_m_s', at_least=-60.0, at_most=60.0)
-        require_fields(self, 'load', 'slope_rad', at_least=-0.6, at_most=0.6)
+    air_density_kg_m3: float = option(1.2, 'rho_a', 'kg/m³', source=ASSUMED, at_least=0.0)
+    frontal_area_m2: float = option(2.1, 'A_f', 'm²', source=ASSUMED, at_least=0.0)
+    drag_coefficient: float = option(0.32, 'C_a', source=ASSUMED, at_least=0.0)
+    rolling_coefficient: float = option(0.0125, 'mu_r', source=ASSUMED, at_least=0.0)
+    wind_speed_m_s: float = option(
+        0.0, 'v_a, positive as a head wind', 'm/s', source=ASSUMED, at_least=-60.0, at_most=60.0
+    )
+    slope_rad: float = option(
+        0.0,
+        'slope angle of the road, called alpha and beta in the thesis; positive uphill',
+        'rad',
+        source=ASSUMED,
+        at_least=-0.6,
+        at_most=0.6,
+    )
 
 
 class RoadLoad:

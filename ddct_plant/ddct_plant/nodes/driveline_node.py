@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.message_kinds import stamp_ns
@@ -28,6 +29,7 @@ from ddct_plant.graph.topics import (
 )
 from ddct_plant.models.driveline import Driveline
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
 
@@ -74,23 +76,38 @@ class DrivelineNode(GraphNode):
 
     def _declare_plan(self) -> TickPlan:
         duration_s = declare(
-            self, 'duration', 0.0, "Length of the run [s]; 0 is the scenario's", 0.0, 3600.0
+            self,
+            'duration',
+            Option(
+                0.0,
+                "length of the run; 0 is the scenario's",
+                's',
+                at_least=0.0,
+                at_most=LONGEST_S,
+                whole_periods=True,
+            ),
         )
         return TickPlan(
             REPLIES,
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
             require_recorder=declare(
-                self, 'require_recorder', False, 'Whether each tick waits for recorder/ack'
+                self,
+                'require_recorder',
+                Option(False, 'whether each tick waits for recorder/ack'),
             ),
             answer_timeout_s=declare(
-                self, 'answer_timeout_s', 60.0, 'Wall time to wait for a reply [s]', 0.1, 3600.0
+                self,
+                'answer_timeout_s',
+                Option(
+                    60.0, 'wall time to wait for a reply', 's', at_least=0.1, at_most=LONGEST_S
+                ),
             ),
             clutch=FailSafeSettings(
                 declare_timeout(
                     self,
                     'clutch_timeout_s',
                     CLUTCH_TIMEOUT_S,
-                    'Real time: when clutch/torque stays away for longer [s], the clutch opens; '
+                    'Real time: when clutch/torque stays away for longer, the clutch opens; '
                     'give more than request_timeout_s of actuator',
                 ),
                 declare_fail_safe_ramp(self),

@@ -3,6 +3,7 @@
 from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.fail_safe.guarded_engine import GuardedEngine, engine_info
 from ddct_plant.graph.follower import FollowerNode, Reply
@@ -33,7 +34,9 @@ class EngineNode(FollowerNode):
         """Build the engine of the run's scenario."""
         super().__init__('engine', **kwargs)
         self._two_input = declare(
-            self, 'two_input', False, 'Wait for engine/torque_request of a two-input controller'
+            self,
+            'two_input',
+            Option(False, 'wait for engine/torque_request of a two-input controller'),
         )
         scenario = self.settings.scenario
         self._engine = Engine(scenario.engine, scenario.engine_authority)

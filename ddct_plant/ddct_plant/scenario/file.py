@@ -1,31 +1,21 @@
 """Read, change and write scenarios as YAML; every unknown key and bad value is named."""
 
 import dataclasses
-import difflib
 import hashlib
 import importlib.resources
 import json
-import typing
 from collections.abc import Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import OptionGroup, close_name
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 from ddct_plant.scenario.scenario import Scenario
 
-_PARTS = (
-    'engine',
-    'engine_authority',
-    'engine_speed_reference',
-    'initial',
-    'reference',
-    'load',
-    'vehicle',
-    'driveline',
-)
+Group = TypeVar('Group', bound=OptionGroup)
 
 
 def scenario_names() -> list[str]:
@@ -61,14 +51,9 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
     """Build a scenario from nested mappings, the form that YAML files have."""
-    content = dict(content)
-    for part in _PARTS:
-        if part in content:
-            part_type = next(f.type for f in dataclasses.fields(Scenario) if f.name == part)
-            content[part] = _build(part_type, content[part], f'{part}.')
-    content.setdefault('description', '')
+    content = {'description': '', **content}
     content['controllers'] = _gains(content.get('controllers') or {})
-    return _build(Scenario, content, '')
+    return _build(Scenario, content)
 
 
 def scenario_to_yaml(scenario: Scenario) -> str:
@@ -123,39 +108,29 @@ def _apply(content: dict[str, Any], override: str) -> None:
     target[leaf] = value
 
 
-def _build(part_type: Any, content: Any, prefix: str) -> Any:
+def _build(group: type[Group], content: Any) -> Group:
+    prefix = group.prefix
     if not isinstance(content, Mapping):
         raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
-    fields = {field.name: field for field in dataclasses.fields(part_type)}
+    fields = {field.name: field for field in dataclasses.fields(group)}  # type: ignore[arg-type]
     for key in content:
         if key not in fields:
-            close = difflib.get_close_matches(str(key), fields, n=1)
-            hint = f'did you mean {prefix}{close[0]}?' if close else f'known: {", ".join(fields)}'
-            raise ParameterError(f'unknown key {prefix}{key}: {hint}')
+            raise ParameterError(f'unknown key {prefix}{key}: {close_name(key, fields, prefix)}')
     for name, field in fields.items():
         required = (
             field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
         )
         if required and name not in content:
             raise ParameterError(f'key {prefix}{name} is missing')
-    return part_type(
-        **{
-            key: _frozen(value, fields[key].type, f'{prefix}{key}')
-            for key, value in content.items()
-        }
-    )
+    return group(**{key: _value(fields[key], value) for key, value in content.items()})
 
 
-def _frozen(value: Any, field_type: Any, name: str) -> Any:
-    if value is None:
-        raise ParameterError(f'{name} is empty: give a value')
-    if typing.get_origin(field_type) is tuple:
-        if not isinstance(value, (list, tuple)):
-            raise ParameterError(f'{name} is {value!r}: give a list, [...]')
-        return tuple(value)
-    if field_type is str and not isinstance(value, str):
-        raise ParameterError(f'{name} is {value!r}: give text')
-    return value
+def _value(field: dataclasses.Field[Any], value: Any) -> Any:
+    """Return what the dataclass takes for what YAML has: a group of options, or a tuple."""
+    if isinstance(field.type, type) and issubclass(field.type, OptionGroup):
+        return _build(field.type, value)
+    described = field.metadata.get('option')
+    return tuple(value) if described and described.many and isinstance(value, list) else value
 
 
 def _gains(content: Any) -> dict[str, dict[str, Any]]:

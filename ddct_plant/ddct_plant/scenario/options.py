@@ -1,9 +1,11 @@
-"""Options of programs that say which scenario is meant, and what in it is changed."""
+"""Options of programs that say which scenario is meant, what in it is changed, how it is run."""
 
 import argparse
 
+from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import scenario_names
 
+_METAVARS = {float: 'X', int: 'N', str: 'NAME'}
 SET_EXAMPLE = 'load.slope_rad=0.05'
 
 
@@ -24,4 +26,15 @@ def add_scenario_options(
         metavar='KEY=VALUE',
         dest='overrides',
         help=f'change a scenario key, such as {set_example}; may be repeated',
+    )
+
+
+def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:
+    """Add a described value as `--name`; what is given is checked where it is used."""
+    parser.add_argument(
+        f'--{name.replace("_", "-")}',
+        type=described.kind,
+        default=described.default,
+        metavar=_METAVARS[described.kind],
+        help=f'{described.description}; default: %(default)s',
     )

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_choice, require_number
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.base.options import OptionGroup, option, option_field
+from ddct_plant.models.clutch import CLUTCHES, WEAR_GAIN
 from ddct_plant.scenario.scenario import Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
@@ -14,25 +14,21 @@ MODES = ('lockstep', 'realtime')
 
 
 @dataclass(frozen=True)
-class RunSettings:
+class RunSettings(OptionGroup):
     """What is simulated and how, the same in every node of the graph."""
 
     scenario: Scenario
-    architecture: str = 'detailed'
-    clutch: str = 'linear'
-    wear_gain: float = 1.0
-    """K_usura, 1 for a new clutch."""
-    mode: str = 'lockstep'
-    seed: int = 0
-    """Seed of the run's random numbers; no model draws any yet."""
+    architecture: str = option('detailed', 'control architecture', choices=ARCHITECTURES)
+    clutch: str = option('linear', 'model of the clutch', choices=CLUTCHES)
+    wear_gain: float = option_field(WEAR_GAIN)
+    mode: str = option(
+        'lockstep', 'wait for every node, or 100 Hz on the wall clock', choices=MODES
+    )
+    seed: int = option(0, 'seed of random numbers', at_least=0, at_most=2**31 - 1)
 
     def __post_init__(self) -> None:
         """Check every setting; raise ParameterError that names a bad one and the choices."""
-        require_choice('architecture', self.architecture, ARCHITECTURES)
-        require_choice('clutch', self.clutch, CLUTCHES)
-        require_choice('mode', self.mode, MODES)
-        require_number('wear_gain', self.wear_gain, above=0.0, at_most=3.0)
-        require_number('seed', self.seed, at_least=0)
+        super().__post_init__()
         self._require_reference()
 
     @property

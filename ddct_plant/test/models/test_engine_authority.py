@@ -87,9 +87,13 @@ def test_a_demand_that_leaves_the_limits_makes_no_empty_range():
 @pytest.mark.parametrize(
     ('name', 'value', 'complaint'),
     [
-        ('deviation_n_m', -1.0, 'engine_authority.deviation_n_m is -1: it must be at least 0'),
+        ('deviation_n_m', -1.0, 'engine_authority.deviation_n_m is -1 N m: it must be at least 0'),
         ('slew_n_m_s', math.nan, 'engine_authority.slew_n_m_s is nan: give a finite number'),
-        ('slew_n_m_s', 2e6, 'engine_authority.slew_n_m_s is 2e.06: it must be at most 1e.06'),
+        (
+            'slew_n_m_s',
+            2e6,
+            'engine_authority.slew_n_m_s is 2e.06 N m/s: it must be at most 1e.06',
+        ),
         ('lag_s', 'fast', "engine_authority.lag_s is 'fast': give a number"),
         ('lag_s', -0.1, 'engine_authority.lag_s is -0.1'),
         ('minimum_torque_n_m', 1000.0, 'minimum_torque_n_m is 1000 N m: it must be below'),

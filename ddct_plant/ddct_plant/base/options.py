@@ -1,0 +1,181 @@
+"""
+What a user may set, described once: for files, programs, nodes, controllers and pages.
+
+An `Option` describes one value. Frozen dataclasses carry it in their fields (`option`, in an
+`OptionGroup`, which checks itself when it is built); a controller declares a mapping of them.
+"""
+
+import dataclasses
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from ddct_plant.base.checks import require_choice, require_number, require_rising
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import steps_in
+
+REQUIRED: Any = dataclasses.MISSING
+"""Default of an option that must be given."""
+ASSUMED = 'assumed'
+"""Source of a value that we chose because nobody prints it."""
+Options = Mapping[str, 'Option']
+"""Described values by name."""
+OPTION_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
+"""Of the rows that `option_rows` returns."""
+
+
+@dataclass(frozen=True)
+class Option:
+    """One value that may be set: its default, meaning, unit, range and where it comes from."""
+
+    default: Any
+    """REQUIRED, or None where the meaning says what holds when nothing is given."""
+    meaning: str
+    unit: str = ''
+    source: str = ''
+    """Of the default: a section of the thesis, a program that computes it, or ASSUMED."""
+    kind: type = float
+    """float, int, bool or str; without REQUIRED or None it is that of the default."""
+    above: float | None = None
+    """Exclusive lower bound."""
+    at_least: float | None = None
+    at_most: float | None = None
+    choices: Sequence[str] = ()
+    many: bool = False
+    """Whether it is a list of such values."""
+    rising: bool = False
+    """Whether the values of the list must rise."""
+    whole_periods: bool = False
+    """Whether it is a time in s that must be a multiple of 10 ms."""
+    live: bool = False
+    """Whether a controller takes another value while it runs."""
+
+    def __post_init__(self) -> None:
+        """Take the kind of the default."""
+        if self.default is not REQUIRED and self.default is not None and not self.many:
+            object.__setattr__(self, 'kind', type(self.default))
+
+    def checked(self, name: str, value: Any) -> Any:
+        """Return `value` of the option called `name`; raise ParameterError that says why not."""
+        if value is None:
+            raise ParameterError(f'{name} is empty: give a value')
+        if not self.many:
+            return self._checked_one(name, value)
+        if not isinstance(value, (list, tuple)):
+            raise ParameterError(f'{name} is {value!r}: give a list, [...]')
+        values = [self._checked_one(f'{name}[{i}]', item) for i, item in enumerate(value)]
+        if self.rising:
+            require_rising(name, values)
+        return tuple(values)
+
+    def _checked_one(self, name: str, value: Any) -> Any:
+        if self.kind is bool and not isinstance(value, bool):
+            raise ParameterError(f'{name} is {value!r}: give true or false')
+        if self.kind is str and not isinstance(value, str):
+            raise ParameterError(f'{name} is {value!r}: give text')
+        if self.choices:
+            require_choice(name, value, self.choices)
+        if self.kind in (bool, str):
+            return value
+        number = require_number(
+            name,
+            value,
+            unit=self.unit,
+            above=self.above,
+            at_least=self.at_least,
+            at_most=self.at_most,
+        )
+        if self.whole_periods:
+            steps_in(name, number)
+        if self.kind is float:
+            return number
+        if number % 1:
+            raise ParameterError(f'{name} is {value!r}: give a whole number')
+        return int(value)
+
+    @property
+    def default_text(self) -> str:
+        """The default as a page or a terminal shows it."""
+        if self.default is REQUIRED:
+            return 'required'
+        if self.default is None or self.default == ():
+            return 'none'
+        return str(self.default).lower() if self.kind is bool else _text(self.default)
+
+    @property
+    def range_text(self) -> str:
+        """What it may be, short: `0 to 3`, `above 0`, the choices; empty for anything."""
+        if self.choices:
+            return ', '.join(self.choices)
+        if self.kind is bool:
+            return 'true, false'
+        if self.at_least is not None and self.at_most is not None:
+            return f'{_text(self.at_least)} to {_text(self.at_most)}'
+        ends = {'above': self.above, 'at least': self.at_least, 'at most': self.at_most}
+        return ', '.join(f'{word} {_text(end)}' for word, end in ends.items() if end is not None)
+
+    @property
+    def description(self) -> str:
+        """Meaning, unit and range in one line."""
+        unit = f' [{self.unit}]' if self.unit else ''
+        limits = f' ({self.range_text})' if self.range_text else ''
+        return f'{self.meaning}{unit}{limits}'
+
+
+def option(default: Any, meaning: str, unit: str = '', **description: Any) -> Any:
+    """Return the field of a dataclass for the `Option` that these describe."""
+    return option_field(Option(default, meaning, unit, **description))
+
+
+def option_field(described: Option) -> Any:
+    """Return the field of a dataclass for an option."""
+    return dataclasses.field(default=described.default, metadata={'option': described})
+
+
+def options_of(group: type) -> Options:
+    """Return the options that the fields of a dataclass carry, in their order."""
+    fields = dataclasses.fields(group)
+    return {f.name: f.metadata['option'] for f in fields if 'option' in f.metadata}
+
+
+class OptionGroup:
+    """Base of frozen dataclasses whose fields are options: they are checked when it is built."""
+
+    prefix: ClassVar[str] = ''
+    """Stands before the names of the fields where a user reads or writes them."""
+
+    def __init_subclass__(cls, prefix: str = '') -> None:
+        """Take the prefix, such as `load.`."""
+        cls.prefix = prefix
+
+    def __post_init__(self) -> None:
+        """Check every option; raise ParameterError that names a bad one."""
+        for name, described in options_of(type(self)).items():
+            described.checked(f'{self.prefix}{name}', getattr(self, name))
+
+
+def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:
+    """Return what may have been meant by `name`, or else everything that is known."""
+    known = list(known)
+    close = difflib.get_close_matches(str(name), known, n=1)
+    return f'did you mean {prefix}{close[0]}?' if close else f'known: {", ".join(known)}'
+
+
+def option_rows(options: Options, prefix: str = '') -> list[tuple[str, ...]]:
+    """Return a row of text per option, in the columns OPTION_HEADERS."""
+    return [
+        (
+            f'{prefix}{name}',
+            described.unit,
+            described.default_text,
+            described.range_text,
+            described.meaning,
+            described.source,
+        )
+        for name, described in options.items()
+    ]
+
+
+def _text(value: Any) -> str:
+    return f'{value:.6g}' if isinstance(value, float) else str(value)

@@ -1,0 +1,98 @@
+"""An option is described once; its check, its text and its row follow from that."""
+
+import math
+from dataclasses import dataclass
+
+import pytest
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import (
+    REQUIRED,
+    Option,
+    OptionGroup,
+    close_name,
+    option,
+    option_rows,
+    options_of,
+)
+
+
+@dataclass(frozen=True)
+class Tyre(OptionGroup, prefix='tyre.'):
+    make: str = option(REQUIRED, 'who made it', choices=('here', 'there'), kind=str)
+    pressure_bar: float = option(2.2, 'cold', 'bar', source='assumed', above=0.0, at_most=9.0)
+    layers: int = option(2, 'of the carcass', at_least=1)
+    spare: bool = option(False, 'whether one is carried')
+    wear_mm: tuple[float, ...] = option((), 'at its grooves', 'mm', many=True, at_least=0.0)
+    changed_s: tuple[float, ...] = option((), '', 's', many=True, rising=True, whole_periods=True)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'complaint'),
+    [
+        ({'pressure_bar': 0.0}, 'tyre.pressure_bar is 0 bar: it must be above 0'),
+        ({'pressure_bar': 9.5}, 'tyre.pressure_bar is 9.5 bar: it must be at most 9'),
+        ({'pressure_bar': math.nan}, 'tyre.pressure_bar is nan: give a finite number bar'),
+        ({'pressure_bar': '2'}, "tyre.pressure_bar is '2': give a number bar"),
+        ({'pressure_bar': True}, 'tyre.pressure_bar is True: give a number bar'),
+        ({'pressure_bar': None}, 'tyre.pressure_bar is empty: give a value'),
+        ({'layers': 0}, 'tyre.layers is 0: it must be at least 1'),
+        ({'layers': 1.5}, 'tyre.layers is 1.5: give a whole number'),
+        ({'spare': 1}, 'tyre.spare is 1: give true or false'),
+        ({'make': 'nowhere'}, "unknown tyre.make 'nowhere': choose from here, there"),
+        ({'make': 5}, 'tyre.make is 5: give text'),
+        ({'wear_mm': 1.0}, 'tyre.wear_mm is 1.0: give a list, [...]'),
+        ({'wear_mm': (1.0, -2.0)}, 'tyre.wear_mm[1] is -2 mm: it must be at least 0'),
+        ({'changed_s': (1.0, 1.0)}, 'tyre.changed_s goes from 1 to 1: it must rise'),
+        ({'changed_s': (0.005,)}, 'tyre.changed_s[0] is 0.005 s: give a multiple of 0.01 s'),
+    ],
+)
+def test_a_group_refuses_each_mistake_with_one_sentence(changes, complaint):
+    with pytest.raises(ParameterError) as caught:
+        Tyre(**{'make': 'here', **changes})
+    assert str(caught.value) == complaint
+
+
+def test_values_within_their_ranges_are_kept_as_they_are_given():
+    tyre = Tyre(make='there', pressure_bar=9, layers=3, wear_mm=(0.0, 1.0), changed_s=(0.0, 0.01))
+    assert (tyre.pressure_bar, type(tyre.pressure_bar)) == (9, int)
+    assert tyre == Tyre('there', 9, 3, False, (0.0, 1.0), (0.0, 0.01))
+
+
+def test_a_field_without_default_must_be_given():
+    with pytest.raises(TypeError, match='make'):
+        Tyre()
+
+
+@pytest.mark.parametrize(
+    ('described', 'value', 'taken'),
+    [
+        (Option(1.0, ''), 2, 2.0),
+        (Option(1, ''), 2.0, 2),
+        (Option(None, '', kind=int), 7, 7),
+        (Option((), '', many=True), [1, 2], (1.0, 2.0)),
+        (Option('a', ''), 'b', 'b'),
+    ],
+)
+def test_a_checked_value_is_of_the_options_kind(described, value, taken):
+    checked = described.checked('x', value)
+    assert checked == taken
+    assert type(checked) is type(taken)
+
+
+def test_the_rows_say_all_that_is_described():
+    assert option_rows(options_of(Tyre), Tyre.prefix) == [
+        ('tyre.make', '', 'required', 'here, there', 'who made it', ''),
+        ('tyre.pressure_bar', 'bar', '2.2', 'above 0, at most 9', 'cold', 'assumed'),
+        ('tyre.layers', '', '2', 'at least 1', 'of the carcass', ''),
+        ('tyre.spare', '', 'false', 'true, false', 'whether one is carried', ''),
+        ('tyre.wear_mm', 'mm', 'none', 'at least 0', 'at its grooves', ''),
+        ('tyre.changed_s', 's', 'none', '', '', ''),
+    ]
+    described = Option(1.0, 'speed', 'm/s', at_least=0.0, at_most=2.0).description
+    assert described == 'speed [m/s] (0 to 2)'
+
+
+def test_a_name_that_was_nearly_right_is_suggested():
+    assert close_name('spair', options_of(Tyre), Tyre.prefix) == 'did you mean tyre.spare?'
+    assert close_name('x', ['one', 'two']) == 'known: one, two'
