@@ -1,6 +1,7 @@
 """Node `controller`: runs the controller that its `controller` parameter names, every tick."""
 
 import time
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from rcl_interfaces.msg import SetParametersResult
@@ -8,8 +9,8 @@ from rclpy.parameter import Parameter
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.controller_info import controller_info
-from ddct_controllers.interface import Measurement
-from ddct_controllers.registry import controller_label, controller_names, make_controller
+from ddct_controllers.interface import Controller, Measurement
+from ddct_controllers.registry import controller_names, controller_spec, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import stamp_of_step
@@ -31,7 +32,6 @@ from ddct_plant.graph.topics import (
 
 TIMING_BATCH = 20
 """Update times are published in batches of this many steps."""
-_ABOUT_GAINS = 'May be changed while it runs; its unit is in the documentation of the controller'
 
 
 class ControllerNode(FollowerNode):
@@ -39,8 +39,8 @@ class ControllerNode(FollowerNode):
     Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
 
     A controller with two inputs also answers with `engine/torque_request`, and takes the driver's
-    demand in place of `engine/torque`. Gains are parameters `gains.<name>`, which may be changed
-    while it runs.
+    demand in place of `engine/torque`. The options of the controller are parameters
+    `gains.<name>`; its gains among them may be changed while it runs.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = (
@@ -54,7 +54,7 @@ class ControllerNode(FollowerNode):
         name = declare(
             self, 'controller', Option('pi', f'one of: {", ".join(controller_names())}')
         )
-        self._controller = make_controller(name, self.settings)
+        self._controller, info = self._make_controller(name)
         self._architecture = make_architecture(self.settings, self._controller)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
@@ -65,8 +65,7 @@ class ControllerNode(FollowerNode):
         self._status = Output(self, CONTROLLER_STATUS)
         self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
-        self._declare_gains()
-        self.publish_run_info(controller_info(controller_label(name), self._controller))
+        self.publish_run_info(info)
         self.follow(
             JOINT_STATES,
             VEHICLE_SPEED,
@@ -122,11 +121,32 @@ class ControllerNode(FollowerNode):
         pairs = [('update_times_us', times)]
         self._timing.fill(stamp_of_step(step), pairs, name=self.get_name()).publish()
 
-    def _declare_gains(self) -> None:
-        for name, value in self._controller.gains().items():
-            declare(self, f'gains.{name}', Option(value, _ABOUT_GAINS), read_only=False)
-            self._controller.set_gain(name, self.get_parameter(f'gains.{name}').value)
+    def _make_controller(self, name: str) -> tuple[Controller, dict[str, str]]:
+        """
+        Build it with its options, which are declared as parameters `gains.<name>` first.
+
+        Return what it says of itself too: also the options that differ from the scenario's.
+        """
+        spec = controller_spec(name)
+        section = spec.values(self.settings.scenario.controllers.get(spec.name, {}))
+        options = spec.options or {}
+        given = {
+            key: self._declare_gain(key, replace(options[key], default=section[key]))
+            for key in options
+        }
+        controller = make_controller(name, self.settings, given)
+        for key, value in controller.gains().items():
+            if key not in given:
+                about = Option(
+                    value, 'its unit is in the documentation of the controller', live=True
+                )
+                controller.set_gain(key, self._declare_gain(key, about))
         self.add_on_set_parameters_callback(self._set_gains)
+        changed = {f'gains.{key}': repr(given[key]) for key in given if given[key] != section[key]}
+        return controller, {**controller_info(spec.name, controller), **changed}
+
+    def _declare_gain(self, key: str, option: Option) -> Any:
+        return declare(self, f'gains.{key}', option, read_only=not option.live)
 
     def _set_gains(self, parameters: list[Parameter]) -> SetParametersResult:
         before = self._controller.gains()

@@ -1,11 +1,12 @@
 """What a controller is: one small class that never reads a clock and knows nothing of ROS."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, Generic, TypeVar
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
@@ -90,6 +91,8 @@ class Controller(ABC):
     While its architecture holds feedback off, `hold` is called in place of `update`.
     """
 
+    options: ClassVar[Options | None] = None
+    """What `controllers.<name>` of a scenario may hold, by name; None leaves it unchecked."""
     registered_name: str = ''
     """What errors call it: the registry gives it the name under which it was asked for."""
     preview_steps: int = 0
@@ -137,4 +140,51 @@ class ControllerContext:
 
     settings: RunSettings
     gains: Mapping[str, Any]
-    """The scenario's `controllers.<name>` section, gains and options; the factory checks it."""
+    """
+    The scenario's section `controllers.<name>`.
+
+    A controller that declares `options` gets every one of them, checked, the default where the
+    scenario gives none. One that does not gets the section as it stands and checks it itself.
+    """
+
+
+Made = TypeVar('Made', bound=Controller, covariant=True)
+
+
+@dataclass(frozen=True)
+class ControllerSpec(Generic[Made]):
+    """A controller by name: how it is made, and the options that `controllers.<name>` may hold."""
+
+    name: str
+    make: Callable[[ControllerContext], Made]
+    options: Options | None = None
+    """None for a third party's controller that declares none."""
+
+    def __call__(self, context: ControllerContext) -> Made:
+        """Make the controller; raise ParameterError for an option that it does not take."""
+        return self.make(ControllerContext(context.settings, self.values(context.gains)))
+
+    def values(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return every option's value, what is given or the default, checked."""
+        if self.options is None:
+            return given
+        section = f'controllers.{self.name}'
+        if given and not self.options:
+            names = ', '.join(map(str, given))
+            raise ParameterError(f'{section}: {names} given, but {self.name} takes no options')
+        if unknown := given.keys() - self.options.keys():
+            raise ParameterError(
+                f'{section}.{min(unknown, key=str)} is not a key of {self.name}: it has '
+                f'{", ".join(self.options)}'
+            )
+        values = {}
+        for key, option in self.options.items():
+            value = given.get(key, option.default)
+            if value is REQUIRED:
+                unit = f', in {option.unit}' if option.unit else ''
+                raise ParameterError(
+                    f'{section}.{key} is missing from the scenario: give it{unit}'
+                )
+            unset = value is None and option.default is None
+            values[key] = None if unset else option.checked(f'{section}.{key}', value)
+        return values

@@ -4,13 +4,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
-from ddct_plant.base.checks import require_number
+from ddct_controllers.interface import Command, Controller, ControllerSpec, Measurement
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import REQUIRED, Option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 
-_GAINS = ('proportional_gain', 'integral_gain')
+OPTIONS = {
+    'proportional_gain': Option(REQUIRED, 'K_p', 'N m/rpm', at_least=0.0, at_most=1e3, live=True),
+    'integral_gain': Option(REQUIRED, 'K_i', 'N m/(rpm s)', at_least=0.0, at_most=1e3, live=True),
+}
 
 
 class PiController(Controller):
@@ -23,10 +26,9 @@ class PiController(Controller):
 
     def __init__(self, proportional_gain: float, integral_gain: float) -> None:
         """Take K_p in N m/rpm and K_i in N m/(rpm s), neither negative."""
-        self._gains = {
-            'proportional_gain': _gain('proportional_gain', proportional_gain),
-            'integral_gain': _gain('integral_gain', integral_gain),
-        }
+        self._gains: dict[str, float] = {}
+        self.set_gain('proportional_gain', proportional_gain)
+        self.set_gain('integral_gain', integral_gain)
         self._integral_rpm_s = 0.0
 
     def reset(self) -> None:
@@ -45,7 +47,7 @@ class PiController(Controller):
 
     def linear_model(self) -> StateSpace:
         """Return -(K_p + K_i T / (z - 1)); its state is the integral of the error."""
-        proportional, integral = (np.array([[-self._gains[name]]]) for name in _GAINS)
+        proportional, integral = (np.array([[-self._gains[name]]]) for name in OPTIONS)
         one = np.ones((1, 1))
         return StateSpace(one, PERIOD_S * one, integral, proportional, PERIOD_S)
 
@@ -55,26 +57,9 @@ class PiController(Controller):
 
     def set_gain(self, name: str, value: float) -> None:
         """Change K_p or K_i from the next update on; the integral of the error is kept."""
-        if name not in self._gains:
-            raise ParameterError(f'pi has no gain {name!r}: it has {", ".join(_GAINS)}')
-        self._gains[name] = _gain(name, value)
+        if name not in OPTIONS:
+            raise ParameterError(f'pi has no gain {name!r}: it has {", ".join(OPTIONS)}')
+        self._gains[name] = OPTIONS[name].checked(f'controllers.pi.{name}', value)
 
 
-def make_pi(context: ControllerContext) -> PiController:
-    """Build the PI with the scenario's gains; raise ParameterError when one is missing."""
-    unknown = set(context.gains) - set(_GAINS)
-    if unknown:
-        raise ParameterError(
-            f'controllers.pi.{min(unknown)} is not a gain of pi: it has {", ".join(_GAINS)}'
-        )
-    for name in _GAINS:
-        if name not in context.gains:
-            raise ParameterError(
-                f'controllers.pi.{name} is missing from the scenario: give both gains, '
-                'in N m/rpm and N m/(rpm s)'
-            )
-    return PiController(**context.gains)
-
-
-def _gain(name: str, value: float) -> float:
-    return require_number(f'controllers.pi.{name}', value, at_least=0.0, at_most=1e3)
+PI = ControllerSpec('pi', lambda context: PiController(**context.gains), OPTIONS)

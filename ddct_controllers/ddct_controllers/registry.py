@@ -1,49 +1,57 @@
 """Controllers by name: our own, those that other packages add, and those in a file."""
 
 import importlib.metadata
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
-from ddct_controllers.interface import Controller, ControllerContext
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import LinearController
 from ddct_controllers.mpc.variants import PREDICTIVE
-from ddct_controllers.pi import make_pi
+from ddct_controllers.pi import PI
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import Option, Options
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
 """Third parties add `name = module:factory` here; the factory takes a ControllerContext."""
 
-Factory = Callable[[ControllerContext], Controller]
-
 
 def controller_names() -> list[str]:
     """Return every name that `make_controller` takes besides files, our own first."""
-    own = list(_own_factories())
+    own = list(_own_controllers())
     return own + sorted(point.name for point in _entry_points() if point.name not in own)
 
 
-def make_controller(name: str, settings: RunSettings) -> Controller:
+def make_controller(
+    name: str, settings: RunSettings, changes: Mapping[str, Any] | None = None
+) -> Controller:
     """
     Build the controller called `name`, or described by the YAML file `name`, for a run.
 
-    Raise ParameterError for an unknown name or a gain that the controller does not take, and
-    DdctError when a file cannot be read or a third party's factory fails.
+    `changes` go before the scenario's section `controllers.<name>`. Raise ParameterError for an
+    unknown name or an option that the controller does not take, and DdctError when a file cannot
+    be read or a third party's factory fails.
     """
+    spec = controller_spec(name)
+    given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
+    controller = spec(ControllerContext(settings, given))
+    controller.registered_name = spec.name
+    return controller
+
+
+def controller_spec(name: str) -> ControllerSpec[Controller]:
+    """Return how the controller called `name` is made and its options, as `make_controller`."""
     if is_designed_file(name):
         designed = _load_designed(name)
-        name, factory = designed.name, _linear_factory(designed.name, designed.sampled())
-    else:
-        factory = _own_factories().get(name) or _third_party_factory(name)
-    gains = settings.scenario.controllers.get(name, {})
-    controller = factory(ControllerContext(settings, gains))
-    controller.registered_name = name
-    return controller
+        return _linear(designed.name, designed.sampled())
+    return _own_controllers().get(name) or _third_party(name)
 
 
 def controller_label(name: str) -> str:
@@ -61,29 +69,23 @@ def _load_designed(file: str) -> DesignedController:
     return designed
 
 
-def _own_factories() -> Mapping[str, Factory]:
-    printed = {name: _linear_factory(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
-    synthesised = {name: _synthesised_factory(name) for name in SYNTHESISED}
-    return {'pi': make_pi, **printed, **synthesised, **PREDICTIVE, **STATE_OF_ART}
+def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
+    printed = {name: _linear(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
+    synthesised = {
+        name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED
+    }
+    return {'pi': PI, **printed, **synthesised, **PREDICTIVE, **STATE_OF_ART}
 
 
-def _synthesised_factory(name: str) -> Factory:
-    return lambda context: _linear_factory(name, synthesised_controller(name))(context)
+def _synthesised(name: str, context: ControllerContext) -> Controller:
+    return LinearController(synthesised_controller(name))
 
 
-def _linear_factory(name: str, model: FactoredTransferFunction | StateSpace) -> Factory:
-    def make(context: ControllerContext) -> Controller:
-        if context.gains:
-            raise ParameterError(
-                f'controllers.{name}: {", ".join(context.gains)} given, but this controller is '
-                'a given transfer function and takes no gains'
-            )
-        return LinearController(model)
-
-    return make
+def _linear(name: str, model: FactoredTransferFunction | StateSpace) -> ControllerSpec[Controller]:
+    return ControllerSpec(name, lambda context: LinearController(model), {})
 
 
-def _third_party_factory(name: str) -> Factory:
+def _third_party(name: str) -> ControllerSpec[Controller]:
     for point in _entry_points():
         if point.name == name:
             require_name('controller name', name)  # it names the folder of the bag
@@ -94,7 +96,7 @@ def _third_party_factory(name: str) -> Factory:
     )
 
 
-def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
+def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
     try:
         factory = point.load()
     except Exception as error:
@@ -121,7 +123,20 @@ def _loaded(point: importlib.metadata.EntryPoint) -> Factory:
         _require_plain(point.name, controller)
         return controller
 
-    return make
+    return ControllerSpec(point.name, make, _declared(point.name, factory))
+
+
+def _declared(name: str, factory: object) -> Options | None:
+    """Return the options that a third party's class, or other factory, declares."""
+    options = getattr(factory, 'options', None)
+    if options is None or (
+        isinstance(options, Mapping) and all(type(each) is Option for each in options.values())
+    ):
+        return options
+    raise DdctError(
+        f'controller {name!r}: its options are {options!r}: give a mapping of names to '
+        'ddct_plant.base.options.Option, or None'
+    )
 
 
 def _require_plain(name: str, controller: Controller) -> None:

@@ -56,7 +56,10 @@ def test_a_bad_gain_is_refused(name, value):
     [
         ('{proportional_gain: 0.1}', 'controllers.pi.integral_gain is missing'),
         ('{proportional_gain: 0.1, integral_gain: -1.0}', 'integral_gain is -1'),
-        ('{proportional_gain: 0.1, integral_gain: 0.1, d: 1.0}', 'controllers.pi.d is not a gain'),
+        (
+            '{proportional_gain: 0.1, integral_gain: 0.1, d: 1.0}',
+            'controllers.pi.d is not a key',
+        ),
     ],
 )
 def test_a_scenario_with_bad_gains_is_refused(gains, complaint):

@@ -1,6 +1,7 @@
 """Controllers are found by name; what cannot be built says why."""
 
 import importlib.metadata
+from typing import ClassVar
 
 import pytest
 
@@ -8,6 +9,7 @@ from ddct_controllers import registry
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_names, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -24,6 +26,17 @@ class Third(Controller):
 
 def make_third(context):
     return Third()
+
+
+class Declaring(Third):
+    options: ClassVar[dict[str, Option]] = {
+        'gain': Option(0.1, 'torque per slip error', 'N m/rpm', at_least=0.0),
+        'steps': Option(3, 'that it waits', at_most=9),
+        'limit_n_m': Option(None, 'of the torque', 'N m'),
+    }
+
+    def __init__(self, context):
+        self.taken = context.gains
 
 
 def make_nothing(context):
@@ -110,3 +123,39 @@ def test_a_controller_knows_the_name_that_it_was_asked_for_by(add_entry_point):
     add_entry_point('third', f'{__name__}:make_third')
     assert make_controller('third', SETTINGS).registered_name == 'third'
     assert make_controller('ls8', SETTINGS).registered_name == 'ls8'
+
+
+def test_declared_options_reach_a_third_partys_controller_checked_and_whole(add_entry_point):
+    add_entry_point('mine', f'{__name__}:Declaring')
+    settings = RunSettings(load_scenario('thesis', ['controllers.mine.gain=2']))
+    expected = {'gain': 2.0, 'steps': 3, 'limit_n_m': None}
+    assert make_controller('mine', settings).taken == expected
+    changed = make_controller('mine', settings, {'steps': 4, 'limit_n_m': 5.0}).taken
+    assert changed == {**expected, 'steps': 4, 'limit_n_m': 5.0}
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        ('gian=2', 'controllers.mine.gian is not a key of mine: it has gain, steps, limit_n_m'),
+        ('gain=-1', 'controllers.mine.gain is -1 N m/rpm: it must be at least 0'),
+        ('steps=1.5', 'controllers.mine.steps is 1.5: give a whole number'),
+        ('limit_n_m=high', "controllers.mine.limit_n_m is 'high': give a number N m"),
+    ],
+)
+def test_a_bad_option_of_a_third_partys_controller_is_named(add_entry_point, change, complaint):
+    add_entry_point('mine', f'{__name__}:Declaring')
+    settings = RunSettings(load_scenario('thesis', [f'controllers.mine.{change}']))
+    with pytest.raises(ParameterError) as caught:
+        make_controller('mine', settings)
+    assert str(caught.value) == complaint
+
+
+@pytest.mark.parametrize('options', [{'gain': 0.1}, ['gain'], 3])
+def test_options_that_are_no_declaration_name_the_controller(
+    add_entry_point, monkeypatch, options
+):
+    monkeypatch.setattr(Third, 'options', options)
+    add_entry_point('third', f'{__name__}:Third')
+    with pytest.raises(DdctError, match="controller 'third': its options are"):
+        make_controller('third', SETTINGS)

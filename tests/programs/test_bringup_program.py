@@ -68,10 +68,14 @@ def test_timing_has_one_update_time_per_step(tmp_path: Path) -> None:
 
 def test_list_names_what_can_be_chosen(capfd: pytest.CaptureFixture[str]) -> None:
     assert bringup.main(['--list']) == 0
-    choices = dict(line.split(':', 1) for line in capfd.readouterr().out.splitlines())
+    listed, options = capfd.readouterr().out.split('\n\n', 1)
+    choices = dict(line.split(':', 1) for line in listed.splitlines())
     assert {'pi', 'ls8', 'hinf1'} <= set(choices['controllers'].replace(',', ' ').split())
     assert 'detailed' in choices['architectures']
     assert 'thesis' in choices['scenarios']
+    natural_frequency = next(line for line in options.splitlines() if 'natural_freq' in line)
+    assert natural_frequency.split()[1:6] == ['rad/s', '4', '1', 'to', '8']
+    assert natural_frequency.endswith(' lqi')
 
 
 @pytest.mark.parametrize('option', ['--help', '--version'])

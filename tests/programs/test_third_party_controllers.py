@@ -56,6 +56,23 @@ def test_bringup_lists_and_runs_the_example_controller(programs: Programs, tmp_p
     controllers = listing.output().splitlines()[0]
     assert controllers.startswith('controllers:')
     assert 'dead_zone' in controllers
+    width = next(line for line in listing.output().splitlines() if 'dead_zone_rpm' in line)
+    assert width.split() == [
+        'dead_zone_rpm',
+        'rpm',
+        '5',
+        'at',
+        'least',
+        '0',
+        'half',
+        'the',
+        'width',
+        'of',
+        'the',
+        'dead',
+        'zone',
+        'dead_zone',
+    ]
     assert run.wait() == 0, run.errors()
     assert (tmp_path / 'runs' / 'dead_zone' / 'dead_zone_0.mcap').is_file()
 

@@ -3,11 +3,12 @@
 import argparse
 from collections.abc import Sequence
 
-from ddct_controllers.registry import controller_names
-from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import options_of
+from ddct_controllers.registry import controller_names, controller_spec
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.options import add_option, add_scenario_options
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
@@ -59,7 +60,7 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
 
 
 def print_choices() -> None:
-    """Print the controllers, architectures, scenarios and other choices."""
+    """Print the controllers, architectures, scenarios and other choices, then the options."""
     rows: Sequence[tuple[str, Sequence[str]]] = (
         ('controllers', controller_names()),
         ('architectures', ARCHITECTURES),
@@ -69,3 +70,22 @@ def print_choices() -> None:
     )
     for title, names in rows:
         print(f'{title + ":":15}{printable(", ".join(names))}')
+    print()
+    print_table(controller_options_table())
+
+
+def controller_options_table() -> Table:
+    """Return what controllers declare, a row for all that declare the same."""
+    takers: dict[tuple[str, ...], list[str]] = {}
+    for name in controller_names():
+        try:
+            options = controller_spec(name).options or {}
+        except DdctError as error:  # a third party's that cannot be loaded
+            options = {'-': Option(None, str(error))}
+        for row in option_rows(options):
+            takers.setdefault(row[:-1], []).append(name)
+    return Table(
+        'options of controllers, set by --set controllers.NAME.KEY=VALUE',
+        ('KEY', *OPTION_HEADERS[1:-1], 'NAME'),
+        [(*row, ', '.join(names)) for row, names in takers.items()],
+    )

@@ -11,7 +11,7 @@ from ddct_bringup.reproduction.studies.scored_run import figures, metrics_of, sc
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.costs import TABLE_4_1
-from ddct_controllers.mpc.variants import make_mpc
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.printed import ACTUATOR
@@ -84,7 +84,7 @@ class AsDrawn(Controller):
 def told_all(name):
     """Return a controller of Table 4.1 that is told what `mpc_preview` is."""
     options = {'measured': 'speeds', 'load_known': True, 'delay_in_model': True, 'preview': True}
-    return make_mpc(name, ControllerContext(SETTINGS, options))
+    return PREDICTIVE[name](ControllerContext(SETTINGS, options))
 
 
 @pytest.mark.parametrize('name', TABLE_4_1)
@@ -136,7 +136,7 @@ def test_mpc_preview_is_mpc3_that_is_told_all():
     ],
 )
 def test_every_option_changes_the_run_and_none_breaks_it(changes):
-    run = run_headless(SETTINGS, make_mpc('mpc3', ControllerContext(SETTINGS, changes)))
+    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, changes)))
     difference = run.torque_request - thesis_run('mpc3', 'detailed', 1.0).torque_request
     assert np.abs(difference).max() > 0.05
     assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 30.0
@@ -152,7 +152,7 @@ def test_wear_leaves_an_error_that_the_thesis_calls_bad(wear_gain):
 
 def test_both_solvers_give_the_same_run():
     runs = [
-        run_headless(SETTINGS, make_mpc('mpc3', ControllerContext(SETTINGS, {'backend': b})))
+        run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, {'backend': b})))
         for b in ('daqp', 'osqp')
     ]
     difference = np.abs(runs[0].torque_request - runs[1].torque_request).max()
@@ -162,7 +162,7 @@ def test_both_solvers_give_the_same_run():
 
 def test_limits_of_the_request_hold_in_the_loop():
     options = {'highest_torque_n_m': 300.0, 'torque_rate_n_m_s': 1500.0}
-    run = run_headless(SETTINGS, make_mpc('mpc3', ControllerContext(SETTINGS, options)))
+    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, options)))
     requests = run.torque_request[60:]
     assert requests.max() == pytest.approx(300.0, abs=1e-6)
     assert np.abs(np.diff(requests)).max() <= 15.0 + 1e-6

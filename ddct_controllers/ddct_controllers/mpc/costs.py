@@ -1,43 +1,39 @@
 """What the predictive controllers minimise: Table 4.1, Section 4.3, and what we make of them."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any
 
-from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.model.transmission_model import (
     SLIP_ACCELERATION,
     SLIP_SPEED,
     TORSION_SPEED,
 )
-from ddct_controllers.mpc.options import number_option
+from ddct_controllers.mpc.options import weight
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_plant.base.options import OptionGroup, Options, with_values
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.parameters import DrivelineParameters
 
 
 @dataclass(frozen=True)
-class TableRow:
-    """One row of Table 4.1; its weights may be changed, T_p and T_c are `OPTIONS`."""
+class TableRow(OptionGroup):
+    """One row of Table 4.1; a scenario may change all of it."""
 
     prediction_steps: int
     """T_p in periods."""
     control_steps: int
     """T_c in periods."""
-    output_weight: float = 0.26
-    """Q, taken per rpm of the slip error."""
-    final_weight: float = 0.0
-    """P, per rpm of the slip error at the end of the horizon."""
-    move_weight: float = 0.39
-    """R, taken per N m of a move of the controller's torque."""
-    torque_weight: float = 0.0
-    """Per N m of the controller's torque itself, as R in the formula of Section 4.1."""
+    output_weight: float = weight(0.26, 'Q, per rpm of the slip error')
+    final_weight: float = weight(0.0, 'P, per rpm of the slip error at the end of the horizon')
+    move_weight: float = weight(0.39, 'R, per N m of a move of the torque u')
+    torque_weight: float = weight(0.0, 's, per N m of u: R on u, as in the formula of Section 4.1')
 
 
 TABLE_4_1 = {'mpc1': TableRow(12, 3), 'mpc2': TableRow(16, 6), 'mpc3': TableRow(22, 4)}
 BASIS = TABLE_4_1['mpc3']
 """Whose horizon and weights our own controllers take over."""
-WEIGHTS = ('output_weight', 'final_weight', 'move_weight', 'torque_weight')
-"""Fields of `TableRow` that `controllers.<name>` may give."""
 PREDICTION_STEPS = 7
 """T_p = 0.07 s of MPC4."""
 SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
@@ -48,11 +44,11 @@ DEMAND_WEIGHT = 0.14
 
 def thesis_settings(row: TableRow, *, preview: bool = False) -> MpcSettings:
     """Return what the row means; docs/mpc.md gives the other readings of Q and R."""
-    weight, final_weight = rpm_from_rad_s(row.output_weight), rpm_from_rad_s(row.final_weight)
+    per_rad_s, final_per_rad_s = map(rpm_from_rad_s, (row.output_weight, row.final_weight))
     return MpcSettings(
         prediction_steps=row.prediction_steps,
         control_steps=row.control_steps,
-        outputs=(OutputTerms(SLIP_SPEED, weight, final_weight),),
+        outputs=(OutputTerms(SLIP_SPEED, per_rad_s, final_per_rad_s),),
         inputs=(InputTerms(row.move_weight, row.torque_weight),),
         preview=preview,
     )
@@ -88,48 +84,51 @@ def default_torsion_weight(total_ratio: float) -> float:
 
 @dataclass(frozen=True)
 class SlipCost:
-    """A row of Table 4.1 with the weights that `keys` lets a scenario change."""
+    """A row of Table 4.1, whose weights a scenario may change if they are `changeable`."""
 
     row: TableRow = BASIS
     preview: bool = True
-    keys: tuple[str, ...] = ()
+    changeable: bool = False
 
-    def settings(self, name: str, context: ControllerContext) -> MpcSettings:
-        """Return what `controllers.<name>` makes of it; raise ParameterError for a bad weight."""
-        weights: dict[str, Any] = {
-            key: number_option(name, context.gains, key, getattr(self.row, key), at_least=0.0)
-            for key in self.keys
-        }
-        return thesis_settings(replace(self.row, **weights), preview=self.preview)
+    @property
+    def options(self) -> Options:
+        """What a scenario may change beside `program_options`."""
+        return self.row.options if self.changeable else {}
+
+    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
+        """Return what the values of its options make of it."""
+        return thesis_settings(with_values(self.row, values), preview=self.preview)
 
 
 @dataclass(frozen=True)
-class TorsionCost:
+class TorsionCost(OptionGroup):
     """`BASIS` with preview, and w_sr as a second output."""
 
-    keys: ClassVar = ('torsion_weight',)
+    torsion_weight: float | None = weight(
+        None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`, without it 0.26 tau'
+    )
 
-    def settings(self, name: str, context: ControllerContext) -> MpcSettings:
-        """Return what `controllers.<name>` makes of it; raise ParameterError for a bad weight."""
-        default = default_torsion_weight(context.settings.scenario.driveline.total_ratio)
-        weight = number_option(name, context.gains, *self.keys, default, at_least=0.0)
+    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
+        """Return what the values of its options make of it."""
+        per_rpm = with_values(self, values).torsion_weight
+        if per_rpm is None:
+            per_rpm = default_torsion_weight(driveline.total_ratio)
         settings = thesis_settings(BASIS, preview=True)
-        torsion = OutputTerms(TORSION_SPEED, rpm_from_rad_s(weight))
+        torsion = OutputTerms(TORSION_SPEED, rpm_from_rad_s(per_rpm))
         return replace(settings, outputs=(*settings.outputs, torsion))
 
 
 @dataclass(frozen=True)
-class TwoInputCost:
+class TwoInputCost(OptionGroup):
     """That of MPC4: slip, its rate, and the deviation of C_m from the demand (Section 4.3)."""
 
-    slip_acceleration_weight: float = SLIP_ACCELERATION_WEIGHT
-    demand_weight: float = DEMAND_WEIGHT
-    keys: ClassVar = ('slip_acceleration_weight', 'demand_weight')
+    slip_acceleration_weight: float = weight(
+        SLIP_ACCELERATION_WEIGHT,
+        'of dw_d/dt per rad/s², squared in the cost; that of w_d is 1 per rad/s',
+    )
+    demand_weight: float = weight(DEMAND_WEIGHT, 'r, per N m that C_m is away from the demand')
 
-    def settings(self, name: str, context: ControllerContext) -> MpcSettings:
-        """Return what `controllers.<name>` makes of it; raise ParameterError for a bad weight."""
-        given = {
-            key: number_option(name, context.gains, key, getattr(self, key), at_least=0.0)
-            for key in self.keys
-        }
-        return mpc4_settings(**given)
+    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
+        """Return what the values of its options make of it."""
+        chosen = with_values(self, values)
+        return mpc4_settings(chosen.slip_acceleration_weight, chosen.demand_weight)

@@ -2,10 +2,9 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
-from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.estimate.gains import (
     CLUTCH_DRIFT_N_M,
     LOAD_DRIFT_N_M,
@@ -17,18 +16,13 @@ from ddct_controllers.mpc.estimate.gains import (
 from ddct_controllers.mpc.estimate.observer import AtRest, Observer
 from ddct_controllers.mpc.estimate.wear_model import WearNoise
 from ddct_controllers.mpc.estimate.wear_observer import WearObserver
-from ddct_controllers.mpc.knowledge import Knowledge, with_knowledge
+from ddct_controllers.mpc.knowledge import Knowledge
 from ddct_controllers.mpc.model.augmented import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
-from ddct_controllers.mpc.options import MOST, number_option
+from ddct_controllers.mpc.options import MOST
+from ddct_plant.base.options import OptionGroup, Options, option, with_values
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
-
-WEAR_OPTIONS = ('gain_drift', 'clutch_drift_n_m', 'load_drift_n_m')
-"""Fields of `WearNoise` that `controllers.<name>` may give."""
-MOST_GAIN_DRIFT = 1.0
-"""Per period, as much as the bounds of the estimate are apart."""
-_DRIFTS = {'clutch_drift_n_m': CLUTCH_DRIFT_N_M, 'load_drift_n_m': LOAD_DRIFT_N_M}
 
 
 def run_start(settings: RunSettings) -> AtRest:
@@ -80,56 +74,74 @@ def stationary_filter(
 
 @dataclass(frozen=True)
 class Filter:
-    """`stationary_filter`, with what of its knowledge a scenario may change."""
+    """`stationary_filter`, whose knowledge a scenario may change if it is `changeable`."""
 
     knowledge: Knowledge
-    keys: tuple[str, ...] = ()
+    changeable: bool = False
 
-    def parts(self, name: str, context: ControllerContext) -> tuple[TransmissionModel, Observer]:
-        """Return model and observer; raise ParameterError for a bad option."""
-        knowledge = with_knowledge(name, self.knowledge, context.gains)
-        return stationary_filter(context.settings, knowledge)
-
-
-@dataclass(frozen=True)
-class DisturbanceObserver:
-    """The filter that estimates constant errors of C_f and C_load too."""
-
-    keys: ClassVar = tuple(_DRIFTS)
-
-    def parts(self, name: str, context: ControllerContext) -> tuple[TransmissionModel, Observer]:
-        """Return model and observer; raise ParameterError for a bad option."""
-        drifts = {
-            key: number_option(name, context.gains, key, default, above=0.0)
-            for key, default in _DRIFTS.items()
-        }
-        model = offset_free_model(context.settings.scenario.driveline)
-        return model, make_observer(context.settings, model, offset_free_noise(**drifts))
-
-
-@dataclass(frozen=True)
-class WearEstimate:
-    """The filter that estimates the wear of the clutch, with the model of a new one."""
-
-    noise: WearNoise
-    keys: ClassVar = WEAR_OPTIONS
+    @property
+    def options(self) -> Options:
+        """What a scenario may change."""
+        return self.knowledge.options if self.changeable else {}
 
     def parts(
-        self, name: str, context: ControllerContext
+        self, values: Mapping[str, Any], run: RunSettings
+    ) -> tuple[TransmissionModel, Observer]:
+        """Return model and observer for the values of its options."""
+        return stationary_filter(run, with_values(self.knowledge, values))
+
+
+@dataclass(frozen=True)
+class DisturbanceObserver(OptionGroup):
+    """The filter that estimates constant errors of C_f and C_load too."""
+
+    clutch_drift_n_m: float = option(
+        CLUTCH_DRIFT_N_M, 'drift of the error of C_f, per period', 'N m', above=0.0, at_most=MOST
+    )
+    load_drift_n_m: float = option(
+        LOAD_DRIFT_N_M, 'drift of the error of C_load, per period', 'N m', above=0.0, at_most=MOST
+    )
+
+    def parts(
+        self, values: Mapping[str, Any], run: RunSettings
+    ) -> tuple[TransmissionModel, Observer]:
+        """Return model and observer for the values of its options."""
+        chosen = with_values(self, values)
+        noise = offset_free_noise(chosen.clutch_drift_n_m, chosen.load_drift_n_m)
+        model = offset_free_model(run.scenario.driveline)
+        return model, make_observer(run, model, noise)
+
+
+@dataclass(frozen=True)
+class WearEstimate(OptionGroup):
+    """The filter that estimates the wear of the clutch, with the model of a new one."""
+
+    gain_drift: float = option(
+        WearNoise.gain_drift,
+        'drift of K_usura per period; the bounds of the estimate are 1 apart',
+        at_least=0.0,
+        at_most=1.0,
+    )
+    clutch_drift_n_m: float = option(
+        WearNoise.clutch_drift_n_m,
+        'drift of the error of C_f per period while a bound holds K_usura; 0 leaves a slip '
+        'error there',
+        'N m',
+        at_least=0.0,
+        at_most=MOST,
+    )
+    load_drift_n_m: float = option(
+        WearNoise.load_drift_n_m,
+        'drift of the error of C_load per period',
+        'N m',
+        at_least=0.0,
+        at_most=MOST,
+    )
+
+    def parts(
+        self, values: Mapping[str, Any], run: RunSettings
     ) -> tuple[TransmissionModel, WearObserver]:
-        """Return model and observer; raise ParameterError for a bad option."""
-        noise = wear_noise(name, context.gains, self.noise)
-        model = offset_free_model(context.settings.scenario.driveline)
-        return model, WearObserver(model, NoiseLevels(), noise, run_start(context.settings))
-
-
-def wear_noise(name: str, options: Mapping[str, Any], default: WearNoise) -> WearNoise:
-    """Return `default` changed by `controllers.<name>`; raise ParameterError for a bad level."""
-    most = {'gain_drift': MOST_GAIN_DRIFT}
-    given = {
-        key: number_option(
-            name, options, key, getattr(default, key), at_least=0.0, at_most=most.get(key, MOST)
-        )
-        for key in WEAR_OPTIONS
-    }
-    return replace(default, **given)
+        """Return model and observer for the values of its options."""
+        noise = WearNoise(**asdict(with_values(self, values)))
+        model = offset_free_model(run.scenario.driveline)
+        return model, WearObserver(model, NoiseLevels(), noise, run_start(run))

@@ -1,107 +1,91 @@
-"""Keys that a scenario may give a predictive controller, in `controllers.<name>`."""
+"""Options of every predictive controller, in the scenario's section `controllers.<name>`."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
-from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
+from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.backend import BACKENDS
-from ddct_controllers.option_keys import require_known_keys
-from ddct_plant.base.checks import require_choice, require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option, Options, option
 from ddct_plant.base.units import rad_s_from_rpm
 
-OPTIONS = {
-    'prediction_steps': 'periods over which outputs are weighted',
-    'control_steps': 'periods after which the inputs stay constant',
-    'preview': 'true uses the coming reference, false holds its present value',
-    'highest_torque_n_m': 'largest clutch torque request',
-    'torque_rate_n_m_s': 'largest rate of the clutch torque request; it goes before the level',
-    'lowest_slip_rpm': 'soft lower limit of the slip; 0 keeps the plates from passing each other',
-    'backend': 'QP solver: ' + ' or '.join(BACKENDS),
-    'iteration_limit': 'of the QP solver, per step',
-}
-"""Keys and what they mean."""
-MOST_STEPS = {'prediction_steps': 1000, 'control_steps': 1000, 'iteration_limit': 1_000_000}
+MOST_STEPS = 1000
 MOST = 1e6
 """Of every other number, in its unit: far beyond all sense, and all products of it are finite."""
+_AS_THEY_ARE = ('prediction_steps', 'control_steps', 'preview', 'backend', 'iteration_limit')
+_CLUTCH_LIMITS = {'highest_torque_n_m': 'highest', 'torque_rate_n_m_s': 'rate_n_m_s'}
 
 
-def with_options(
-    name: str, settings: MpcSettings, options: Mapping[str, Any], own: Sequence[str] = ()
-) -> MpcSettings:
-    """
-    Return `settings` changed by the scenario's section `controllers.<name>`.
+def program_options(settings: MpcSettings) -> Options:
+    """Return the options of horizon, limits and solver; their defaults are those of `settings`."""
+    return {
+        'prediction_steps': Option(
+            settings.prediction_steps,
+            'p, periods over which outputs are weighted',
+            at_least=1,
+            at_most=MOST_STEPS,
+        ),
+        'control_steps': Option(
+            settings.control_steps,
+            'm, periods after which the inputs stay constant',
+            at_least=1,
+            at_most=MOST_STEPS,
+        ),
+        'preview': Option(
+            settings.preview,
+            'true uses the coming reference, false holds its present value'
+            + (' or goes on along its tangent' if settings.along_tangent else ''),
+        ),
+        'highest_torque_n_m': Option(
+            None, 'largest clutch torque request', 'N m', above=0.0, at_most=MOST
+        ),
+        'torque_rate_n_m_s': Option(
+            None,
+            'largest rate of the clutch torque request; it goes before the level',
+            'N m/s',
+            above=0.0,
+            at_most=MOST,
+        ),
+        'lowest_slip_rpm': Option(
+            None,
+            'soft lower limit of the slip; 0 keeps the plates from passing each other',
+            'rpm',
+            at_least=-MOST,
+            at_most=MOST,
+        ),
+        'backend': Option(settings.backend, 'QP solver', choices=BACKENDS),
+        'iteration_limit': Option(
+            None,
+            'of the QP solver, per step; without it 1000 (daqp) or 20000 (osqp)',
+            kind=int,
+            at_least=1,
+            at_most=1_000_000,
+        ),
+    }
 
-    `own` are further keys of this controller; it reads them itself.
-    """
-    require_known_keys(name, options, (*own, *OPTIONS))
-    changes: dict[str, Any] = {}
-    for key, most in MOST_STEPS.items():
-        if key in options:
-            changes[key] = _whole_number(f'controllers.{name}.{key}', options[key], most)
-    changes['preview'] = switch_option(name, options, 'preview', settings.preview)
-    if 'backend' in options:
-        require_choice(f'controllers.{name}.backend', str(options['backend']), BACKENDS)
-        changes['backend'] = options['backend']
-    if 'lowest_slip_rpm' in options:
-        lowest = number_option(name, options, 'lowest_slip_rpm', 0.0, at_least=-MOST)
-        changes['outputs'] = _with_lowest_slip(settings.outputs, rad_s_from_rpm(lowest))
-    clutch = _clutch_limits(name, settings.inputs[0], options)
-    return dataclasses.replace(settings, inputs=(clutch, *settings.inputs[1:]), **changes)
+
+def weight(default: float | None, meaning: str) -> Any:
+    """Return the field of an option group for a weight, which is squared with what it weighs."""
+    return option(default, meaning, at_least=0.0, at_most=MOST)
 
 
-def number_option(
-    name: str,
-    options: Mapping[str, Any],
-    key: str,
-    default: float,
-    *,
-    above: float | None = None,
-    at_least: float | None = None,
-    at_most: float = MOST,
-) -> float:
-    """Return a key of `controllers.<name>`, checked like `require_number`, or its default."""
-    value = options.get(key, default)
-    return require_number(
-        f'controllers.{name}.{key}', value, above=above, at_least=at_least, at_most=at_most
-    )
-
-
-def switch_option(name: str, options: Mapping[str, Any], key: str, default: bool) -> bool:
-    """Return a key of `controllers.<name>`, true or false, or its default."""
-    value = options.get(key, default)
-    if not isinstance(value, bool):
-        raise ParameterError(f'controllers.{name}.{key} is {value!r}: give true or false')
-    return value
-
-
-def _clutch_limits(name: str, clutch: InputTerms, options: Mapping[str, Any]) -> InputTerms:
+def with_options(settings: MpcSettings, values: Mapping[str, Any]) -> MpcSettings:
+    """Return `settings` changed by the values of its `program_options`."""
     limits = {
-        'highest': ('highest_torque_n_m', 'N m'),
-        'rate_n_m_s': ('torque_rate_n_m_s', 'N m/s'),
+        field: values[key] for key, field in _CLUTCH_LIMITS.items() if values[key] is not None
     }
-    given = {
-        field: require_number(
-            f'controllers.{name}.{key}', options[key], unit=unit, above=0.0, at_most=MOST
+    clutch = dataclasses.replace(settings.inputs[0], **limits)
+    outputs = settings.outputs
+    if values['lowest_slip_rpm'] is not None:
+        lowest = rad_s_from_rpm(values['lowest_slip_rpm'])
+        outputs = tuple(
+            dataclasses.replace(terms, lowest=lowest) if terms.output == SLIP_SPEED else terms
+            for terms in outputs
         )
-        for field, (key, unit) in limits.items()
-        if key in options
-    }
-    return dataclasses.replace(clutch, **given)
-
-
-def _with_lowest_slip(
-    outputs: tuple[OutputTerms, ...], lowest_rad_s: float
-) -> tuple[OutputTerms, ...]:
-    return tuple(
-        dataclasses.replace(terms, lowest=lowest_rad_s) if terms.output == SLIP_SPEED else terms
-        for terms in outputs
+    return dataclasses.replace(
+        settings,
+        inputs=(clutch, *settings.inputs[1:]),
+        outputs=outputs,
+        **{key: values[key] for key in _AS_THEY_ARE},
     )
-
-
-def _whole_number(name: str, value: Any, most: int) -> int:
-    if require_number(name, value, at_least=1, at_most=most) % 1:
-        raise ParameterError(f'{name} is {value!r}: give a whole number')
-    return int(value)

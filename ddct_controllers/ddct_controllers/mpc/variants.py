@@ -1,61 +1,61 @@
 """The predictive controllers by their names in the registry: what each is composed of."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
-
-from ddct_controllers.interface import ControllerContext
+from ddct_controllers.interface import ControllerContext, ControllerSpec
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import TABLE_4_1, WEIGHTS, SlipCost, TorsionCost, TwoInputCost
-from ddct_controllers.mpc.estimate.wear_model import WearNoise
+from ddct_controllers.mpc.costs import TABLE_4_1, SlipCost, TorsionCost, TwoInputCost
 from ddct_controllers.mpc.estimators import DisturbanceObserver, Filter, WearEstimate
-from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL, KEYS
-from ddct_controllers.mpc.options import with_options
+from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL
+from ddct_controllers.mpc.options import program_options, with_options
+from ddct_plant.models.parameters import DrivelineParameters
+
+Predictive = ControllerSpec[MpcController]
 
 
-@dataclass(frozen=True)
-class Variant:
-    """A cost, and a model with its observer; the program follows from them."""
+def predictive(
+    name: str,
+    cost: SlipCost | TorsionCost | TwoInputCost,
+    estimate: Filter | DisturbanceObserver | WearEstimate,
+    *,
+    commands_engine: bool = False,
+) -> Predictive:
+    """Compose a controller: the program follows from the cost, and the model of the estimate."""
 
-    cost: SlipCost | TorsionCost | TwoInputCost
-    estimate: Filter | DisturbanceObserver | WearEstimate
-    commands_engine: bool = False
+    def make(context: ControllerContext) -> MpcController:
+        values, run = context.gains, context.settings
+        settings = with_options(cost.settings(values, run.scenario.driveline), values)
+        model, observer = estimate.parts(values, run)
+        authority = run.scenario.engine_authority if commands_engine else None
+        return MpcController(model, observer, settings, authority)
+
+    program = program_options(cost.settings({}, DrivelineParameters()))
+    return ControllerSpec(name, make, {**cost.options, **estimate.options, **program})
 
 
-VARIANTS = {
-    **{
-        name: Variant(SlipCost(row, preview=False, keys=WEIGHTS), Filter(AS_DRAWN, KEYS))
-        for name, row in TABLE_4_1.items()
-    },
-    'mpc4': Variant(TwoInputCost(), Filter(FULL), commands_engine=True),
-    'mpc_preview': Variant(SlipCost(keys=WEIGHTS), Filter(FULL, KEYS)),
-    'mpc_offset_free': Variant(SlipCost(), DisturbanceObserver()),
-    'mpc_torsion': Variant(TorsionCost(), DisturbanceObserver()),
-    'mpc_wear': Variant(SlipCost(), WearEstimate(WearNoise())),
-    # An error of the slip then decays with a time constant of 0.11 s, and C_m returns to the
-    # demand with one of 0.8 s, far slower. With a gain beyond its bounds an estimated error of
-    # C_f would make this loop oscillate.
-    'mpc4_wear': Variant(
-        TwoInputCost(slip_acceleration_weight=0.05, demand_weight=0.05),
-        WearEstimate(WearNoise(clutch_drift_n_m=0.0)),
-        commands_engine=True,
-    ),
+PREDICTIVE: dict[str, Predictive] = {
+    spec.name: spec
+    for spec in (
+        *(
+            predictive(
+                name,
+                SlipCost(row, preview=False, changeable=True),
+                Filter(AS_DRAWN, changeable=True),
+            )
+            for name, row in TABLE_4_1.items()
+        ),
+        predictive('mpc4', TwoInputCost(), Filter(FULL), commands_engine=True),
+        predictive('mpc_preview', SlipCost(changeable=True), Filter(FULL, changeable=True)),
+        predictive('mpc_offset_free', SlipCost(), DisturbanceObserver()),
+        predictive('mpc_torsion', TorsionCost(), DisturbanceObserver()),
+        predictive('mpc_wear', SlipCost(), WearEstimate()),
+        # An error of the slip then decays with a time constant of 0.11 s, and C_m returns to the
+        # demand with one of 0.8 s, far slower. With a gain beyond its bounds an estimated error
+        # of C_f would make this loop oscillate.
+        predictive(
+            'mpc4_wear',
+            TwoInputCost(slip_acceleration_weight=0.05, demand_weight=0.05),
+            WearEstimate(clutch_drift_n_m=0.0),
+            commands_engine=True,
+        ),
+    )
 }
 """The thesis's first."""
-
-
-def make_mpc(name: str, context: ControllerContext) -> MpcController:
-    """Build a variant; raise ParameterError for an option that it does not take."""
-    variant = VARIANTS[name]
-    cost, estimate = variant.cost, variant.estimate
-    settings = cost.settings(name, context)
-    settings = with_options(name, settings, context.gains, (*cost.keys, *estimate.keys))
-    model, observer = estimate.parts(name, context)
-    authority = context.settings.scenario.engine_authority if variant.commands_engine else None
-    return MpcController(model, observer, settings, authority)
-
-
-PREDICTIVE: dict[str, Callable[[ControllerContext], MpcController]] = {
-    name: partial(make_mpc, name) for name in VARIANTS
-}
-"""Factories."""

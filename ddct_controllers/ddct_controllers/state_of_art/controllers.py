@@ -1,14 +1,10 @@
 """The controllers of the state of the art by their names in the registry."""
 
-from collections.abc import Callable
-
-from ddct_controllers.interface import Controller, ControllerContext
+from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.state_of_art import decoupled_pid, lqi, pedal_mpc, torque_estimator
 
-STATE_OF_ART: dict[str, Callable[[ControllerContext], Controller]] = {
-    torque_estimator.NAME: torque_estimator.TorqueEstimatorControl,
-    decoupled_pid.NAME: decoupled_pid.DecoupledPid,
-    pedal_mpc.NAME: pedal_mpc.PedalMpc,
-    lqi.NAME: lqi.make_lqi,
+STATE_OF_ART: dict[str, ControllerSpec[Controller]] = {
+    spec.name: spec
+    for spec in (torque_estimator.SPEC, decoupled_pid.SPEC, pedal_mpc.SPEC, lqi.SPEC)
 }
-"""Factories: [2], [3] and [4] of the thesis, then LQI."""
+"""[2], [3] and [4] of the thesis, then LQI."""

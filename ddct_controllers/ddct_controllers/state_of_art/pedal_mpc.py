@@ -2,22 +2,34 @@
 
 import numpy as np
 
-from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.interface import (
+    Command,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+    Measurement,
+)
 from ddct_controllers.measured import measured_speeds
 from ddct_controllers.mpc.estimate.gains import offset_free_noise
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.augmented import offset_free_model
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
-from ddct_controllers.state_of_art.number_options import NumberOption, number_options
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'pedal_mpc'
 OPTIONS = {
-    'slowest_engagement_s': NumberOption(1.2, 0.3, 5.0),
-    'fastest_engagement_s': NumberOption(0.4, 0.3, 5.0),
+    'slowest_engagement_s': Option(1.2, 't_f with the pedal at 0', 's', at_least=0.3, at_most=5.0),
+    'fastest_engagement_s': Option(
+        0.4,
+        't_f with the pedal at 1, at most slowest_engagement_s',
+        's',
+        at_least=0.3,
+        at_most=5.0,
+    ),
 }
-"""t_f with the pedal at 0 and at 1; 0.3 s is seven times what delay and actuator take."""
+"""0.3 s is seven times what delay and actuator take."""
 SHORTEST_SHARE = 3
 """The horizon shrinks to this part of the engagement time and then stays."""
 
@@ -107,11 +119,13 @@ def engagement_time_s(context: ControllerContext) -> float:
     The thesis says that t_r is a function of the engagement time and this of the pedal, and gives
     neither: this line, and t_r above, are assumptions.
     """
-    options = number_options(NAME, context, OPTIONS)
-    slowest, fastest = options['slowest_engagement_s'], options['fastest_engagement_s']
+    slowest, fastest = SPEC.values(context.gains).values()
     if fastest > slowest:
         raise ParameterError(
             f'controllers.{NAME}.fastest_engagement_s is {fastest:g} s: it must be at most '
             f'slowest_engagement_s, {slowest:g} s'
         )
     return slowest + context.settings.scenario.pedal_position * (fastest - slowest)
+
+
+SPEC = ControllerSpec(NAME, PedalMpc, OPTIONS)

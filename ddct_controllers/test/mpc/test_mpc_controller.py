@@ -14,7 +14,7 @@ from ddct_controllers.mpc.estimate.observer import AtRest, Observer
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.program.settings import InputTerms
-from ddct_controllers.mpc.variants import make_mpc
+from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -301,7 +301,7 @@ def test_a_level_that_gives_way_leaves_room_for_rounding():
 
 def test_soft_limits_are_divided_as_the_outputs_are():
     """By K_usura; the hard ones are those of the request, which is not divided."""
-    mpc = make_mpc('mpc3', ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
+    mpc = PREDICTIVE['mpc3'](ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
     lower, upper = mpc.clutch.bounds(250.0, divisor=0.8)
     soft = mpc.program.structure.soft_rows
     assert lower[soft] == pytest.approx([rad_s_from_rpm(750.0)] * 22)
@@ -371,13 +371,13 @@ def test_a_reset_controller_is_a_new_one(backend):
         ),
         ({'output_weight': 0.0, 'move_weight': 0.0}, 'costs nothing'),
         ({'lowest_slip_rpm': 'none'}, r'controllers\.mpc3\.lowest_slip_rpm'),
-        ({'lowest_slip_rpm': 1e7}, r'lowest_slip_rpm is 1e\+07: it must be at most'),
+        ({'lowest_slip_rpm': 1e7}, r'lowest_slip_rpm is 1e\+07 rpm: it must be at most'),
         ({5: 7, 'horizon': 3}, r'controllers\.mpc3\.5 is not a key'),
     ],
 )
 def test_bad_options_are_named(options, complaint):
     with pytest.raises(ParameterError, match=complaint):
-        make_mpc('mpc3', ControllerContext(RUN, options))
+        PREDICTIVE['mpc3'](ControllerContext(RUN, options))
 
 
 def test_options_reach_the_program():
@@ -387,7 +387,7 @@ def test_options_reach_the_program():
         'torque_rate_n_m_s': 100.0,
         'preview': True,
     }
-    mpc = make_mpc('mpc1', ControllerContext(RUN, options))
+    mpc = PREDICTIVE['mpc1'](ControllerContext(RUN, options))
     assert mpc.preview_steps == 9
     requests = [250.0] + [250.0 + a.clutch_torque for a in answers(mpc, reference=[0.0] * 10)]
     assert max(np.abs(np.diff(requests))) == pytest.approx(1.0)
@@ -396,7 +396,7 @@ def test_options_reach_the_program():
 def test_the_lowest_slip_is_soft_and_holds_where_it_can():
     """Slip of 60 rad/s: rows at all 22 periods, broken by the first and so far as must be."""
     free, limited = (
-        make_mpc('mpc3', ControllerContext(RUN, options))
+        PREDICTIVE['mpc3'](ControllerContext(RUN, options))
         for options in ({}, {'lowest_slip_rpm': 600.0})
     )
     assert limited.program.structure.soft_rows.tolist() == list(range(4, 26))

@@ -147,7 +147,7 @@ def test_options_change_what_they_say():
 @pytest.mark.parametrize(
     ('options', 'complaint'),
     [
-        ({'clutch_drift_n_m': 0.0}, 'clutch_drift_n_m is 0: it must be above 0'),
+        ({'clutch_drift_n_m': 0.0}, 'clutch_drift_n_m is 0 N m: it must be above 0'),
         ({'load_drift_n_m': float('nan')}, 'load_drift_n_m is nan'),
         ({'clutch_drift_n_m': 'fast'}, 'give a number'),
         ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m is .* at most'),

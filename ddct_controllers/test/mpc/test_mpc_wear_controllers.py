@@ -132,7 +132,7 @@ def test_nan_is_refused():
     [
         ({'gain_drift': -0.1}, 'gain_drift is -0.1'),
         ({'gain_drift': 1e160}, r'gain_drift is 1e\+160: it must be at most 1'),
-        ({'load_drift_n_m': None}, 'load_drift_n_m is None'),
+        ({'load_drift_n_m': None}, 'load_drift_n_m is empty: give a value'),
         ({'load_drift_n_m': 1e160}, 'load_drift_n_m is .* at most'),
         ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m is .* at most'),
         ({'torsion_weight': 1.0}, 'torsion_weight is not a key'),

@@ -9,7 +9,7 @@ import dataclasses
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from ddct_plant.base.checks import require_choice, require_number, require_rising
 from ddct_plant.base.errors import ParameterError
@@ -120,7 +120,8 @@ class Option:
         """Meaning, unit and range in one line."""
         unit = f' [{self.unit}]' if self.unit else ''
         limits = f' ({self.range_text})' if self.range_text else ''
-        return f'{self.meaning}{unit}{limits}'
+        live = '; may be changed while it runs' if self.live else ''
+        return f'{self.meaning}{unit}{limits}{live}'
 
 
 def option(default: Any, meaning: str, unit: str = '', **description: Any) -> Any:
@@ -139,6 +140,7 @@ def options_of(group: type) -> Options:
     return {f.name: f.metadata['option'] for f in fields if 'option' in f.metadata}
 
 
+@dataclass(frozen=True)
 class OptionGroup:
     """Base of frozen dataclasses whose fields are options: they are checked when it is built."""
 
@@ -152,7 +154,26 @@ class OptionGroup:
     def __post_init__(self) -> None:
         """Check every option; raise ParameterError that names a bad one."""
         for name, described in options_of(type(self)).items():
-            described.checked(f'{self.prefix}{name}', getattr(self, name))
+            value = getattr(self, name)
+            if value is not None or described.default is not None:
+                described.checked(f'{self.prefix}{name}', value)
+
+    @property
+    def options(self) -> Options:
+        """Its options, with its values as their defaults."""
+        return {
+            name: dataclasses.replace(described, default=getattr(self, name))
+            for name, described in options_of(type(self)).items()
+        }
+
+
+Group = TypeVar('Group', bound=OptionGroup)
+
+
+def with_values(group: Group, values: Mapping[str, Any]) -> Group:
+    """Return the group with those of `values` that are called like options of it."""
+    given = {name: values[name] for name in options_of(type(group)) if name in values}
+    return dataclasses.replace(group, **given)
 
 
 def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:

@@ -60,7 +60,8 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
     """
     descriptor = ParameterDescriptor(description=described.description, read_only=read_only)
     lowest = described.above if described.at_least is None else described.at_least
-    if lowest is not None and described.at_most is not None:
+    # A change while it runs is checked by the node itself, whose refusal says more than the range.
+    if read_only and lowest is not None and described.at_most is not None:
         ends = {
             'from_value': described.kind(lowest),
             'to_value': described.kind(described.at_most),

@@ -112,7 +112,7 @@ def _build(group: type[Group], content: Any) -> Group:
     prefix = group.prefix
     if not isinstance(content, Mapping):
         raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
-    fields = {field.name: field for field in dataclasses.fields(group)}  # type: ignore[arg-type]
+    fields = {field.name: field for field in dataclasses.fields(group)}
     for key in content:
         if key not in fields:
             raise ParameterError(f'unknown key {prefix}{key}: {close_name(key, fields, prefix)}')
