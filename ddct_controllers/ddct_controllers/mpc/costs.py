@@ -105,7 +105,7 @@ class TorsionCost(OptionGroup):
     """`BASIS` with preview, and w_sr as a second output."""
 
     torsion_weight: float | None = weight(
-        None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`, without it 0.26 tau'
+        None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`', '0.26 tau'
     )
 
     def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:

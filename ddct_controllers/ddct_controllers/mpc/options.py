@@ -57,7 +57,8 @@ def program_options(settings: MpcSettings) -> Options:
         'backend': Option(settings.backend, 'QP solver', choices=BACKENDS),
         'iteration_limit': Option(
             None,
-            'of the QP solver, per step; without it 1000 (daqp) or 20000 (osqp)',
+            'of the QP solver, per step',
+            otherwise='1000 (daqp), 20000 (osqp)',
             kind=int,
             at_least=1,
             at_most=1_000_000,
@@ -65,9 +66,9 @@ def program_options(settings: MpcSettings) -> Options:
     }
 
 
-def weight(default: float | None, meaning: str) -> Any:
+def weight(default: float | None, meaning: str, otherwise: str = '') -> Any:
     """Return the field of an option group for a weight, which is squared with what it weighs."""
-    return option(default, meaning, at_least=0.0, at_most=MOST)
+    return option(default, meaning, otherwise=otherwise, at_least=0.0, at_most=MOST)
 
 
 def with_options(settings: MpcSettings, values: Mapping[str, Any]) -> MpcSettings:

@@ -30,11 +30,13 @@ class Option:
     """One value that may be set: its default, meaning, unit, range and where it comes from."""
 
     default: Any
-    """REQUIRED, or None where the meaning says what holds when nothing is given."""
+    """REQUIRED, or None for nothing."""
     meaning: str
     unit: str = ''
     source: str = ''
     """Of the default: a section of the thesis, a program that computes it, or ASSUMED."""
+    otherwise: str = ''
+    """What holds where nothing is given and there is no default to show."""
     kind: type = float
     """float, int, bool or str; without REQUIRED or None it is that of the default."""
     above: float | None = None
@@ -97,6 +99,8 @@ class Option:
     @property
     def default_text(self) -> str:
         """The default as a page or a terminal shows it."""
+        if self.otherwise:
+            return self.otherwise
         if self.default is REQUIRED:
             return 'required'
         if self.default is None or self.default == ():

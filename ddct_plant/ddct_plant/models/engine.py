@@ -52,6 +52,7 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
         1000.0,
         "how far a controller that commands the engine may move it from the driver's demand",
         'N m',
+        source='Section 4.3',
         at_least=0.0,
         at_most=MOST_AUTHORITY,
     )
@@ -59,6 +60,7 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
         MOST_AUTHORITY,
         'largest rate of that deviation',
         'N m/s',
+        source='Section 4.3',
         at_least=0.0,
         at_most=MOST_AUTHORITY,
     )
@@ -66,6 +68,7 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
         0.0,
         'time constant of the first-order lag with which it comes about; 0 is none',
         's',
+        source='Section 4.3',
         at_least=0.0,
         at_most=MOST_AUTHORITY,
     )

@@ -64,4 +64,4 @@ class VehicleParameters(OptionGroup, prefix='vehicle.'):
         source='from J_v and m_v',
         above=0.0,
     )
-    gravity_m_s2: float = option(9.81, 'g', 'm/s²', source=ASSUMED, above=0.0)
+    gravity_m_s2: float = option(9.81, 'g', 'm/s²', source='standard gravity', above=0.0)

@@ -47,7 +47,7 @@ class ReferenceParameters(OptionGroup, prefix='reference.'):
     shape: str = option(
         'ramp',
         'how the reference runs to zero; the architecture `feedforward_tanh` makes the ramp a '
-        'tanh ([feedforward.md](feedforward.md))',
+        'tanh',
         source='Section 1.4.1',
         choices=REFERENCE_SHAPES,
     )
@@ -69,11 +69,12 @@ class Scenario(OptionGroup):
 
     name: str = option(
         REQUIRED,
-        "what scores call it, by default the file's name: up to 64 letters A to Z, digits, dots, "
-        'dashes and underscores, no dot or dash first',
+        'what scores call it: up to 64 letters A to Z, digits, dots, dashes and underscores, no '
+        'dot or dash first',
+        otherwise="the file's name",
         kind=str,
     )
-    description: str = option(REQUIRED, 'free text, by default empty', kind=str)
+    description: str = option(REQUIRED, 'free text', otherwise='empty', kind=str)
     duration_s: float = option(
         REQUIRED,
         'length of the run, a multiple of 10 ms',

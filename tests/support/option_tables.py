@@ -1,0 +1,92 @@
+"""
+The tables of options in the documentation, made from what the code declares.
+
+`python tests/support/option_tables.py` writes them into the pages.
+"""
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+
+from ddct_controllers.mpc.costs import BASIS, thesis_settings
+from ddct_controllers.mpc.options import program_options
+from ddct_controllers.registry import controller_spec
+from ddct_plant.base.options import OPTION_HEADERS, OptionGroup, Options, option_rows, options_of
+from ddct_plant.program.page_tables import fill_tables, marked_tables
+from ddct_plant.program.table import Table
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+DOCS = Path(__file__).resolve().parents[2] / 'docs'
+MARK = 'options'
+
+
+def filled(page: str) -> str:
+    """Return a page with every table of options that it marks."""
+    return fill_tables(page, MARK, {name: TABLES[name] for name in marked_tables(page, MARK)})
+
+
+def _scenario() -> Table:
+    rows = []
+    for field in dataclasses.fields(Scenario):
+        if isinstance(field.type, type) and issubclass(field.type, OptionGroup):
+            rows += option_rows(options_of(field.type), field.type.prefix)
+        elif 'option' in field.metadata:
+            rows += option_rows({field.name: field.metadata['option']})
+    return Table('', OPTION_HEADERS, [_code(row) for row in rows])
+
+
+def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
+    """Return the options of controllers; a default that they do not share is given for each."""
+    declared: dict[str, Options] = {name: controller_spec(name).options or {} for name in names}
+    rows = []
+    for key in dict.fromkeys(key for options in declared.values() for key in options):
+        if key in without:
+            continue
+        takers = {name: options for name, options in declared.items() if key in options}
+        (row,) = option_rows({key: next(iter(takers.values()))[key]})
+        having: dict[str, list[str]] = {}
+        for name, options in takers.items():
+            having.setdefault(options[key].default_text, []).append(f'`{name}`')
+        if len(having) > 1 or len(takers) < len(names):
+            texts = (f'{text} ({", ".join(those)})' for text, those in having.items())
+            row = (*row[:2], ', '.join(texts), *row[3:])
+        rows.append(_code(row)[:-1])
+    return Table('', OPTION_HEADERS[:-1], rows)
+
+
+def _code(row: Sequence[str]) -> tuple[str, ...]:
+    return (f'`{row[0]}`', *row[1:])
+
+
+_OF_EVERY_MPC = tuple(program_options(thesis_settings(BASIS)))
+TABLES = {
+    'scenario': _scenario(),
+    'run': Table(
+        '', OPTION_HEADERS[:-1], [_code(row)[:-1] for row in option_rows(options_of(RunSettings))]
+    ),
+    'pi': _controllers('pi'),
+    'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),
+    'mpc4': _controllers('mpc4', 'mpc4_wear', without=_OF_EVERY_MPC[3:]),
+    'mpc_offset_free': _controllers('mpc_offset_free', without=_OF_EVERY_MPC),
+    'mpc_torsion': _controllers(
+        'mpc_torsion', without=tuple(controller_spec('mpc_offset_free').options or ())
+    ),
+    'mpc_wear': _controllers('mpc_wear', without=_OF_EVERY_MPC),
+    'decoupled_pid': _controllers('decoupled_pid'),
+    'torque_estimator': _controllers('torque_estimator'),
+    'pedal_mpc': _controllers('pedal_mpc'),
+    'lqi': _controllers('lqi'),
+}
+"""By the names that the pages mark."""
+
+
+def main() -> None:
+    """Write the tables into the pages."""
+    for path in DOCS.glob('*.md'):
+        page = path.read_text(encoding='utf-8')
+        path.write_text(filled(page), encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()
