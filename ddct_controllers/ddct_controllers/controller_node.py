@@ -8,7 +8,6 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 
 from ddct_controllers.architecture import make_architecture
-from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import controller_names, controller_spec, make_controller
 from ddct_plant.base.errors import ParameterError
@@ -143,7 +142,7 @@ class ControllerNode(FollowerNode):
                 controller.set_gain(key, self._declare_gain(key, about))
         self.add_on_set_parameters_callback(self._set_gains)
         changed = {f'gains.{key}': repr(given[key]) for key in given if given[key] != section[key]}
-        return controller, {**controller_info(spec.name, controller), **changed}
+        return controller, {**controller.info(spec.name), **changed}
 
     def _declare_gain(self, key: str, option: Option) -> Any:
         return declare(self, f'gains.{key}', option, read_only=not option.live)

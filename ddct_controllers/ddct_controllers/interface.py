@@ -129,6 +129,12 @@ class Controller(ABC):
         """Return the gains that may be changed between two updates, by name."""
         return {}
 
+    def info(self, name: str) -> dict[str, str]:
+        """Say for `run_info` what it is called, if it commands the engine, and its exact gains."""
+        gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
+        two_input = str(self.commands_engine).lower()
+        return {'controller': name, 'two_input': two_input, **gains}
+
     def set_gain(self, name: str, value: float) -> None:
         """Change one gain; raise ParameterError for a name or value that it does not take."""
         raise ParameterError(f'this controller has no gain {name!r} (value {value!r})')

@@ -2,7 +2,6 @@
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.run.source_commit import source_commit
-from ddct_controllers.controller_info import controller_info
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.fail_safe.guarded_engine import engine_info
@@ -49,7 +48,7 @@ def run_info_of(settings: RunSettings, name: str, controller: Controller, steps:
         'driveline': driveline_info(steps),
         'actuator': FailSafeSettings().info(),
         'reference': {'preview_steps': str(controller.preview_steps)},
-        'controller': controller_info(name, controller),
+        'controller': controller.info(name),
         'recorder': {},
     }
     return {node: run_info_pairs(settings, pairs) for node, pairs in extra.items()}
