@@ -51,6 +51,11 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
         ['unknown parameter controler', 'did you mean controller?'],
     ),
     'unknown gain': (CONTROLLER, ['-p', 'gains.derivative:=1.0'], ['gains.derivative', 'known: ']),
+    'bad option': (
+        CONTROLLER,
+        ['-p', 'controller:=mpc3', '-p', 'gains.highest_torque_n_m:=high'],
+        ["gains.highest_torque_n_m is 'high'", 'give a number N m'],
+    ),
     'behind the ROS arguments': (ENGINE, ['--', 'late'], ['unknown argument late']),
     'malformed': (ENGINE, ['-p', 'wear_gain'], ['wear_gain']),
     'missing parameter file': (ENGINE, ['--params-file', 'no/such.yaml'], ['no/such.yaml']),

@@ -6,7 +6,6 @@ from typing import Any
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, options_of
@@ -16,12 +15,6 @@ from ddct_plant.scenario.settings import RunSettings
 
 _SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
 _FAIL_SAFE = options_of(FailSafeSettings)
-_TYPES = {
-    float: Parameter.Type.DOUBLE,
-    int: Parameter.Type.INTEGER,
-    bool: Parameter.Type.BOOL,
-    str: Parameter.Type.STRING,
-}
 
 
 def declare_settings(node: Node) -> RunSettings:
@@ -70,9 +63,9 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
             descriptor.floating_point_range = [FloatingPointRange(**ends)]
         else:
             descriptor.integer_range = [IntegerRange(**ends, step=1)]
-    start: Any = list(described.default) if described.many else described.default
-    if start is None:
-        start = _TYPES[described.kind]
+    # rclpy knows a parameter without a value only as one of any type; `checked` sees to its kind.
+    descriptor.dynamic_typing = described.default is None
+    start = list(described.default) if described.many else described.default
     try:
         value = node.declare_parameter(name, start, descriptor).value
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
