@@ -7,15 +7,13 @@ import json
 from collections.abc import Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import OptionGroup, close_name
+from ddct_plant.base.options import Group, OptionGroup, close_name
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 from ddct_plant.scenario.scenario import Scenario
-
-Group = TypeVar('Group', bound=OptionGroup)
 
 
 def scenario_names() -> list[str]:

@@ -14,6 +14,7 @@ from ddct_plant.base.options import (
     option,
     option_rows,
     options_of,
+    with_values,
 )
 
 
@@ -62,6 +63,33 @@ def test_values_within_their_ranges_are_kept_as_they_are_given():
 def test_a_field_without_default_must_be_given():
     with pytest.raises(TypeError, match='make'):
         Tyre()
+
+
+@dataclass(frozen=True)
+class Load(OptionGroup):
+    mass_kg: float | None = option(None, 'of what is carried', 'kg', at_least=0.0)
+    wheels: int = 4
+
+
+def test_an_option_without_default_may_be_left_out_and_is_checked_when_given():
+    assert Load().mass_kg is None
+    with pytest.raises(ParameterError, match='mass_kg is -1 kg: it must be at least 0'):
+        Load(-1.0)
+
+
+def test_a_group_describes_its_own_values_as_the_defaults():
+    assert options_of(Tyre)['pressure_bar'].default == 2.2
+    assert Tyre('here', 3.0).options['pressure_bar'].default == 3.0
+    assert Tyre('here', 3.0).options['make'].default == 'here'
+    assert list(Load().options) == ['mass_kg']
+
+
+def test_a_group_takes_the_values_of_its_options_and_no_others():
+    taken = with_values(Load(2.0, wheels=2), {'mass_kg': 5.0, 'wheels': 9, 'make': 'here'})
+    assert taken == Load(5.0, wheels=2)
+    assert with_values(taken, {}) == taken
+    with pytest.raises(ParameterError, match='mass_kg is -1 kg'):
+        with_values(taken, {'mass_kg': -1.0})
 
 
 @pytest.mark.parametrize(
