@@ -1,0 +1,137 @@
+"""An engine with limits: torque over speed, idle control, rev limiter, stall and over-speed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_plant.base.checks import require_curve, require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+
+STALLED, OVER_REVVED = 'stalled', 'over_revved'
+"""Why an engine ends its run."""
+_RISING_SPEEDS = ('stall_rad_s', 'idle_rad_s', 'resume_rad_s', 'cut_rad_s', 'over_rev_rad_s')
+
+
+@dataclass(frozen=True)
+class EngineLimits:
+    """
+    Section `engine_limits` of a scenario: a 1.4-litre turbocharged petrol engine by default.
+
+    250 N m at 2500 rpm and 170 hp (125 kW, so 217 N m) at 5500 rpm are those of the Fiat 1.4
+    MultiAir in the Alfa Romeo MiTo with the C635 gearbox (types-cars.com, 2010; 250 N m also
+    easier.com, 2010). The rest of the curve is assumed.
+    """
+
+    speed_rad_s: tuple[float, ...] = (0.0, 104.72, 157.08, 209.44, 261.8, 575.96, 680.68, 837.76)
+    """Engine speeds in rad/s of both curves, rising: 0, 1000, 1500, 2000, 2500, ..., 8000 rpm."""
+    full_load_n_m: tuple[float, ...] = (0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 0.0)
+    """Highest torque at the crankshaft; 250 and 217 N m as above, the others assumed."""
+    friction_n_m: tuple[float, ...] = (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5)
+    """
+    Torque that the engine takes with the fuel cut.
+
+    (0.97 + 0.15 n + 0.05 n^2) bar with n in 1000 rpm, the mean effective pressure of friction and
+    gas exchange after Heywood (Internal Combustion Engine Fundamentals, 1988, eq. 13.6), times
+    1.368 l / 4 pi.
+    """
+    idle_rad_s: float = 94.25
+    """Speed that idle control keeps, 900 rpm; assumed."""
+    idle_gain_n_m_s: float = 3.0
+    """Its proportional gain in N m s/rad; assumed."""
+    idle_integral_n_m: float = 6.0
+    """Its integral gain in N m/rad; assumed."""
+    idle_most_n_m: float = 60.0
+    """Highest torque that idle control asks for; assumed."""
+    stall_rad_s: float = 52.36
+    """Speed below which the engine stops, 500 rpm; assumed."""
+    cut_rad_s: float = 680.68
+    """Speed from which the rev limiter cuts the fuel, 6500 rpm; assumed."""
+    resume_rad_s: float = 670.21
+    """Speed below which fuel comes back, 6400 rpm; assumed."""
+    over_rev_rad_s: float = 785.4
+    """Speed above which the run ends, 7500 rpm; assumed."""
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        for curve in ('full_load_n_m', 'friction_n_m'):
+            require_curve(
+                'engine_limits.speed_rad_s',
+                self.speed_rad_s,
+                f'engine_limits.{curve}',
+                getattr(self, curve),
+                y_at_least=0.0,
+                y_at_most=1e4,
+            )
+        for name in ('idle_gain_n_m_s', 'idle_integral_n_m', 'idle_most_n_m'):
+            require_number(f'engine_limits.{name}', getattr(self, name), at_least=0.0, at_most=1e4)
+        for name in _RISING_SPEEDS:
+            require_number(f'engine_limits.{name}', getattr(self, name), above=0.0, at_most=2e3)
+        self._require_order()
+        self._require_cover()
+
+    def _require_order(self) -> None:
+        for lower, higher in zip(_RISING_SPEEDS, _RISING_SPEEDS[1:], strict=False):
+            if getattr(self, lower) >= getattr(self, higher):
+                raise ParameterError(
+                    f'engine_limits.{lower} is {getattr(self, lower):g} rad/s: it must be below '
+                    f'{higher}, {getattr(self, higher):g} rad/s'
+                )
+
+    def _require_cover(self) -> None:
+        speeds = self.speed_rad_s
+        if not speeds or speeds[0] > self.stall_rad_s or speeds[-1] < self.over_rev_rad_s:
+            given = f'goes from {speeds[0]:g} to {speeds[-1]:g} rad/s' if speeds else 'is empty'
+            raise ParameterError(
+                f'engine_limits.speed_rad_s {given}: the torque curves must cover the speeds from '
+                f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}'
+            )
+
+
+class LimitedEngine:
+    """
+    What the engine delivers of the torque asked, at its speed at t_k; called once per period.
+
+    C_m = max(asked, idle), not above the full-load torque, and not below minus the friction
+    torque; minus the friction torque while the rev limiter cuts the fuel. Idle control is
+    proportional and integral, K_p (w_idle - w_m) + I up to its highest torque; above idle it turns
+    negative and leaves the engine to what is asked. I, a torque in N m, stays within 0 and the
+    highest torque. An engine that has stalled gives no torque and never starts again.
+    """
+
+    def __init__(self, limits: EngineLimits) -> None:
+        """Start with fuel and without idle torque."""
+        self._limits = limits
+        self._integral = 0.0
+        self._cut = False
+        self.end_cause: str | None = None
+        """STALLED or OVER_REVVED once the run must end, None before."""
+
+    def deliver(self, asked: float, speed: float) -> float:
+        """Return C_m in N m over the coming period, of `asked` in N m at w_m in rad/s."""
+        limits = self._limits
+        if self.end_cause is None:
+            self.end_cause = self._cause(speed)
+        if self.end_cause == STALLED:
+            return 0.0
+        friction = float(np.interp(speed, limits.speed_rad_s, limits.friction_n_m))
+        if speed >= (limits.resume_rad_s if self._cut else limits.cut_rad_s):
+            self._cut = True
+            return -friction
+        self._cut = False
+        most = float(np.interp(speed, limits.speed_rad_s, limits.full_load_n_m))
+        return min(max(asked, self._idle(speed), -friction), most)
+
+    def _cause(self, speed: float) -> str | None:
+        if speed < self._limits.stall_rad_s:
+            return STALLED
+        return OVER_REVVED if speed > self._limits.over_rev_rad_s else None
+
+    def _idle(self, speed: float) -> float:
+        """Return the torque that idle control asks for, and integrate."""
+        limits, missing = self._limits, self._limits.idle_rad_s - speed
+        proportional = limits.idle_gain_n_m_s * missing
+        torque = min(proportional + self._integral, limits.idle_most_n_m)
+        integral = self._integral + limits.idle_integral_n_m * missing * PERIOD_S
+        self._integral = min(max(integral, 0.0), limits.idle_most_n_m)
+        return torque
