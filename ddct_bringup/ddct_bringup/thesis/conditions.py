@@ -1,11 +1,9 @@
 """When a run may stand beside Table 5.1, and what is said of a predicted figure there."""
 
 from ddct_bringup.thesis.predictions import predictions_for
-from ddct_bringup.thesis.table_5_1 import FIGURES, ThesisRow
+from ddct_bringup.thesis.table_5_1 import FORMS, ThesisRow
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.settings import RunSettings
-
-_FORMS = dict(zip(FIGURES, ('.3f', '.2f', '.3f'), strict=True))
 
 
 def is_thesis_run(settings: RunSettings) -> bool:
@@ -30,7 +28,7 @@ def predicted_range(controller: str, name: str) -> str:
     packaged scenario.
     """
     found = predictions_for(load_scenario('thesis')).get(f'5.1 {controller} {name}')
-    return found.text(_FORMS[name]) if found else ''
+    return found.text(FORMS[name]) if found else ''
 
 
 def verdict(row: ThesisRow, name: str, value: float | None) -> str:

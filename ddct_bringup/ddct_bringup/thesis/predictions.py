@@ -94,11 +94,6 @@ def kept_predictions() -> Predictions:
     )
 
 
-def prediction(name: str) -> Prediction | None:
-    """Return the kept prediction of an id of the thesis gate; None for what is no prediction."""
-    return kept_predictions().by_id.get(name)
-
-
 def predictions_for(scenario: Scenario) -> Mapping[str, Prediction]:
     """Return the kept predictions by id; none for another scenario than the packaged one."""
     kept = kept_predictions()

@@ -27,6 +27,10 @@ class ThesisRow:
         """Return the three printed figures by metric name."""
         return {name: getattr(self, name) for name in FIGURES}
 
+    def cells(self) -> tuple[str, ...]:
+        """Return them as they are printed."""
+        return tuple(f'{value:g}' for value in self.figures().values())
+
     def hit(self, name: str, value: float | None) -> bool:
         """Return whether a predicted figure is near enough; an undefined one is not."""
         printed = self.figures()[name]
@@ -35,6 +39,8 @@ class ThesisRow:
 
 FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
 """Metrics that the table has, in its order."""
+FORMS = dict(zip(FIGURES, ('.3f', '.2f', '.3f'), strict=True))
+"""Formats in which our figures are shown."""
 TOLERANCES = dict(zip(FIGURES, (0.05, 0.10, 0.10), strict=True))
 """
 Relative deviation from the print that each fitted figure may have.
@@ -54,8 +60,10 @@ THESIS_TABLE = (
     ThesisRow('PI', 'pi', 0.88, 0.70, 0.18, CALIBRATED),
 )
 """Table 5.1 (Chapter 5), in its order."""
+ROW_OF = {row.controller: row for row in THESIS_TABLE}
+"""The rows by registry name."""
 
 
 def thesis_row(controller: str) -> ThesisRow | None:
     """Return the row of a registry name, None for a controller that the table does not have."""
-    return next((row for row in THESIS_TABLE if row.controller == controller), None)
+    return ROW_OF.get(controller)

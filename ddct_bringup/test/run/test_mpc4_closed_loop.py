@@ -5,19 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs.runs import thesis_run
-from ddct_bringup.reproduction.studies.scored_run import metrics_of
-from ddct_bringup.reproduction.studies.static_controller import StaticControllerAlone
-from ddct_bringup.reproduction.studies.two_input.actuator_left_out import (
+from ddct_bringup.reproduction.runs import StaticControllerAlone, metrics_of, thesis_run
+from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
     model_without_actuator,
 )
-from ddct_bringup.reproduction.studies.two_input.mpc4_readings import READINGS
-from ddct_bringup.reproduction.studies.two_input.torque_level import closed_loop, growth
-from ddct_bringup.reproduction.studies.two_input.two_input_figures import (
+from ddct_bringup.reproduction.studies.mpc4_readings import READINGS
+from ddct_bringup.reproduction.studies.study import (
     close_time_s,
     deviation_range,
 )
+from ddct_bringup.reproduction.studies.torque_level import closed_loop, growth
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import mpc4_settings

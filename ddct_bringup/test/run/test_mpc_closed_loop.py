@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, metrics_of, thesis_run
 from ddct_bringup.reproduction.studies.clutch_torque_limit import clutch_torque_limit, limit_at
 from ddct_bringup.reproduction.studies.readings import readings
-from ddct_bringup.reproduction.studies.scored_run import figures, metrics_of, scored_run
+from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells, study_run
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.costs import TABLE_4_1
@@ -171,7 +171,7 @@ def test_limits_of_the_request_hold_in_the_loop():
 def test_the_first_reading_is_what_the_registry_has(readings_table):
     for name in TABLE_4_1:
         row = next(row for row in readings_table.rows if row[0] == name)
-        assert row[2:5] == figures(scored_run(SETTINGS, name))
+        assert row[2:5] == cells(TABLE_5_1, study_run(SETTINGS, name))
 
 
 def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(readings_table):

@@ -5,11 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.studies.disturbed_run import NoisySpeeds, slip_after_load_step
-from ddct_bringup.reproduction.studies.scored_run import scored_run
-from ddct_bringup.reproduction.studies.torsion_weight import torsion_weight
-from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, WEAR_GAINS
-from ddct_bringup.reproduction.studies.wear_estimate import wear_estimate
+from ddct_bringup.reproduction.runs import scored_run
+from ddct_bringup.reproduction.studies.sweeps import torsion_weight
+from ddct_bringup.reproduction.studies.wear import (
+    LOAD_STEP_N_M,
+    WEAR_GAINS,
+    NoisySpeeds,
+    slip_after_load_step,
+    wear_estimate,
+)
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.estimate.gains import NoiseLevels
 from ddct_controllers.mpc.estimate.wear_model import HIGHEST_GAIN, LOWEST_GAIN

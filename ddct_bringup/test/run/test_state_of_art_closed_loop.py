@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.studies import state_of_art as studies
-from ddct_bringup.reproduction.studies.scored_run import metrics_of
-from ddct_bringup.reproduction.studies.state_of_art import settled_s
+from ddct_bringup.reproduction.runs import metrics_of
+from ddct_bringup.reproduction.studies import sweeps as studies
+from ddct_bringup.reproduction.studies.study import close_time_s
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
@@ -129,7 +129,7 @@ def test_beyond_the_engines_authority_the_clutch_takes_over(name, wear_gain):
 def test_the_pedal_sets_when_the_slip_is_over(pedal):
     settings, run = trajectory('pedal_mpc', 1.0, f'pedal_position={pedal}')
     expected = engagement_time_s(ControllerContext(settings, {}))
-    found = settled_s(settings, run)
+    found = close_time_s(run, settings.scenario.control_start_step)
     assert expected <= found < 1.25 * expected
     assert np.array_equal(run.engine_torque, run.torque_demand)
 

@@ -13,17 +13,16 @@ the frozen scenario and every other that passes are equally good answers to it. 
 a reason of its own. Rows of a predictive controller are not looked at.
 """
 
-from ddct_bringup.reproduction.calibration.parameters import PARAMETERS, ROWS
-from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
-from ddct_bringup.reproduction.calibration.record import (
+from ddct_bringup.reproduction.calibration.parameters import (
+    PARAMETERS,
+    ROWS,
     Record,
     outside_tolerance,
+    pi_growth_rate,
     residual_rows,
     values_of,
 )
-from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.reproduction.runs import scored_run, table_figures
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -59,9 +58,4 @@ def fitted_rows(scenario: Scenario) -> list[Record]:
 
 def _figures(scenario: Scenario, controller: str) -> dict[str, float]:
     """Return the three figures of one controller by name; None for what is undefined."""
-    metrics = compute_metrics(
-        run_headless(RunSettings(scenario), controller),
-        control_start_s=scenario.control_start_s,
-        score_window_s=scenario.score_window_s,
-    )
-    return {name: getattr(metrics, name) for name in FIGURES}
+    return table_figures(scored_run(RunSettings(scenario), controller))

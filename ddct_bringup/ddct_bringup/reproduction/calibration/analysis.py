@@ -7,8 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student_t
 
-from ddct_bringup.reproduction.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE, ROWS
-from ddct_bringup.reproduction.calibration.problem import Fit, Problem, Values, fit, row_figures
+from ddct_bringup.reproduction.calibration.parameters import (
+    BASE,
+    PARAMETERS,
+    PI_ONLY,
+    RANGE,
+    ROWS,
+    Record,
+    Values,
+    residual_rows,
+)
+from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_figures
 from ddct_bringup.reproduction.calibration.search import STARTS, Progress
 from ddct_plant.scenario.scenario import Scenario
 
@@ -88,47 +97,35 @@ def identifiability(optimum: Fit) -> Identifiability:
     )
 
 
-@dataclass(frozen=True)
-class LeftOut:
-    """One row left out, and what the fit to the other two says about it."""
+def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
+    """
+    Fit each two rows, for the window that all three chose, and return what they say of the third.
 
-    row: str
-    fit: Fit
-    """Fit to the other two rows."""
-    figures: dict[str, float]
-    """Of the row left out."""
-    gains_from_row: bool
-    """The PI gains are from the row itself: no other depends on them."""
-
-
-def leave_one_row_out(optimum: Fit, progress: Progress) -> tuple[LeftOut, ...]:
-    """Fit each two rows, for the window that all three chose, and return the third's figures."""
+    No row but that of the PI depends on its gains: they are fitted to the row itself, which is
+    marked as `gains_from_row`.
+    """
     results = []
     for row in ROWS:
         progress(f'without the row of {row}')
         problem = dataclasses.replace(
             optimum.problem, rows=tuple(kept for kept in ROWS if kept != row)
         )
+        free = _SCENARIO_ONLY if row == 'pi' else tuple(range(len(PARAMETERS)))
+        best = _best_fit(problem, optimum.values, free)
         if row == 'pi':
-            results.append(_without_pi(problem, optimum))
-        else:
-            best = _best_fit(problem, optimum.values, tuple(range(len(PARAMETERS))))
-            figures = row_figures(problem.scenario(best.values), row)
-            results.append(LeftOut(row, best, figures, gains_from_row=False))
-    return tuple(results)
-
-
-def _without_pi(problem: Problem, optimum: Fit) -> LeftOut:
-    """Fit the scenario without the PI row, then only the gains to the PI row."""
-    scenario_fit = _best_fit(problem, optimum.values, _SCENARIO_ONLY)
-    pi_problem = dataclasses.replace(problem, rows=('pi',))
-    gains = _best_fit(pi_problem, scenario_fit.values, PI_ONLY)
-    return LeftOut(
-        'pi',
-        dataclasses.replace(scenario_fit, values=gains.values),
-        pi_problem.figures(gains.values)['pi'],
-        gains_from_row=True,
-    )
+            alone = dataclasses.replace(problem, rows=('pi',))
+            gains = _best_fit(alone, best.values, PI_ONLY)
+            best = dataclasses.replace(best, values=gains.values)
+        figures = row_figures(problem.scenario(best.values), row)
+        results.append(
+            {
+                'row': row,
+                'gains_from_row': row == 'pi',
+                **best.as_record(),
+                'figures': residual_rows({row: figures}),
+            }
+        )
+    return results
 
 
 def _best_fit(problem: Problem, values: Values, free: tuple[int, ...]) -> Fit:
@@ -164,10 +161,11 @@ def changed_assumptions() -> dict[str, Scenario]:
     }
 
 
-def vary_assumptions(optimum: Fit, progress: Progress) -> dict[str, Fit]:
-    """Refit with each of the changed assumptions; return the fits by the change."""
-    fits = {}
-    for name, base in changed_assumptions().items():
-        progress(name)
-        fits[name] = fit(dataclasses.replace(optimum.problem, base=base), optimum.values)
+def vary_assumptions(optimum: Fit, progress: Progress) -> list[Record]:
+    """Return the refit with each of the changed assumptions."""
+    fits = []
+    for change, base in changed_assumptions().items():
+        progress(change)
+        refit = fit(dataclasses.replace(optimum.problem, base=base), optimum.values)
+        fits.append({'change': change, **refit.as_record()})
     return fits

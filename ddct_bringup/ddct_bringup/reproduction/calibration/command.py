@@ -7,20 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.reproduction.calibration.ensemble import find_members, members_in, write_members
-from ddct_bringup.reproduction.calibration.files import fill_page, scenario_text
+from ddct_bringup.reproduction.calibration.parameters import Record, outside_tolerance
 from ddct_bringup.reproduction.calibration.predicted_values import predict
 from ddct_bringup.reproduction.calibration.record import (
     RETURN_TOLERANCE,
-    Record,
     calibrate,
     check_frozen,
-    outside_tolerance,
+    scenario_text,
 )
 from ddct_bringup.reproduction.calibration.tables import all_tables, check_tables
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.page_tables import read_page
+from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import load_scenario
 
@@ -97,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
     if options.write:
         write_text(options.write, scenario_text(record))
     if options.write_doc:
-        write_text(options.write_doc, fill_page(page, record))
+        write_text(options.write_doc, fill_tables(page, 'calibration', all_tables(record)))
     return 0
 
 

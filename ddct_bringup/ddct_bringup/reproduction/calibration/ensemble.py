@@ -11,11 +11,10 @@ from pathlib import Path
 
 from ddct_bringup.reproduction.calibration.admissible import why_not_admissible
 from ddct_bringup.reproduction.calibration.analysis import changed_assumptions
-from ddct_bringup.reproduction.calibration.files import annotated_yaml
-from ddct_bringup.reproduction.calibration.parameters import RANGE
-from ddct_bringup.reproduction.calibration.problem import Problem, Values
-from ddct_bringup.reproduction.calibration.record import values_of
-from ddct_bringup.reproduction.calibration.region import Point, centre, rim
+from ddct_bringup.reproduction.calibration.parameters import RANGE, Values, values_of
+from ddct_bringup.reproduction.calibration.problem import Problem
+from ddct_bringup.reproduction.calibration.record import annotated_yaml
+from ddct_bringup.reproduction.calibration.region import centre, rim
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
@@ -88,37 +87,36 @@ def _search(frozen: Scenario, progress: Progress) -> Iterator[Scenario]:
                 along = [sign * share for share in direction]
                 yield _member(
                     Problem(end),
-                    rim(Problem(end), centres[end].values, along),
+                    rim(Problem(end), centres[end], along),
                     f'window_{end:.1f}_{name}_{which}',
                     f'{extreme} {quantity}, window to {end:.1f} s',
                 )
     for change, base in changed_assumptions().items():
         progress(f'centre: {change}')
         problem = Problem(frozen_end, base=base)
-        at = centre(problem, centres[frozen_end].values)
+        at = centre(problem, centres[frozen_end])
         yield _member(
             problem, at, change.replace(' ', '_').replace('/', '_per_'), f'With {change}'
         )
 
 
-def _centres(frozen: Scenario, progress: Progress) -> dict[float, Point]:
+def _centres(frozen: Scenario, progress: Progress) -> dict[float, tuple[float, ...]]:
     """Return the centre for each end of the window that has an admissible one, from the frozen."""
     start = frozen.score_window_s[1]
     before = [end for end in reversed(WINDOW_ENDS_S) if end < start]
-    centres: dict[float, Point] = {}
+    centres: dict[float, tuple[float, ...]] = {}
     for ends in ([start], before, [end for end in WINDOW_ENDS_S if end > start]):
-        values: Values = centres[start].values if centres else values_of(frozen)
+        values: Values = centres[start] if centres else values_of(frozen)
         for end in ends:
             progress(f'centre: score window to {end:.1f} s')
-            at = centre(Problem(end), values)
-            values = at.values
-            if not why_not_admissible(_member(Problem(end), at, 'centre', '')):
-                centres[end] = at
+            values = centre(Problem(end), values)
+            if not why_not_admissible(_member(Problem(end), values, 'centre', '')):
+                centres[end] = values
     return dict(sorted(centres.items()))
 
 
-def _member(problem: Problem, at: Point, name: str, what: str) -> Scenario:
-    values = [round(value, decimals) for value, decimals in zip(at.values, _DECIMALS, strict=True)]
+def _member(problem: Problem, at: Values, name: str, what: str) -> Scenario:
+    values = [round(value, decimals) for value, decimals in zip(at, _DECIMALS, strict=True)]
     return dataclasses.replace(problem.scenario(values), name=name, description=what)
 
 

@@ -8,20 +8,21 @@ numbers behind the words are given too. Of a word, whether it is a hit or a miss
 from collections.abc import Iterable
 
 from ddct_bringup.reproduction.calibration.search import Progress
-from ddct_bringup.reproduction.claims.closed_loop_values import (
+from ddct_bringup.reproduction.runs import (
+    StaticControllerAlone,
+    scored_run,
+    table_figures,
+)
+from ddct_bringup.reproduction.values.closed_loop_values import (
     SLIP_WORDS,
     WORN,
     WORN_ARCHITECTURE,
     judge_table_5_2,
 )
-from ddct_bringup.reproduction.studies.scored_run import metrics_of
-from ddct_bringup.reproduction.studies.static_controller import StaticControllerAlone
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
 from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED, THESIS_TABLE
 from ddct_controllers.interface import Controller
-from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -63,23 +64,17 @@ def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     controllers[OPEN_LOOP] = StaticControllerAlone()
     found: dict[str, Value] = {}
     for name, controller in controllers.items():
-        metrics = metrics_of(settings, run_headless(settings, controller))
-        found |= {f'5.1 {name} {figure}': getattr(metrics, figure) for figure in FIGURES}
+        figures = table_figures(scored_run(settings, controller))
+        found |= {f'5.1 {name} {figure}': value for figure, value in figures.items()}
     return found
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
-    end = steps_in('score_window_s', scenario.score_window_s[1])
-    slips: dict[str, float] = {}
-    metrics: dict[str, Metrics] = {}
-    for name in SLIP_WORDS:
-        run = run_headless(settings, name)
-        slips[name] = abs(float(run.slip_speed[end]))
-        metrics[name] = metrics_of(settings, run)
+    runs = {name: run_headless(settings, name) for name in SLIP_WORDS}
+    slips, metrics, findings = judge_table_5_2(settings, runs)
     found: dict[str, Value] = {
-        name: 'hit' if finding.holds else 'miss'
-        for name, finding in judge_table_5_2(wear_gain, slips, metrics).items()
+        name: 'hit' if finding.holds else 'miss' for name, finding in findings.items()
     }
     for name in SLIP_WORDS:
         found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = slips[name]

@@ -1,14 +1,15 @@
 """
-The calibration of the thesis scenario as a least-squares problem: what is fitted to what.
+The calibration of the thesis scenario as a least-squares problem.
 
 The thesis prints no engine torque profile, no reference slope and no PI gains. They are fitted
 to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1; the MPC rows take no part.
-`calibration_parameters` has the parameters with their bounds, and the numbers.
+`parameters` has the parameters with their bounds, and the numbers.
 """
 
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -16,23 +17,23 @@ from scipy.optimize import least_squares
 from ddct_bringup.reproduction.calibration.parameters import (
     BASE,
     LOWER,
+    NAMES,
     PARAMETERS,
     PI_ONLY,
     RANGE,
     ROWS,
     TARGETS,
+    Record,
+    Values,
+    pi_growth_rate,
 )
-from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import compute_metrics
+from ddct_bringup.reproduction.runs import scored_run, table_figures
 from ddct_bringup.thesis.table_5_1 import FIGURES, TOLERANCES
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.scenario.scenario import ReferenceParameters, Scenario
 from ddct_plant.scenario.settings import RunSettings
-
-Values = Sequence[float] | np.ndarray
-"""(6,) in the order of PARAMETERS."""
 
 _STEP = 1e-4
 """Difference step of the Jacobian, as a share of each parameter's range."""
@@ -67,7 +68,17 @@ class Problem:
 
     def residuals(self, values: Values) -> np.ndarray:
         """Return (computed / printed - 1) / tolerance, (3 rows,), three figures a row."""
-        return scaled_residuals(self.figures(values))
+        return np.array(
+            [
+                (computed[name] / TARGETS[row][name] - 1.0) / TOLERANCES[name]
+                for row, computed in self.figures(values).items()
+                for name in FIGURES
+            ]
+        )
+
+    def objective(self, values: Values) -> float:
+        """Return half the sum of the squared scaled residuals."""
+        return 0.5 * float(np.sum(self.residuals(values) ** 2))
 
     def jacobian(self, values: Values) -> np.ndarray:
         """Return d residuals / d (value / range) by one-sided differences, (3 rows, 6)."""
@@ -104,6 +115,30 @@ class Fit:
         """Half the sum of the squared scaled residuals."""
         return 0.5 * float(np.sum(self.residuals**2))
 
+    @cached_property
+    def pi_growth_rate(self) -> float:
+        """Growth rate of the PI's slip loop in 1/s, negative when it is stable."""
+        return pi_growth_rate(BASE.driveline, *self.values[4:])
+
+    @property
+    def pi_stable(self) -> bool:
+        """Whether the PI stabilises the slip speed."""
+        return self.pi_growth_rate < 0.0
+
+    @property
+    def pi_kind(self) -> str:
+        """'P' or 'I': the part that moves the torque more in the about 1 s of an engagement."""
+        proportional, integral = self.values[4:]
+        return 'P' if proportional >= integral else 'I'
+
+    def as_record(self) -> Record:
+        """Return what the record of a calibration has of every fit."""
+        return {
+            'objective': self.objective,
+            'worst_residual': float(self.residuals[np.argmax(np.abs(self.residuals))]),
+            'values': dict(zip(NAMES, self.values, strict=True)),
+        }
+
 
 def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     """
@@ -113,14 +148,10 @@ def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     the reference's slope would need for the slip that is left: defined everywhere, continuous,
     and the larger the worse. Raise DdctError for a run that is not finite.
     """
-    start, end = scenario.score_window_s
+    _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
-    metrics = compute_metrics(
-        run_headless(RunSettings(shortened), controller),
-        control_start_s=scenario.control_start_s,
-        score_window_s=(start, end),
-    )
-    figures = {name: getattr(metrics, name) for name in FIGURES}
+    metrics = scored_run(RunSettings(shortened), controller)
+    figures = table_figures(metrics)
     if figures['engagement_time_s'] is None and metrics.slip_final_rpm is not None:
         left = abs(rad_s_from_rpm(metrics.slip_final_rpm)) / scenario.reference.slope_rad_s2
         figures['engagement_time_s'] = end - scenario.control_start_s + left
@@ -128,17 +159,6 @@ def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     if missing:
         raise DdctError(f'{controller} has no {", ".join(missing)}: narrow the bounds')
     return figures
-
-
-def scaled_residuals(figures: dict[str, dict[str, float]]) -> np.ndarray:
-    """Return (computed / printed - 1) / tolerance, (3 rows,), for figures by row."""
-    return np.array(
-        [
-            (computed[name] / TARGETS[row][name] - 1.0) / TOLERANCES[name]
-            for row, computed in figures.items()
-            for name in FIGURES
-        ]
-    )
 
 
 def fit(

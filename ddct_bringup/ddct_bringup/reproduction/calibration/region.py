@@ -1,14 +1,13 @@
 """The region of the parameters in which the nine figures are within tolerance: centre and rim."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import minimize
 
-from ddct_bringup.reproduction.calibration.parameters import LOWER, PARAMETERS, RANGE
-from ddct_bringup.reproduction.calibration.problem import Problem, Values
+from ddct_bringup.reproduction.calibration.parameters import LOWER, PARAMETERS, RANGE, Values
+from ddct_bringup.reproduction.calibration.problem import Problem
 
 RIM = 0.98
 """Largest scaled residual on the rim: rounding of the values and curvature may take the rest."""
@@ -17,19 +16,9 @@ _PRECISION = 1e-3
 """Change of what is sought, in tolerances or in shares of a range, at which a search ends."""
 
 
-@dataclass(frozen=True)
-class Point:
-    """Fitted values and what becomes of the nine figures."""
-
-    values: tuple[float, ...]
-    """(6,) in the order of PARAMETERS."""
-    worst: float
-    """Largest magnitude of a scaled residual."""
-
-
-def centre(problem: Problem, start: Values) -> Point:
+def centre(problem: Problem, start: Values) -> tuple[float, ...]:
     """
-    Return the point near (6,) start values whose largest scaled residual t is the least.
+    Return the (6,) values near (6,) start values whose largest scaled residual t is the least.
 
     Sequential quadratic programming: least t with |residuals| <= t.
     """
@@ -48,12 +37,12 @@ def centre(problem: Problem, start: Values) -> Point:
         ),
         **_METHOD,
     )
-    return figures.point(answer.x[:-1])
+    return _values(answer.x[:-1])
 
 
-def rim(problem: Problem, start: Values, direction: Sequence[float]) -> Point:
+def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[float, ...]:
     """
-    Return the point with all |residuals| <= RIM that goes the farthest along a direction.
+    Return the (6,) values with all |residuals| <= RIM that goes the farthest along a direction.
 
     `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
     """
@@ -69,7 +58,7 @@ def rim(problem: Problem, start: Values, direction: Sequence[float]) -> Point:
         ),
         **_METHOD,
     )
-    return figures.point(answer.x)
+    return _values(answer.x)
 
 
 _BOUNDS = [(0.0, 1.0)] * len(PARAMETERS)
@@ -100,10 +89,6 @@ class _Figures:
         """Return the derivatives of (-r, r), (18, 6)."""
         found = self._jacobian(*_values(shares))
         return np.vstack([-found, found])
-
-    def point(self, shares: np.ndarray) -> Point:
-        """Return the point."""
-        return Point(_values(shares), float(np.max(np.abs(self.residuals(shares)))))
 
 
 def _shares(values: Values) -> np.ndarray:

@@ -4,10 +4,8 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
-from ddct_bringup.reproduction.calibration.parameters import BASE, DURATION_S, PARAMETERS, TARGETS
-from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.parameters import BASE, DURATION_S, TARGETS
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit
 from ddct_plant.base.errors import DdctError
 
@@ -34,37 +32,14 @@ STARTS = tuple(
 
 
 @dataclass(frozen=True)
-class LocalOptimum:
-    """A fit, and what its PI is like."""
-
-    fit: Fit
-
-    @cached_property
-    def pi_growth_rate(self) -> float:
-        """Growth rate of the PI's slip loop in 1/s, negative when it is stable."""
-        return pi_growth_rate(BASE.driveline, *self.fit.values[4:])
-
-    @property
-    def pi_stable(self) -> bool:
-        """Whether the PI stabilises the slip speed."""
-        return self.pi_growth_rate < 0.0
-
-    @property
-    def pi_kind(self) -> str:
-        """'P' or 'I': the part that moves the torque more in the about 1 s of an engagement."""
-        proportional, integral = self.fit.values[4:]
-        return 'P' if proportional >= integral else 'I'
-
-
-@dataclass(frozen=True)
 class Search:
     """Everything the search found."""
 
-    windows: tuple[LocalOptimum, ...]
+    windows: tuple[Fit, ...]
     """The best optimum of each kind of PI for each window end."""
-    starts: tuple[LocalOptimum, ...]
+    starts: tuple[Fit, ...]
     """What each of STARTS led to for the chosen window end."""
-    chosen: LocalOptimum
+    chosen: Fit
 
 
 def search(progress: Progress, window_ends_s: Sequence[float] = WINDOW_ENDS_S) -> Search:
@@ -73,46 +48,28 @@ def search(progress: Progress, window_ends_s: Sequence[float] = WINDOW_ENDS_S) -
 
     First over the window ends, each from two starts; then from all starts for the best window.
     """
-    windows: list[LocalOptimum] = []
+    windows: list[Fit] = []
     for end in window_ends_s:
         progress(f'score window to {end:g} s')
-        windows += _one_of_each_kind([LocalOptimum(fit(Problem(end), x)) for x in STARTS[:2]])
-    chosen_window = lowest_stable(windows).fit.problem
+        windows += _one_of_each_kind([fit(Problem(end), x) for x in STARTS[:2]])
+    chosen_window = lowest_stable(windows).problem
     starts = []
     for number, start in enumerate(STARTS, 1):
         progress(f'start {number} of {len(STARTS)} for the window to the chosen end')
-        starts.append(LocalOptimum(fit(chosen_window, start)))
+        starts.append(fit(chosen_window, start))
     return Search(tuple(windows), tuple(starts), lowest_stable(starts))
 
 
-def lowest_stable(optima: Sequence[LocalOptimum]) -> LocalOptimum:
+def lowest_stable(optima: Sequence[Fit]) -> Fit:
     """Return that of the lowest objective among stable PI loops; raise DdctError without one."""
     stable = [one for one in optima if one.pi_stable]
     if not stable:
         raise DdctError(f'none of {len(optima)} fits has a stable PI loop: narrow the bounds')
-    return min(stable, key=lambda one: one.fit.objective)
+    return min(stable, key=lambda one: one.objective)
 
 
-def require_stable_pi(values: Sequence[float]) -> None:
-    """Raise DdctError unless the PI of the (6,) values of PARAMETERS stabilises the slip speed."""
-    rate = pi_growth_rate(BASE.driveline, *values[4:])
-    if not rate < 0.0:
-        raise DdctError(
-            f'the PI loop with gains {values[4]:g} and {values[5]:g} grows by {rate:.2g}/s: '
-            'no scenario may leave the calibration with it'
-        )
-
-
-def _one_of_each_kind(optima: Sequence[LocalOptimum]) -> list[LocalOptimum]:
-    best: dict[str, LocalOptimum] = {}
-    for one in sorted(optima, key=lambda one: one.fit.objective):
+def _one_of_each_kind(optima: Sequence[Fit]) -> list[Fit]:
+    best: dict[str, Fit] = {}
+    for one in sorted(optima, key=lambda one: one.objective):
         best.setdefault(one.pi_kind, one)
     return [best[kind] for kind in sorted(best, reverse=True)]
-
-
-def rounded(values: Sequence[float]) -> tuple[float, ...]:
-    """Return the values with the decimals that the scenario file keeps."""
-    return tuple(
-        round(value, parameter.decimals) + 0.0
-        for value, parameter in zip(values, PARAMETERS, strict=True)
-    )

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from ddct_bringup.reproduction.calibration.record import NAMES, Record
-from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_bringup.reproduction.calibration.parameters import NAMES, Record
+from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_plant.program.table import Table
 
 _FIGURE_LABELS = {
@@ -208,10 +208,8 @@ def assumption_table(record: Record) -> Table:
 
 
 def _figure_cells(entry: Record) -> tuple[str, ...]:
-    row = thesis_row(entry['row'])
-    assert row is not None
     return (
-        row.label,
+        ROW_OF[entry['row']].label,
         _FIGURE_LABELS[entry['figure']],
         f'{entry["printed"]:.2f}',
         f'{entry["computed"]:.3f}',

@@ -2,17 +2,40 @@
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.reproduction.figures import collect, figure_tables, gallery
-from ddct_bringup.reproduction.figures.thesis_figure import DrawnFigure
+from ddct_bringup.reproduction.figures import gallery
+from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
+from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
+from ddct_bringup.reproduction.figures.run_figures import RUN_FIGURES
+from ddct_bringup.reproduction.figures.scenario_figures import SCENARIO_FIGURES
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure_order
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.output_file import write_text
 from ddct_plant.program.page_tables import fill_tables, read_page
+from ddct_plant.program.table import Table
 
+FIGURES = (
+    *LOOP_SHAPING_FIGURES,
+    *H_INFINITY_FIGURES,
+    *RUN_FIGURES,
+    *SCENARIO_FIGURES,
+)
+_PICTURE = 'a photograph or a scheme: nothing to compute'
+_DIAGRAM = 'a block diagram: nothing to compute'
+_NOT_DRAWN = {
+    **{f'1.{place}': _PICTURE for place in range(1, 9)},
+    **{f'1.{place}': _DIAGRAM for place in (9, 10, 11, 13, 15, 16, 17, *range(20, 23))},
+    **{f'1.{place}': _DIAGRAM for place in range(24, 27)},
+    '1.18': _PICTURE,
+    '1.19': 'a table that names the driveline parameters without their values',
+    **dict.fromkeys(('2.1', '3.1', '3.2', '3.4', '4.2'), _DIAGRAM),
+    '4.1': 'explains the horizons: nothing to compute',
+}
 _DESCRIPTION = """\
 Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png, with
 a page index.html that shows them in order and tells what agrees with the thesis and what
@@ -48,9 +71,9 @@ def run(options: argparse.Namespace) -> int:
     if options.write_doc and options.only:
         raise ParameterError('--write-doc is for all figures: leave out --only')
     page = read_page(options.write_doc) if options.write_doc else ''
-    figures = collect.collect_figures()
+    figures = collect_figures()
     numbers = {figure.number for figure in figures}
-    not_drawn = collect.figures_not_drawn()
+    not_drawn = figures_not_drawn()
     if options.only:
         wanted = _wanted(options.only, numbers, not_drawn)
         figures = [figure for figure in figures if figure.number in wanted]
@@ -58,20 +81,45 @@ def run(options: argparse.Namespace) -> int:
     folder = Path(options.out)
     pictures = [folder / gallery.picture_name(figure.number) for figure in figures]
     _make_room(folder, [*pictures, folder / _PAGE], gallery.GENERATOR, options.overwrite)
-    drawn = []
+    drawn: dict[ThesisFigure, str] = {}
     for count, (figure, picture) in enumerate(zip(figures, pictures, strict=True), start=1):
         progress = f'{count}/{len(figures)} {figure.heading}'
         print(f'reproduce figures: {progress}', file=sys.stderr, flush=True)
         with chart_style():
-            drawing = figure.draw(figure.heading)
-            save_chart(drawing.figure, picture)
-        drawn.append(DrawnFigure(figure, drawing.remark))
+            chart, drawn[figure] = figure.draw()
+            save_chart(chart, picture)
     write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
     if options.write_doc:
-        tables = figure_tables.page_tables(drawn, not_drawn)
+        tables = page_tables(drawn, not_drawn)
         write_text(options.write_doc, fill_tables(page, 'figures', tables))
     print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
     return 0
+
+
+def collect_figures() -> list[ThesisFigure]:
+    """Return every figure that can be drawn, in order."""
+    return sorted(FIGURES, key=lambda figure: figure_order(figure.number))
+
+
+def figures_not_drawn() -> dict[str, str]:
+    """Return, for every figure that cannot be drawn, the reason by its number, in order."""
+    return {number: _NOT_DRAWN[number] for number in sorted(_NOT_DRAWN, key=figure_order)}
+
+
+def page_tables(
+    drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]
+) -> dict[str, Table]:
+    """Return the tables of docs/figures.md by name; `drawn` has a remark by figure."""
+    shared: dict[str, list[str]] = {}
+    for number, reason in not_drawn.items():
+        shared.setdefault(reason, []).append(number)
+    rows = [(figure.number, figure.title, remark) for figure, remark in drawn.items()]
+    headers = ('figure', 'shows', 'what agrees, what does not')
+    reasons = [(', '.join(numbers), reason) for reason, numbers in shared.items()]
+    return {
+        'drawn': Table('Figures that are drawn', headers, rows),
+        'not_drawn': Table('Figures that are not drawn', ('figures', 'reason'), reasons),
+    }
 
 
 def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:

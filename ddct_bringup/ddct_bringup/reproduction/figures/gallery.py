@@ -4,8 +4,7 @@ import html
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
-from ddct_bringup.reproduction.figures.gallery_style import STYLE
-from ddct_bringup.reproduction.figures.thesis_figure import DrawnFigure, figure_order
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure_order
 from ddct_controllers.design.drawing.chart_style import INDEXED_SYMBOL
 
 GENERATOR = '<meta name="generator" content="reproduce figures">'
@@ -18,6 +17,41 @@ CHAPTERS = {
     5: 'Comparison',
 }
 """Subjects of the thesis's chapters that have figures."""
+_STYLE = """
+:root { color-scheme: light dark; --paper: #fff; --ink: #1c1c1c; --faint: #5c5c5c;
+  --line: #d8d8d8; --link: #005a8d; }
+@media (prefers-color-scheme: dark) {
+  :root { --paper: #171717; --ink: #e4e4e4; --faint: #a6a6a6; --line: #3d3d3d; --link: #6db8e8; }
+  img { filter: invert(0.91) hue-rotate(180deg); }
+}
+body { font: 1rem/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper);
+  max-width: 70rem; margin: 0 auto; padding: 1rem; }
+header p { max-width: 46rem; }
+h1 { font-size: 1.6rem; line-height: 1.2; }
+h2 { font-size: 1.25rem; border-bottom: 1px solid var(--line); padding-bottom: .3rem;
+  margin-top: 2.5rem; }
+nav { display: flex; flex-wrap: wrap; gap: .4rem 1.2rem; }
+a { color: var(--link); }
+figure { margin: 1.5rem 0; }
+img { display: block; width: 100%; height: auto; }
+figcaption { overflow-wrap: break-word; }
+figcaption b { display: block; margin: .4rem 0; }
+.absent { margin: .5rem 0; color: var(--faint); }
+sub, sup { line-height: 0; font-size: .75em; }
+@media (min-width: 52rem) {
+  figure { display: grid; grid-template-columns: 8fr 5fr; gap: 1.5rem; }
+}
+@media print {
+  :root { --paper: #fff; --ink: #000; --faint: #444; --line: #999; }
+  body { max-width: none; padding: 0; font-size: 9pt; }
+  nav { display: none; }
+  figure { display: grid; grid-template-columns: 12cm 1fr; gap: .5cm; break-inside: avoid;
+    margin: .3cm 0; }
+  img { filter: none; }
+  h2, .absent { break-after: avoid; }
+}
+"""
+"""How it looks: on a light and on a dark screen, on a phone and on paper."""
 _INTRODUCTION = (
     'Drawn from the identified driveline and the calibrated scenario. Below each figure stands '
     'what agrees with the thesis and what does not. The thesis prints few numbers beside its '
@@ -30,13 +64,14 @@ def picture_name(number: str) -> str:
     return f'figure_{number.replace(".", "_")}.png'
 
 
-def gallery_page(drawn: Sequence[DrawnFigure], not_drawn: Mapping[str, str]) -> str:
+def gallery_page(drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]) -> str:
     """
     Return the HTML of the gallery; pictures are linked relative to it.
 
-    `not_drawn` has the reasons by number. The page shows what is in either, in order.
+    `drawn` has a remark by figure, `not_drawn` a reason by number. The page shows what is in
+    either, in order.
     """
-    entries = {entry.figure.number: _picture(entry) for entry in drawn}
+    entries = {figure.number: _picture(figure, remark) for figure, remark in drawn.items()}
     numbers = sorted((*entries, *not_drawn), key=figure_order)
     chapters = {
         chapter: list(found)
@@ -60,7 +95,7 @@ def gallery_page(drawn: Sequence[DrawnFigure], not_drawn: Mapping[str, str]) -> 
             '<html lang="en"><head><meta charset="utf-8">',
             GENERATOR,
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f'<title>Figures of the thesis</title><style>{STYLE}</style></head><body>',
+            f'<title>Figures of the thesis</title><style>{_STYLE}</style></head><body>',
             '<header><h1>Figures of the thesis, computed</h1>',
             f'<p>{len(drawn)} of {len(numbers)} figures are drawn. {_INTRODUCTION}</p>',
             f'<nav>{" ".join(links)}</nav></header>',
@@ -84,13 +119,13 @@ def _entries(
         yield f'<p class="absent"><b>{which}:</b> {_text(reason)}.</p>'
 
 
-def _picture(entry: DrawnFigure) -> str:
-    figure, name = entry.figure, picture_name(entry.figure.number)
+def _picture(figure: ThesisFigure, remark: str) -> str:
+    name = picture_name(figure.number)
     return (
         f'<figure id="figure-{figure.number}">'
         f'<a href="{name}"><img src="{name}" alt="{html.escape(figure.heading)}" loading="lazy" '
         'width="1040" height="650"></a>'
-        f'<figcaption><b>Figure {figure.number}: {_text(figure.title)}.</b> {_text(entry.remark)}'
+        f'<figcaption><b>Figure {figure.number}: {_text(figure.title)}.</b> {_text(remark)}'
         '</figcaption></figure>'
     )
 

@@ -1,108 +1,225 @@
-"""Figures 2.7 to 2.10: the loops of the loop-shaping design, and the step response of G_c2."""
+"""
+Figures 2.2 to 2.10: from the specifications to the loops of the loop-shaping design.
 
-from ddct_bringup.reproduction.figures.thesis_figure import Drawing, ThesisFigure
+They are the prototype's rise time, the sign of K_c, the two networks, and L of each step.
+"""
+
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.drawing.chart_style import new_chart
-from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
+from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, SKY, VERMILLION, line_styles
+from ddct_controllers.design.drawing.charts import decibel, draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_SPECIFICATIONS,
 )
-from ddct_controllers.design.loop_shaping.networks import integrators
+from ddct_controllers.design.loop_shaping.networks import integrators, lag_network, lead_network
 from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
-from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
+from ddct_controllers.design.loop_shaping.specifications import (
+    TimeSpecifications,
+    rise_time_crossover_product,
+)
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
+_PRINTED_PRODUCT = 2.02
+"""t_r w_c that Section 2.2 reads off the curve for its zeta."""
 _G_C1 = LOOP_SHAPING_CONTROLLERS['ls2']
 _G_C2 = LOOP_SHAPING_CONTROLLERS['ls7']
 _STEP_DURATION_S = 4.0
+_RATIOS = (2.0, 3.0, 4.0, 6.0, 10.0, 16.0)
+"""m_d and m_i of the normalised networks; the thesis's G_c1 has 16."""
+_SLOWEST_RAD_S, _FASTEST_RAD_S = 1e-3, 1e4
+_INDENTATION = np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, 200))
+"""s / radius on the quarter circle that passes the poles at 0 on the right."""
+
+
+def _draw_rise_time_crossover(axes: Axes) -> str:
+    damping = np.linspace(0.1, 0.95, 341)
+    product = np.array([rise_time_crossover_product(value) for value in damping])
+    axes.plot(damping, product, color=BLUE, label='second-order prototype')
+    wanted = NETWORK_SPECIFICATIONS.damping
+    computed = rise_time_crossover_product(wanted)
+    printed_at = float(np.interp(_PRINTED_PRODUCT, product, damping))
+    axes.plot(wanted, computed, 'o', color=BLUE, label=f'ζ = {wanted:.2f}: {computed:.2f}')
+    axes.plot(
+        *(wanted, _PRINTED_PRODUCT, 'x'),
+        color=VERMILLION,
+        markersize=9,
+        markeredgewidth=2,
+        label=f'read off in Section 2.2: {_PRINTED_PRODUCT:.2f}',
+    )
+    axes.set(xlabel='Damping ratio ζ', ylabel='t_r ω_c, rad', xlim=(0.1, 0.95))
+    axes.legend(loc='upper left')
+    return (
+        f'At the ζ = {wanted:.2f} of the specifications the curve gives {computed:.2f}; the '
+        f'{_PRINTED_PRODUCT:.2f} that the thesis reads off belongs to ζ = {printed_at:.2f}.'
+    )
+
+
+def _draw_nyquist(whole: Axes, zoom: Axes, gain: float, printed_encirclements: int) -> str:
+    loop = continuous_loop(integrators(gain, 1))
+    values = loop.response(np.geomspace(_SLOWEST_RAD_S, _FASTEST_RAD_S, 6000))
+    around_zero = loop.transfer_function.at(_SLOWEST_RAD_S * _INDENTATION)
+    for axes, path in ((whole, _compressed), (zoom, np.asarray)):
+        upper, closure = path(values), path(around_zero)
+        axes.plot(upper.real, upper.imag, color=BLUE, label='ω > 0')
+        axes.plot(upper.real, -upper.imag, color=SKY, linestyle='--', label='ω < 0')
+        label = 'past the poles at s = 0'
+        for side in (1.0, -1.0):
+            axes.plot(closure.real, side * closure.imag, color=BLACK, linestyle=':', label=label)
+            label = '_'
+        critical = path(np.array([-1.0 + 0.0j]))
+        axes.plot(critical.real, critical.imag, '+', color=VERMILLION, markersize=12, mew=2.5)
+    whole.set(
+        title='whole curve, |L| compressed to log(1 + |L|)',
+        xlabel='Re, compressed',
+        ylabel='Im, compressed',
+        aspect='equal',
+    )
+    zoom.set(
+        title='around -1 + j0',
+        xlabel='Re L',
+        ylabel='Im L',
+        xlim=(-2.0, 1.0),
+        ylim=(-1.5, 1.5),
+        aspect='equal',
+    )
+    zoom.legend(loc='lower right')
+    count = nyquist_count(loop)
+    return (
+        f'N = {count.encirclements}, P_ol = {count.open_loop_unstable}, so '
+        f'P_cl = {count.closed_loop_unstable}; the thesis counts N = {printed_encirclements}.'
+    )
+
+
+def _compressed(values: np.ndarray) -> np.ndarray:
+    """Return the values with their size replaced by log10(1 + size), so that all is in sight."""
+    size = np.abs(values)
+    return values / size * np.log10(1.0 + size)
+
+
+def _draw_network(*panels: Axes, kind: str) -> str:
+    normalised = np.geomspace(0.01, 1000.0, 500)
+    for ratio, style in zip(_RATIOS, line_styles(), strict=False):
+        network = lead_network(1.0, ratio) if kind == 'd' else lag_network(1.0, ratio)
+        response = network.frequency_response(normalised)
+        for axes, values in zip(panels, (decibel(response), _degrees(response)), strict=True):
+            axes.semilogx(normalised, values, label=f'm_{kind} = {ratio:g}', **style)
+    frequency = 'ω/z_d' if kind == 'd' else 'ω/p_i'
+    for axes, quantity in zip(panels, ('Magnitude, dB', 'Phase, °'), strict=True):
+        axes.set(xlabel=f'Normalised frequency {frequency}', ylabel=quantity, xlim=(0.01, 1000.0))
+    panels[0].legend(loc='best')
+    largest = float(np.max(np.abs(_degrees(response))))
+    change = 'lead' if kind == 'd' else 'lag'
+    return (
+        f'For the m_{kind} = {_RATIOS[-1]:g} of G_c1 the {change} is {largest:.0f}° at most. The '
+        'thesis names the magnitude only, but also reads the phase off its chart.'
+    )
+
+
+def _degrees(response: np.ndarray) -> np.ndarray:
+    return np.degrees(np.angle(response))
 
 
 def draw_loop_in_nichols(
-    heading: str,
+    axes: Axes,
     name: str,
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
     thesis_says: str,
-) -> Drawing:
+) -> str:
     """Draw L of one controller, without hold and delay, with the bounds that it was made for."""
-    figure, (axes,) = new_chart(heading)
     loop = continuous_loop(controller)
     curve = LoopCurve(loop)
     draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications)
     margins = loop_margins(loop)
     if not margins.stable:
-        return Drawing(figure, f'The closed loop is unstable. Thesis: {thesis_says}.')
+        return f'The closed loop is unstable. Thesis: {thesis_says}.'
     crossed = [
         f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
         for found in contours(curve, specifications)
         if not found.respected
     ]
-    return Drawing(
-        figure,
+    return (
         f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
         f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
-        f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.',
+        f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
     )
 
 
 def draw_step(
-    heading: str, name: str, controller: FactoredTransferFunction, printed: tuple[float, float]
-) -> Drawing:
+    axes: Axes, name: str, controller: FactoredTransferFunction, printed: tuple[float, float]
+) -> str:
     """Draw the step response of one loop; `printed` are the thesis's t_r in s and overshoot."""
-    figure, (axes,) = new_chart(heading)
     time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
     draw_step_response(axes, {name: (time, output)})
-    return Drawing(
-        figure,
+    return (
         f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
         f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '
-        f'{100.0 * printed[1]:.0f} %.',
+        f'{100.0 * printed[1]:.0f} %.'
     )
 
 
 LOOP_SHAPING_FIGURES = (
+    ThesisFigure('2.2', 't_r ω_c over the damping ratio ζ', _draw_rise_time_crossover),
     ThesisFigure(
-        '2.7',
-        'Nichols chart with G_c(s) = K_c/s, K_c = -1',
-        lambda title: draw_loop_in_nichols(
-            title,
-            'L with G_c = -1/s',
-            integrators(-1.0, 1),
-            NETWORK_SPECIFICATIONS,
-            'very close to -1, and 70° of phase are missing',
+        *('2.3', 'Nyquist plot with K_c = 1'),
+        partial(_draw_nyquist, gain=1.0, printed_encirclements=1),
+        panels=2,
+    ),
+    ThesisFigure(
+        *('2.4', 'Nyquist plot with K_c = -1'),
+        partial(_draw_nyquist, gain=-1.0, printed_encirclements=2),
+        panels=2,
+    ),
+    ThesisFigure(
+        '2.5', 'Contribution of a lead network', partial(_draw_network, kind='d'), panels=2
+    ),
+    ThesisFigure(
+        '2.6', 'Contribution of a lag network', partial(_draw_network, kind='i'), panels=2
+    ),
+    ThesisFigure(
+        *('2.7', 'Nichols chart with G_c(s) = K_c/s, K_c = -1'),
+        partial(
+            draw_loop_in_nichols,
+            name='L with G_c = -1/s',
+            controller=integrators(-1.0, 1),
+            specifications=NETWORK_SPECIFICATIONS,
+            thesis_says='very close to -1, and 70° of phase are missing',
         ),
     ),
     ThesisFigure(
-        '2.8',
-        'Nichols chart with G_c1(s)',
-        lambda title: draw_loop_in_nichols(
-            title,
-            'L with G_c1',
-            _G_C1,
-            NETWORK_SPECIFICATIONS,
-            'far from -1, but crosses the circle',
+        *('2.8', 'Nichols chart with G_c1(s)'),
+        partial(
+            draw_loop_in_nichols,
+            name='L with G_c1',
+            controller=_G_C1,
+            specifications=NETWORK_SPECIFICATIONS,
+            thesis_says='far from -1, but crosses the circle',
         ),
     ),
     ThesisFigure(
-        '2.9',
-        'Nichols chart with G_c2(s)',
-        lambda title: draw_loop_in_nichols(
-            title,
-            'L with G_c2',
-            _G_C2,
-            PLACEMENT_SPECIFICATIONS,
-            'the specifications are met; it does not mention the curve',
+        *('2.9', 'Nichols chart with G_c2(s)'),
+        partial(
+            draw_loop_in_nichols,
+            name='L with G_c2',
+            controller=_G_C2,
+            specifications=PLACEMENT_SPECIFICATIONS,
+            thesis_says='the specifications are met; it does not mention the curve',
         ),
     ),
     ThesisFigure(
-        '2.10',
-        'Step response with G_c2(s)',
-        lambda title: draw_step(title, 'G_c2', _G_C2, (0.52, 0.13)),
+        *('2.10', 'Step response with G_c2(s)'),
+        partial(draw_step, name='G_c2', controller=_G_C2, printed=(0.52, 0.13)),
     ),
 )
-"""Those of Section 2.2.2."""
+"""Those of Section 2.2."""

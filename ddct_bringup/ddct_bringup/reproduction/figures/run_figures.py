@@ -1,24 +1,24 @@
 """Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
+from functools import partial
+
 import numpy as np
+from matplotlib.axes import Axes
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.figures.thesis_figure import Drawing, ThesisFigure
-from ddct_bringup.reproduction.runs.groups import RUN_GROUPS, RunGroup
-from ddct_bringup.reproduction.runs.runs import thesis_metrics, thesis_run
+from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
+from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
-from ddct_controllers.design.drawing.chart_style import (
-    BLACK,
-    REFERENCE_LINE,
-    line_styles,
-    new_chart,
-)
-from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_controllers.design.drawing.chart_style import BLACK, REFERENCE_LINE
 from ddct_plant.base.units import rpm_from_rad_s
 
 _FIRST_S = 0.5
 """Start of the time axis: "before 0.6 seconds" (Section 2.3)."""
-_PI_LINE = {'color': BLACK, 'linestyle': '-', 'linewidth': 1.0}
+_STYLES = {
+    'PI': {'color': BLACK, 'linestyle': '-', 'linewidth': 1.0},
+    'reference': REFERENCE_LINE,
+}
 _LABELS = {'w_d': 'w_d, rpm', 'w_sr': 'w_sr, rpm', 'A_x': 'A_x, m/s²'}
 _SCORES = {
     'w_d': (
@@ -61,22 +61,21 @@ def _runs(group: RunGroup) -> dict[str, Trajectory]:
     }
 
 
-def _draw(heading: str, group: RunGroup, quantity: str) -> Drawing:
-    figure, (axes,) = new_chart(heading)
+def _draw(axes: Axes, group: RunGroup, quantity: str) -> str:
     runs = _runs(group)
-    styles = line_styles()
-    for name, run in runs.items():
-        shown = run.time_s >= _FIRST_S
-        style = _PI_LINE if name == 'PI' else next(styles)
-        axes.plot(run.time_s[shown], signal(run, quantity)[shown], label=name, **style)
+    signals = {name: (run, signal(run, quantity)) for name, run in runs.items()}
     if quantity == 'w_d':
-        reference = rpm_from_rad_s(run.slip_reference[shown, 0])
-        axes.plot(run.time_s[shown], reference, label='reference', **REFERENCE_LINE)
-    label_time_axis(axes, _LABELS[quantity], (_FIRST_S, run.time_s[-1]))
-    return Drawing(
-        figure,
+        last = list(runs.values())[-1]
+        signals['reference'] = last, rpm_from_rad_s(last.slip_reference[:, 0])
+    lines = {
+        name: (run.time_s[run.time_s >= _FIRST_S], values[run.time_s >= _FIRST_S])
+        for name, (run, values) in signals.items()
+    }
+    end_s = max(time[-1] for time, _ in lines.values())
+    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _STYLES)
+    return (
         f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
-        + _table_5_1(group, quantity),
+        + _table_5_1(group, quantity)
     )
 
 
@@ -126,7 +125,7 @@ def _names(controllers: tuple[str, ...]) -> str:
 
 def _figure(group: RunGroup, quantity: str, number: str) -> ThesisFigure:
     title = f'{quantity}, {_names(group.controllers)}, {_ARCHITECTURES[group.architecture]}'
-    return ThesisFigure(number, title, lambda heading: _draw(heading, group, quantity))
+    return ThesisFigure(number, title, partial(_draw, group=group, quantity=quantity))
 
 
 RUN_FIGURES = tuple(

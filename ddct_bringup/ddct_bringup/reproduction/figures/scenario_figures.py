@@ -1,32 +1,25 @@
 """Figures of Chapter 1 that can be computed: references, engine torque, plants that agree."""
 
 import dataclasses
-import math
-from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from ddct_bringup.reproduction.figures.thesis_figure import Drawing, ThesisFigure
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_run
-from ddct_controllers.design.drawing.chart_style import (
-    GREY,
-    REFERENCE_LINE,
-    line_styles,
-    new_chart,
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.values.plant_values import (
+    deviation_bound_percent,
+    deviations,
+    plant_slips,
+    simplified_plants,
 )
-from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_controllers.design.drawing.chart_style import GREY, REFERENCE_LINE
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine import Engine
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.simplified.elementary import ElementaryBlockPlant
-from ddct_plant.simplified.plants import (
-    SimplifiedPlant,
-    StateSpacePlant,
-    lti_plant,
-    printed_lti_plant,
-)
+from ddct_plant.simplified.plants import printed_lti_plant
 from ddct_reference.factory import make_reference
 
 _LAST_S = 2.2
@@ -48,96 +41,67 @@ def tanh_scenario(end_s: float) -> Scenario:
     return dataclasses.replace(THESIS_SCENARIO, reference=reference)
 
 
-def _draw_reference(heading: str) -> Drawing:
-    figure, (axes,) = new_chart(heading)
-    time, values = reference_rpm(THESIS_SCENARIO, 'feedforward')
-    axes.plot(time, values, label='reference', **REFERENCE_LINE)
+def _draw_reference(axes: Axes) -> str:
     start_s = THESIS_SCENARIO.control_start_s
-    axes.axvline(start_s, color=GREY, linewidth=1.0, label='control starts')
-    label_time_axis(axes, 'Slip speed reference, rpm', (0.0, _LAST_S))
-    return Drawing(
-        figure,
+    reference = reference_rpm(THESIS_SCENARIO, 'feedforward')
+    start = np.array([start_s, start_s]), np.array([0.0, 1.0])
+    across = {'color': GREY, 'linewidth': 1.0, 'transform': axes.get_xaxis_transform()}
+    draw_over_time(
+        *(axes, 'Slip speed reference, rpm', (0.0, _LAST_S)),
+        {'reference': reference, 'control starts': start},
+        {'reference': REFERENCE_LINE, 'control starts': across},
+    )
+    return (
         'The shape is that of the thesis: w_d under C_fOL alone until '
         f'{start_s:g} s, then a slope to zero. It prints no values: the '
-        f'peak of {np.max(values):.0f} rpm and the slope come from our calibration on Table 5.1.',
+        f'peak of {np.max(reference[1]):.0f} rpm and the slope come from our calibration on Table '
+        '5.1.'
     )
 
 
-def _draw_engine_torque(heading: str) -> Drawing:
-    figure, (axes,) = new_chart(heading)
+def _draw_engine_torque(axes: Axes) -> str:
     engine = Engine(THESIS_SCENARIO.engine)
     steps = np.arange(round(_LAST_S / PERIOD_S) + 1)
     torque = np.array([engine.torque(int(step)) for step in steps])
-    axes.plot(steps * PERIOD_S, torque, label='C_m', **next(line_styles()))
-    label_time_axis(axes, 'Engine torque C_m, N m', (0.0, _LAST_S))
-    return Drawing(
-        figure,
+    quantity, lines = 'Engine torque C_m, N m', {'C_m': (steps * PERIOD_S, torque)}
+    draw_over_time(axes, quantity, (0.0, _LAST_S), lines, {})
+    return (
         'The "sudden growth" in "the first 0.5 seconds" (Chapter 6) is here. The thesis prints no '
-        f'values: the rise to {np.max(torque):.0f} N m is calibrated on Table 5.1.',
+        f'values: the rise to {np.max(torque):.0f} N m is calibrated on Table 5.1.'
     )
 
 
-def _draw_plants(heading: str) -> Drawing:
-    figure, (axes,) = new_chart(heading)
+def _draw_plants(axes: Axes) -> str:
     run = thesis_run('pi', 'detailed', 1.0)
-    detailed = rpm_from_rad_s(run.slip_speed)
-    axes.plot(run.time_s, detailed, color='#c4c4c4', linewidth=6, label='detailed model')
     printed = {_PRINTED_PLANT: printed_lti_plant(THESIS_SCENARIO.driveline)}
-    for (name, slip), style in zip(
-        _plant_slips({**_simplified_plants(), **printed}).items(), line_styles(), strict=False
-    ):
-        axes.plot(run.time_s, rpm_from_rad_s(slip), label=name, **style)
-    label_time_axis(axes, 'w_d, rpm', (0.0, run.time_s[-1]))
-    rounding = 100.0 * _deviations(printed)[_PRINTED_PLANT]
-    return Drawing(
-        figure,
+    slips = {
+        'detailed model': run.slip_speed,
+        **plant_slips({**simplified_plants(), **printed}),
+    }
+    draw_over_time(
+        *(axes, 'w_d, rpm', (0.0, run.time_s[-1])),
+        {name: (run.time_s, rpm_from_rad_s(slip)) for name, slip in slips.items()},
+        {'detailed model': {'color': '#c4c4c4', 'linewidth': 6}},
+    )
+    rounding = 100.0 * deviations(printed)[_PRINTED_PLANT]
+    return (
         'The thesis finds all models equal. Here the three simplified ones are within '
         f'{deviation_bound_percent():g} % of the peak; the rounding of the printed coefficients '
-        f'makes {rounding:.1f} %. The run is that of the PI.',
+        f'makes {rounding:.1f} %. The run is that of the PI.'
     )
 
 
-def deviation_bound_percent() -> float:
-    """Return the power of ten within which w_d of the simplified models is, of its peak."""
-    return 10.0 ** math.ceil(math.log10(100.0 * max(_deviations(_simplified_plants()).values())))
-
-
-def _simplified_plants() -> dict[str, SimplifiedPlant]:
-    parameters = THESIS_SCENARIO.driveline
-    return {
-        'elementary blocks': ElementaryBlockPlant(parameters),
-        'state space': StateSpacePlant(parameters),
-        'LTI': lti_plant(parameters),
+def _draw_tanh(axes: Axes) -> str:
+    lines = {
+        f'tanh, zero at {end_s:.1f} s': reference_rpm(tanh_scenario(end_s), 'feedforward_tanh')
+        for end_s in _END_TIMES_S
     }
-
-
-def _plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
-    """Return w_d in rad/s of each model under the torques of the PI's run, (N+1,)."""
-    run = thesis_run('pi', 'detailed', 1.0)
-    start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
-    torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
-    return {name: plant.simulate(*torques, start) for name, plant in plants.items()}
-
-
-def _deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
-    detailed = thesis_run('pi', 'detailed', 1.0).slip_speed
-    return {
-        name: float(np.abs(slip - detailed).max() / np.abs(detailed).max())
-        for name, slip in _plant_slips(plants).items()
-    }
-
-
-def _draw_tanh(heading: str) -> Drawing:
-    figure, (axes,) = new_chart(heading)
-    for end_s, style in zip(_END_TIMES_S, line_styles(), strict=False):
-        time, values = reference_rpm(tanh_scenario(end_s), 'feedforward_tanh')
-        axes.plot(time, values, label=f'tanh, zero at {end_s:.1f} s', **style)
-    axes.plot(*reference_rpm(THESIS_SCENARIO, 'feedforward'), label="CRF's", **REFERENCE_LINE)
-    label_time_axis(axes, 'Slip speed reference, rpm', (0.0, _LAST_S))
-    return Drawing(
-        figure,
+    lines["CRF's"] = reference_rpm(THESIS_SCENARIO, 'feedforward')
+    quantity = 'Slip speed reference, rpm'
+    draw_over_time(axes, quantity, (0.0, _LAST_S), lines, {"CRF's": REFERENCE_LINE})
+    return (
         'Goes to zero more smoothly than that of CRF, at a time that can be chosen, as the thesis '
-        'says. It prints no formula: steepness and end are ours.',
+        'says. It prints no formula: steepness and end are ours.'
     )
 
 

@@ -2,24 +2,36 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ddct_bringup.reproduction.numbers.gate import GateRow, judge
 from ddct_bringup.reproduction.numbers.gate_tables import (
     chapter_tables,
-    errata_table,
-    facts_table,
     page_tables,
-    summary_table,
 )
 from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
-from ddct_bringup.reproduction.numbers.sources import SOURCES, compute
-from ddct_plant.base.errors import DdctError
+from ddct_bringup.reproduction.numbers.thesis_number import Value
+from ddct_bringup.reproduction.values.closed_loop_values import closed_loop_values
+from ddct_bringup.reproduction.values.controller_values import predictive_values
+from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
+from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
+from ddct_bringup.reproduction.values.plant_values import plant_values
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.program.table import print_table
 
+Source = Callable[[], Mapping[str, Value | None]]
+"""Returns values by the ids of the gate's file, None for what has no value."""
+SOURCES: Mapping[str, Source] = {
+    'plant': plant_values,
+    'loop shaping': loop_shaping_values,
+    'H-infinity': h_infinity_values,
+    'predictive control': predictive_values,
+    'closed loop': closed_loop_values,
+}
+"""What computes the numbers of the gate's files, chapter by chapter."""
 _DESCRIPTION = """\
 Compute every number that the thesis prints and hold it against the print:
 reproduced, erratum (the thesis's own numbers lead to another value), calibrated
@@ -66,13 +78,33 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
+def compute(
+    sources: Mapping[str, Source], progress: Callable[[str], None] = lambda name: None
+) -> dict[str, Value | None]:
+    """
+    Return what all sources compute; `progress` is called with the name of each one first.
+
+    Raise ParameterError when two of them compute the same number.
+    """
+    values: dict[str, Value | None] = {}
+    for name, source in sources.items():
+        progress(name)
+        found = source()
+        twice = sorted(values.keys() & found.keys())
+        if twice:
+            raise ParameterError(f'thesis numbers of {name}: computed already: {", ".join(twice)}')
+        values.update(found)
+    return values
+
+
 def _progress(name: str) -> None:
     print(f'reproduce numbers: {name}', file=sys.stderr, flush=True)
 
 
 def _print(rows: Sequence[GateRow]) -> None:
-    tables = chapter_tables(rows, reasons=False).values()
-    for table in (*tables, errata_table(rows), summary_table(rows), facts_table(rows)):
+    tables = page_tables(rows) | chapter_tables(rows, reasons=False)
+    last = [tables.pop(name) for name in ('errata', 'summary', 'facts')]
+    for table in (*tables.values(), *last):
         print_table(table)
 
 

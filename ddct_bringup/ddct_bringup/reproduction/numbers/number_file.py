@@ -1,18 +1,23 @@
 """Read the gate's files, `chapters/`: blocks of numbers that share a section or a reason."""
 
 import importlib.resources
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
-from ddct_bringup.reproduction.numbers.groups import require_one_rule
-from ddct_bringup.reproduction.numbers.thesis_number import ThesisNumber, Tolerance
+from ddct_bringup.reproduction.numbers.thesis_number import (
+    ERRATUM,
+    REPRODUCED,
+    ThesisNumber,
+    Tolerance,
+)
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import parse_yaml
 
 _KEYS = frozenset(field.name for field in fields(ThesisNumber))
 _NUMBERS = 'numbers'
+_OF_THE_PRINT = 'reproduced or erratum'
 
 
 def thesis_numbers() -> tuple[ThesisNumber, ...]:
@@ -35,7 +40,7 @@ def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
     repeated = [name for name, count in names.items() if count > 1]
     if repeated:
         raise ParameterError(f'given twice: {"; ".join(repeated)}')
-    require_one_rule(numbers)
+    _require_one_rule(numbers)
     return tuple(sorted(numbers, key=_place))
 
 
@@ -68,3 +73,25 @@ def _number(entry: dict[str, Any]) -> ThesisNumber:
         return ThesisNumber(**entry, tolerance=Tolerance(**tolerance) if tolerance else None)
     except TypeError as error:
         raise ParameterError(f'{name}: {error}') from error
+
+
+def _require_one_rule(numbers: Iterable[ThesisNumber]) -> None:
+    """
+    Raise ParameterError for a group that does not treat its numbers alike.
+
+    All numbers of a group come from one kind of source, so that none can stand without a computed
+    value beside others that have one, and those of one unit have one tolerance.
+    """
+    verdicts: dict[str, set[str]] = defaultdict(set)
+    tolerances: dict[tuple[str, str], set[Tolerance]] = defaultdict(set)
+    for number in numbers:
+        of_the_print = number.verdict in (REPRODUCED, ERRATUM)
+        verdicts[number.fact].add(_OF_THE_PRINT if of_the_print else number.verdict)
+        if number.tolerance:
+            tolerances[number.fact, number.unit].add(number.tolerance)
+    for name, kinds in verdicts.items():
+        if len(kinds) > 1:
+            raise ParameterError(f'group {name!r}: verdicts of different kinds: {sorted(kinds)}')
+    for (name, unit), found in tolerances.items():
+        if len(found) > 1:
+            raise ParameterError(f'group {name!r}: more than one tolerance in {unit}')

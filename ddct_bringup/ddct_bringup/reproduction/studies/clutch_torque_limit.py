@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from scipy.linalg import toeplitz
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.reproduction.studies.scored_run import metrics_of
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE, ThesisRow
@@ -25,7 +25,6 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import text_or_dash
-from ddct_plant.scenario.settings import RunSettings
 
 PRINTED_STRAYS_RAD_S = (1.0, 2.0, 6.0)
 """How far the slip may stray after t_a; the thesis does not print how far its runs did."""
@@ -48,9 +47,8 @@ def clutch_torque_limit() -> Study:
     clutch_only = [row for row in THESIS_TABLE if row.controller != 'mpc4']
     rows = []
     for controller in (*(row.controller for row in clutch_only), 'hinf_sampled'):
-        settings = RunSettings(THESIS_SCENARIO)
         run = thesis_run(controller, 'detailed', 1.0)
-        metrics = metrics_of(settings, run)
+        metrics = thesis_metrics(run)
         time = metrics.engagement_time_s
         if time is None:
             raise DdctError(f'{controller} does not engage in the thesis scenario')
@@ -87,12 +85,12 @@ def _cells(
     bound = limit_at(round(engagement_time_s, 2), strays_rad_s)
     return (
         label,
-        text_or_dash(engagement_time_s, '.2f'),
-        text_or_dash(strays_rad_s, '.1f'),
+        f'{engagement_time_s:.2f}',
+        f'{strays_rad_s:.1f}',
         text_or_dash(figures.torsion_speed_std_rpm, '.2f'),
-        text_or_dash(bound.torsion_speed_std_rpm, '.2f'),
+        f'{bound.torsion_speed_std_rpm:.2f}',
         text_or_dash(figures.acceleration_std_m_s2, '.3f'),
-        text_or_dash(bound.acceleration_std_m_s2, '.3f'),
+        f'{bound.acceleration_std_m_s2:.3f}',
     )
 
 
@@ -162,15 +160,12 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
         'acceleration': (acceleration, load),
     }
     return {
-        name: (np.array(free) @ row - known_part, _toeplitz(np.array(response) @ row))
+        name: (np.array(free) @ row - known_part, _delayed(np.array(response) @ row))
         for name, (row, known_part) in outputs.items()
     }
 
 
-def _toeplitz(response: np.ndarray) -> np.ndarray:
+def _delayed(response: np.ndarray) -> np.ndarray:
     """Return (n, n - 1): column k is the response, which starts a period later, from step k."""
-    size = len(response)
-    rows = np.zeros((size, size - 1))
-    for k in range(size - 1):
-        rows[k + 1 :, k] = response[: size - 1 - k]
-    return rows
+    none = np.zeros(len(response) - 1)
+    return toeplitz(np.concatenate([[0.0], response[:-1]]), none)

@@ -2,15 +2,46 @@
 
 import argparse
 import sys
+from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.reproduction.studies.catalogue import STUDIES
-from ddct_bringup.reproduction.studies.study import Study
+from ddct_bringup.reproduction.studies import (
+    admissible_scenarios,
+    clutch_torque_limit,
+    mpc4_readings,
+    readings,
+    sweeps,
+    torque_level,
+    wear,
+)
+from ddct_bringup.reproduction.studies.study import Study, StudyFunction
 from ddct_plant.base.checks import require_choice
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.page_tables import fill_tables, marked_tables, read_page
 from ddct_plant.program.table import print_table
 
+STUDIES: Mapping[str, StudyFunction] = {
+    function.__name__: function
+    for function in (
+        admissible_scenarios.admissible_scenarios,
+        clutch_torque_limit.clutch_torque_limit,
+        sweeps.engine_authority,
+        mpc4_readings.mpc4_readings,
+        sweeps.pedal_positions,
+        admissible_scenarios.prediction_ranges,
+        readings.readings,
+        admissible_scenarios.score_windows,
+        sweeps.state_of_art,
+        torque_level.torque_level,
+        sweeps.torsion_weight,
+        sweeps.two_input_wear,
+        wear.wear,
+        wear.wear_estimate,
+        wear.wear_feedforward,
+        admissible_scenarios.worn_ranges,
+    )
+}
+"""Every study by its name."""
 PAGE_MARK = 'studies'
 _DESCRIPTION = """\
 Chapter 4 and what it leaves to future work: closed-loop studies of the predictive

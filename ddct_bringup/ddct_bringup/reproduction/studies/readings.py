@@ -3,27 +3,28 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.open_loop_readings import OpenLoopOff, OpenLoopUnknown
-from ddct_bringup.reproduction.studies.scored_run import FIGURE_HEADERS, figures, scored_run
-from ddct_bringup.reproduction.studies.study import Study
-from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.thesis.table_5_1 import thesis_row
-from ddct_controllers.interface import Controller
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO
+from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
+from ddct_bringup.reproduction.studies.study import (
+    TABLE_5_1,
+    Column,
+    Study,
+    StudyRun,
+    cells,
+    headers,
+    study_run,
+)
+from ddct_bringup.thesis.table_5_1 import ROW_OF
+from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow, thesis_settings
 from ddct_controllers.mpc.estimators import stationary_filter
 from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL, Knowledge
-from ddct_controllers.mpc.model.transmission_model import (
-    REQUEST,
-    SLIP_SPEED,
-    TransmissionModel,
-    transmission_model,
-)
+from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -45,30 +46,81 @@ class Reading:
     """What becomes of C_fOL beside the controller."""
     architecture: str = 'detailed'
 
-    def score(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> Metrics:
-        """Return the metrics of its run in a scenario with the thesis's driveline."""
+    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
+        """Return its run in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
         settings = self.change(thesis_settings(row))
         parts = stationary_filter(run, self.knowledge, self.model, noise_rpm=self.noise_rpm)
-        return scored_run(run, self.beside(MpcController(*parts, settings)))
+        return study_run(run, self.beside(MpcController(*parts, settings)))
 
 
 def readings() -> Study:
     """Return the figures of MPC1-3 under each reading; the first is what the registry has."""
-    rows = []
-    for name, row in TABLE_4_1.items():
-        for label, reading in READINGS.items():
-            metrics = reading.score(row)
-            left = text_or_dash(metrics.slip_final_rpm, 'z.1f')
-            rows.append((name, label, *figures(metrics), left))
-    printed = thesis_row('mpc3')
-    assert printed is not None
-    print_out = tuple(format(value, 'g') for value in printed.figures().values())
+    columns = (
+        *TABLE_5_1,
+        Column('w_d at the end rpm', 'z.1f', attrgetter('metrics.slip_final_rpm')),
+    )
+    rows = [
+        (name, label, *cells(columns, reading.run(row)))
+        for name, row in TABLE_4_1.items()
+        for label, reading in READINGS.items()
+    ]
     return Study(
         'MPC1-3 in the thesis scenario, by reading of Section 4.2',
-        ('controller', 'reading', *FIGURE_HEADERS, 'w_d at the end rpm'),
-        [*rows, ('MPC3', 'as the thesis prints it', *print_out, '-')],
+        ('controller', 'reading', *headers(columns)),
+        [*rows, ('MPC3', 'as the thesis prints it', *ROW_OF['mpc3'].cells(), '-')],
     )
+
+
+class OpenLoopUnknown(Controller):
+    """The MPC takes its own torque for all there is, while C_fOL acts beside it."""
+
+    def __init__(self, controller: MpcController) -> None:
+        self._controller = controller
+        self.preview_steps = controller.preview_steps
+
+    def reset(self) -> None:
+        """Reset the MPC."""
+        self._controller.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        """Hold the MPC, which believes that the clutch is open."""
+        self._controller.hold(replace(measurement, open_loop_torque=0.0))
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return the MPC's answer, to which the architecture adds C_fOL."""
+        return self._controller.update(replace(measurement, open_loop_torque=0.0))
+
+
+class OpenLoopOff(Controller):
+    """
+    C_fOL is taken off at control start, and the MPC gives the whole torque.
+
+    With `from_zero` its moves are counted from no torque at all, so the first has to bring it all;
+    otherwise from the torque that there was.
+    """
+
+    def __init__(self, controller: MpcController, *, from_zero: bool = False) -> None:
+        self._controller = controller
+        self._from_zero = from_zero
+        self.preview_steps = controller.preview_steps
+        self._taken_over = 0.0
+
+    def reset(self) -> None:
+        """Reset the MPC and forget the torque."""
+        self._controller.reset()
+        self._taken_over = 0.0
+
+    def hold(self, measurement: Measurement) -> None:
+        """Note the torque to go on from."""
+        self._controller.hold(measurement)
+        self._taken_over = 0.0 if self._from_zero else measurement.open_loop_torque
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return the MPC's whole request less the C_fOL that the architecture adds."""
+        command = self._controller.update(replace(measurement, open_loop_torque=self._taken_over))
+        whole = command.clutch_torque + self._taken_over
+        return replace(command, clutch_torque=whole - measurement.open_loop_torque)
 
 
 def _coming(settings: MpcSettings) -> MpcSettings:
@@ -96,22 +148,13 @@ def _torque_weighed(settings: MpcSettings) -> MpcSettings:
     return replace(settings, inputs=(InputTerms(target_weight=BASIS.move_weight),))
 
 
-def _without_actuator() -> TransmissionModel:
-    """Return a model whose clutch transmits the request at once: P_1, P_2 and P_3 alone."""
-    model = transmission_model(THESIS_SCENARIO.driveline)
-    a, b = model.a.copy(), model.b.copy()
-    a[:4, 4:] = 0.0
-    b[:, REQUEST] += model.clutch
-    return TransmissionModel(a, b, model.c, model.d, model.clutch)
-
-
 READINGS: Mapping[str, Reading] = {
     'as Figure 4.2 draws it': Reading(),
     'coming reference': Reading(_coming),
     'w_m, w_p and w_r measured': Reading(knowledge=replace(AS_DRAWN, measured='speeds')),
     'C_load known': Reading(knowledge=replace(AS_DRAWN, load_known=True)),
     'delay in its model': Reading(knowledge=replace(AS_DRAWN, delay_in_model=True)),
-    'no actuator in its model': Reading(model=_without_actuator()),
+    'no actuator in its model': Reading(model=model_without_actuator(THESIS_SCENARIO.driveline)),
     'w_d in rad/s, its weight and its noise': Reading(_per_rad_s, noise_rpm=rpm_from_rad_s(1.0)),
     'Q per rad/s, noise as it is': Reading(_per_rad_s),
     'weights not squared': Reading(_not_squared),

@@ -1,9 +1,24 @@
-"""What a study is: a table that closed-loop runs make of predictive controllers."""
+"""What a study is: a table that closed-loop runs make, row by row, and what its columns are."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from operator import attrgetter
 
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.reproduction.runs import metrics_of
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.metrics import Metrics
+from ddct_controllers.interface import Controller
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Table
+from ddct_plant.scenario.settings import RunSettings
+
+CLOSE_RPM = 10.0
+"""2 % of the slip at control start in the thesis scenario; a line's width in a plot of it."""
 
 
 @dataclass(frozen=True)
@@ -19,3 +34,104 @@ class Study(Table):
 
 
 StudyFunction = Callable[[], Study]
+
+
+@dataclass(frozen=True, eq=False)
+class StudyRun:
+    """One run of a study."""
+
+    settings: RunSettings
+    controller: str | Controller
+    """Name in the registry, or the object that ran."""
+    trajectory: Trajectory
+
+    @cached_property
+    def metrics(self) -> Metrics:
+        """What the run scores."""
+        return metrics_of(self.settings, self.trajectory)
+
+    @property
+    def slip_rpm(self) -> np.ndarray:
+        """w_d, (N+1,)."""
+        return rpm_from_rad_s(self.trajectory.slip_speed)
+
+    @property
+    def start(self) -> int:
+        """The step at which control starts."""
+        return self.settings.scenario.control_start_step
+
+
+def study_run(settings: RunSettings, controller: str | Controller) -> StudyRun:
+    """Run a controller headless."""
+    return StudyRun(settings, controller, run_headless(settings, controller))
+
+
+@dataclass(frozen=True)
+class Column:
+    """One figure of a run."""
+
+    header: str
+    form: str
+    """Format of the value."""
+    value: Callable[[StudyRun], float | str | None]
+    """None, shown as a dash, for what is undefined."""
+
+
+def headers(columns: Sequence[Column]) -> tuple[str, ...]:
+    """Return what stands above the columns."""
+    return tuple(column.header for column in columns)
+
+
+def cells(columns: Sequence[Column], run: StudyRun) -> tuple[str, ...]:
+    """Return what stands below them for a run."""
+    values = [column.value(run) for column in columns]
+    return tuple(
+        '-' if value is None else format(value, column.form)
+        for value, column in zip(values, columns, strict=True)
+    )
+
+
+def run_study(
+    title: str,
+    keys: Sequence[str],
+    columns: Sequence[Column],
+    cases: Iterable[tuple[tuple[str, ...], StudyRun]],
+    remarks: tuple[str, ...] = (),
+) -> Study:
+    """Return the table with a row per case: its cells below the keys, then the columns."""
+    rows = [(*labels, *cells(columns, run)) for labels, run in cases]
+    return Study(title, (*keys, *headers(columns)), rows, remarks)
+
+
+def close_time_s(trajectory: Trajectory, start: int) -> float | None:
+    """Return how long after step `start` |w_d| falls below CLOSE_RPM for good, None for never."""
+    far = np.flatnonzero(np.abs(rpm_from_rad_s(trajectory.slip_speed)) >= CLOSE_RPM)
+    last = far[-1] if far.size else -1
+    return None if last == trajectory.steps else float(max(last + 1 - start, 0) * PERIOD_S)
+
+
+def deviation_range(trajectory: Trajectory) -> str:
+    """Return the lowest and the highest C_m - demand of a run in N m."""
+    deviation = trajectory.engine_torque - trajectory.torque_demand
+    return f'{deviation.min():.0f} to {deviation.max():.0f}' if deviation.any() else '0'
+
+
+def close_column(header: str) -> Column:
+    """Return the column of `close_time_s`."""
+    return Column(header, '.2f', lambda run: close_time_s(run.trajectory, run.start))
+
+
+TABLE_5_1 = (
+    Column('t_a s', '.3f', attrgetter('metrics.engagement_time_s')),
+    Column('std w_sr rpm', '.2f', attrgetter('metrics.torsion_speed_std_rpm')),
+    Column('std A_x m/s^2', '.3f', attrgetter('metrics.acceleration_std_m_s2')),
+)
+"""The figures that Table 5.1 has."""
+TWO_INPUTS = (
+    TABLE_5_1[0],
+    close_column(f'|w_d| < {CLOSE_RPM:g} rpm s'),
+    *TABLE_5_1[1:],
+    Column('w_d at end rpm', '.1f', attrgetter('metrics.slip_final_rpm')),
+    Column('C_m - demand N m', '', lambda run: deviation_range(run.trajectory)),
+)
+"""Those of a controller of clutch and engine."""

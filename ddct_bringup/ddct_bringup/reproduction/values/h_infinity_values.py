@@ -1,18 +1,49 @@
-"""What we compute for the numbers of Chapter 3, H-infinity."""
+"""What we compute for the numbers of Chapter 3, H-infinity: weights, synthesis, Hinf1's norms."""
 
 import math
 
 import numpy as np
 
-from ddct_bringup.reproduction.numbers.thesis_number import Value
+from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
+from ddct_bringup.reproduction.values.controller_values import (
+    coefficients,
+    fulfilled,
+    in_the_form_of,
+    pair,
+    real,
+    sampled_values,
+    step_figures,
+    step_values,
+)
 from ddct_bringup.reproduction.values.loop_shaping_values import translation
-from ddct_bringup.reproduction.values.norm_values import norm_values
-from ddct_bringup.reproduction.values.sampled_values import sampled_values
-from ddct_bringup.reproduction.values.step_values import step_values
-from ddct_bringup.reproduction.values.synthesis_values import synthesis_values
+from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.h_infinity.cleaning import clean
+from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
 from ddct_controllers.design.loop_shaping.networks import poles_at_zero
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_controllers.synthesised import synthesised_design
+from ddct_plant.base.units import RAD_S_PER_RPM
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction
+
+RAW_CONTROLLER = FactoredTransferFunction(
+    gain=-434.85,
+    numerator=(0.7567, 0.009368, 0.004946, (82.23, 2563.0), (121.4, 7696.0), (134.1, 4.27e4)),
+    denominator=(
+        *(1.418e5, 138.0, 89.52, 0.005905),
+        (0.01896, 9.053e-5),
+        (5.344, 339.4),
+        (146.2, 2.914e4),
+    ),
+)
+"""G_c(s) of hinflmi (Section 3.2.2) as printed, before it is cleaned."""
+_WORN_ERROR = 0.3
+"""|G_p/G_pn - 1| at the ends of 0.7 <= K_usura <= 1.3."""
+_SAME = 0.1
+"""Relative distance within which a printed factor can be meant to cancel one of the plant."""
 
 
 def h_infinity_values() -> dict[str, Value | None]:
@@ -22,8 +53,8 @@ def h_infinity_values() -> dict[str, Value | None]:
         '3.2 w_n': THESIS_SPECIFICATIONS.natural_frequency_rad_s,
         'rise formula': _rise_formula(),
         'W_2 of sderiv': _synthesised_weight(),
-        **norm_values(),
-        **synthesis_values(),
+        **_norm_values(),
+        **_synthesis_values(),
         **step_values(('hinf2', 'hinf3')),
         'hinf3 integrators': poles_at_zero(H_INFINITY_CONTROLLERS['hinf3']),
         **sampled_values('hinf1'),
@@ -43,3 +74,83 @@ def _synthesised_weight() -> str:
     made = float(np.polymul([1.0, 1.0], [1.0, 1.0])[1])
     printed = 2.0 * PRINTED_WEIGHTS.complementary.damping
     return 'W_t(s)' if math.isclose(made, printed, abs_tol=5e-4) else '(1 + s/w_2)^2/T_p'
+
+
+def _norm_values() -> dict[str, Value | None]:
+    """Section 3.2: the weights, and what the printed and the rescaled Hinf1 make of them."""
+    hinf1 = H_INFINITY_CONTROLLERS['hinf1']
+    # From the slow pole pair, (s + epsilon)^2, of the raw controller.
+    epsilon_rad_s = math.sqrt(pair(RAW_CONTROLLER.denominator[4])[1])
+    crossover = loop_margins(continuous_loop(RAW_CONTROLLER)).crossover_rad_s
+    cleaned, _ = clean(RAW_CONTROLLER, epsilon_rad_s)
+    rescaled = cleaned.gain / RAD_S_PER_RPM
+    return {
+        'Butterworth': 2.0 * PRINTED_WEIGHTS.complementary.damping,
+        'w_1': PRINTED_WEIGHTS.sensitivity.corner_rad_s,
+        'W_u s': _WORN_ERROR,
+        'W_u constant': _WORN_ERROR * -float(PRINTED_W_U.poles[0].real),
+        'epsilon / w_c': epsilon_rad_s / crossover if crossover else None,
+        'gain of Hinf1.gain': cleaned.gain,
+        **_figures('gain of Hinf1', hinf1),
+        'raw gain times 30/pi.gain': rescaled,
+        **_figures(
+            'raw gain times 30/pi',
+            FactoredTransferFunction(rescaled, hinf1.numerator, hinf1.denominator),
+        ),
+    }
+
+
+def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value | None]:
+    """Return every figure that Sections 3.2.2 and 3.3 print for Hinf1, of `controller`."""
+    loop = continuous_loop(controller)
+    w_s, w_t = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
+    norms = weighted_norms(loop, w_s, w_t, PRINTED_W_U)
+    rise_time, percent = step_figures(loop)
+    nominal = max(norms.sensitivity, norms.complementary) < 1.0
+    return {
+        f'{name}.norm W_s S': norms.sensitivity,
+        f'{name}.norm W_t T': norms.complementary,
+        f'{name}.norm W_u T': norms.uncertainty,
+        f'{name}.nominal performance': 'ensured' if nominal else 'not ensured',
+        f'{name}.robust stability': 'ensured' if norms.uncertainty < 1.0 else 'not ensured',
+        f'{name}.specifications': fulfilled(controller, THESIS_SPECIFICATIONS),
+        f'{name}.rise time': rise_time,
+        f'{name}.overshoot': percent,
+    }
+
+
+def _synthesis_values() -> dict[str, Value | None]:
+    """Section 3.2.2 synthesised again: whole controllers, no part of one."""
+    by_printed, by_fitted = design_h_infinity(PRINTED_WEIGHTS), synthesised_design('hinf_fitted')
+    hinf1 = H_INFINITY_CONTROLLERS['hinf1']
+    cleaned = coefficients('hinf1 by fitted weights', in_the_form_of(hinf1, by_fitted.cleaned))
+    del cleaned['hinf1 by fitted weights.pole 1']  # The pole at 0, which the cleaning puts there.
+    return {
+        **coefficients('raw by printed weights', in_the_form_of(RAW_CONTROLLER, by_printed.raw)),
+        **coefficients('raw by fitted weights', in_the_form_of(RAW_CONTROLLER, by_fitted.raw)),
+        **cleaned,
+        **_cancelled(),
+    }
+
+
+def _cancelled() -> dict[str, Value | None]:
+    """
+    Return what an H-infinity controller cancels: all that is stable in G_a P_2.
+
+    Its zeros are the plant's poles without the one at 0, its poles the plant's zeros in the left
+    half-plane.
+    """
+    plant = plant_in_rpm()
+    zeros = [factor for factor in plant.numerator if not _grows(factor)]
+    poles = [factor for factor in plant.denominator if factor != 0.0]
+    whole = FactoredTransferFunction(1.0, tuple(poles), tuple(zeros))
+    found: dict[str, Value | None] = dict(coefficients('cancelled', whole))
+    del found['cancelled.gain']
+    fast = pair(max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1]))
+    numerator = H_INFINITY_CONTROLLERS['hinf2'].numerator
+    has = any(isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _SAME for f in numerator)
+    return found | {'hinf2 fast pair': Finding(has, f's^2 + {fast[0]:g} s + {fast[1]:g}')}
+
+
+def _grows(factor: Factor) -> bool:
+    return (factor[0] if isinstance(factor, tuple) else real(factor)) < 0.0

@@ -1,16 +1,17 @@
 """What we compute for the numbers of Chapter 2, loop shaping."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
-from ddct_bringup.reproduction.values.coefficients import coefficients, in_the_form_of
-from ddct_bringup.reproduction.values.factors import pair, real
-from ddct_bringup.reproduction.values.sampled_values import sampled_values
-from ddct_bringup.reproduction.values.step_values import (
+from ddct_bringup.reproduction.values.controller_values import (
+    coefficients,
     fulfilled,
+    in_the_form_of,
+    pair,
+    real,
+    sampled_values,
     step_values,
 )
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
@@ -56,20 +57,28 @@ _SAMPLED_PAIR = 0.9481
 
 def loop_shaping_values() -> dict[str, Value | None]:
     """Return the values by the ids of the gate's file."""
+    steps = step_values(LOOP_SHAPING_CONTROLLERS)
+    percent = steps['ls7.overshoot']
+    # t_r w_c bounds what is chosen from below.
+    bound = _PRINTED_PRODUCT / PLACEMENT_SPECIFICATIONS.rise_time_s
+    # The printed pole pairs are s^2 + b s + ... and z^2 + ... + c: c = exp(-b T).
+    b, _ = pair(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
     return {
         **translation('2.2', NETWORK_SPECIFICATIONS),
         '2.2 t_r w_c': rise_time_crossover_product(NETWORK_SPECIFICATIONS.damping),
-        **_crossovers(),
+        '2.2 w_c': _PRINTED_PRODUCT / NETWORK_SPECIFICATIONS.rise_time_s,
+        '2.2 w_c of G_c2': Finding(bound <= PLACEMENT_CROSSOVER_RAD_S, f'at least {bound:.2f}'),
         **_steady_state(),
         **_sign(),
         **_networks(),
         **_placement(),
-        **_table_2_1(),
+        **steps,
+        'ls7.peak': None if percent is None else 1.0 + percent / 100.0,
         'G_c2 specifications': fulfilled(
             LOOP_SHAPING_CONTROLLERS['ls7'], PLACEMENT_SPECIFICATIONS
         ),
         **sampled_values('ls7'),
-        'sampling period': 1e3 * _sampling_period_s(),
+        'sampling period': 1e3 * (-math.log(_SAMPLED_PAIR) / b),
     }
 
 
@@ -79,16 +88,6 @@ def translation(section: str, specifications: TimeSpecifications) -> dict[str, V
         f'{section} zeta': specifications.damping,
         f'{section} S_p': specifications.sensitivity_peak,
         f'{section} T_p': specifications.complementary_peak,
-    }
-
-
-def _crossovers() -> dict[str, Value | None]:
-    """Return w_c from the printed t_r w_c, which bounds what is chosen from below."""
-    bound = _PRINTED_PRODUCT / PLACEMENT_SPECIFICATIONS.rise_time_s
-    chosen = PLACEMENT_CROSSOVER_RAD_S
-    return {
-        '2.2 w_c': _PRINTED_PRODUCT / NETWORK_SPECIFICATIONS.rise_time_s,
-        '2.2 w_c of G_c2': Finding(chosen >= bound, f'at least {bound:.2f}'),
     }
 
 
@@ -148,15 +147,3 @@ def _placement() -> dict[str, Value | None]:
     found = coefficients('G_c2', in_the_form_of(LOOP_SHAPING_CONTROLLERS['ls7'], placed))
     # The pole at 0 follows from mu.
     return {name: value for name, value in found.items() if name != 'G_c2.pole 1'}
-
-
-def _table_2_1() -> Mapping[str, Value | None]:
-    found = step_values(LOOP_SHAPING_CONTROLLERS)
-    percent = found['ls7.overshoot']
-    return found | {'ls7.peak': None if percent is None else 1.0 + percent / 100.0}
-
-
-def _sampling_period_s() -> float:
-    """Return T of the printed pole pairs s^2 + b s + ... and z^2 + ... + c: c = exp(-b T)."""
-    b, _ = pair(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
-    return -math.log(_SAMPLED_PAIR) / b

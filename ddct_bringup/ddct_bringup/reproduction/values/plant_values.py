@@ -1,11 +1,14 @@
 """What we compute for the numbers of Chapter 1: driveline, actuator, load, feedforward."""
 
 import dataclasses
+import math
+from collections.abc import Mapping
 
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_bringup.reproduction.values.factors import pair, real
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.values.controller_values import pair, real
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
@@ -22,7 +25,8 @@ from ddct_plant.models.printed import (
     ENGINE_TO_SLIP,
     LOAD_TO_SLIP,
 )
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.simplified.elementary import ElementaryBlockPlant
+from ddct_plant.simplified.plants import SimplifiedPlant, StateSpacePlant, lti_plant
 
 
 def plant_values() -> dict[str, Value | None]:
@@ -39,8 +43,9 @@ def plant_values() -> dict[str, Value | None]:
             CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP, 'P2', 'zero c'
         )[0],
         **_shared_poles(driveline),
-        'actuator.gain': _unit_gain_at_rest(ACTUATOR),
-        'engine.rise end': load_scenario('thesis').engine.time_s[-1],
+        # The gain that makes G_a(0) = 1 with these zeros and poles.
+        'actuator.gain': ACTUATOR.gain / float(ACTUATOR.at(np.array(0.0)).real),
+        'engine.rise end': THESIS_SCENARIO.engine.time_s[-1],
         'driveline.ratio': driveline.total_ratio,
         **_equations(driveline),
         **_compensators(),
@@ -52,11 +57,6 @@ def _shared_poles(driveline: DrivelineParameters) -> dict[str, Value]:
     slow, fast = load_to_slip(driveline).denominator
     b, c = pair(fast)
     return {'p3.pole a': real(slow), 'p3.pole b': b, 'p3.pole c': c}
-
-
-def _unit_gain_at_rest(shape: FactoredTransferFunction) -> float:
-    """Return the gain that makes G(0) = 1 with these zeros and poles."""
-    return shape.gain / float(shape.at(np.array(0.0)).real)
 
 
 def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
@@ -100,3 +100,35 @@ def _buildable(path: FactoredTransferFunction, inverted: FactoredTransferFunctio
     unstable = int(np.count_nonzero(inverted.zeros.real > 0.0))
     proper = 'improper, ' if order < 0 else ''
     return f'{proper}{unstable} unstable poles'
+
+
+def deviation_bound_percent() -> float:
+    """Return the power of ten within which w_d of the simplified models is, of its peak."""
+    return 10.0 ** math.ceil(math.log10(100.0 * max(deviations(simplified_plants()).values())))
+
+
+def simplified_plants() -> dict[str, SimplifiedPlant]:
+    """Return the three simplified models of Section 1.5.1."""
+    parameters = THESIS_SCENARIO.driveline
+    return {
+        'elementary blocks': ElementaryBlockPlant(parameters),
+        'state space': StateSpacePlant(parameters),
+        'LTI': lti_plant(parameters),
+    }
+
+
+def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
+    """Return w_d in rad/s of each model under the torques of the PI's run, (N+1,)."""
+    run = thesis_run('pi', 'detailed', 1.0)
+    start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
+    torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
+    return {name: plant.simulate(*torques, start) for name, plant in plants.items()}
+
+
+def deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
+    """Return how far w_d of each model is from the detailed one, as a share of its peak."""
+    detailed = thesis_run('pi', 'detailed', 1.0).slip_speed
+    return {
+        name: float(np.abs(slip - detailed).max() / np.abs(detailed).max())
+        for name, slip in plant_slips(plants).items()
+    }

@@ -61,9 +61,9 @@ def test_slip_that_does_not_reach_zero_is_not_admissible():
 
 def test_no_predictive_controller_is_run(monkeypatch):
     run: list[str] = []
-    real = admissible.run_headless
+    real = admissible.scored_run
     monkeypatch.setattr(
-        admissible, 'run_headless', lambda settings, name: run.append(name) or real(settings, name)
+        admissible, 'scored_run', lambda settings, name: run.append(name) or real(settings, name)
     )
     why_not_admissible(SCENARIO)
     assert set(run) == set(ROWS)

@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 from ddct_bringup.reproduction.calibration.analysis import identifiability
-from ddct_bringup.reproduction.calibration.parameters import BASE, PARAMETERS, PI_ONLY, RANGE, ROWS
+from ddct_bringup.reproduction.calibration.parameters import (
+    BASE,
+    PARAMETERS,
+    PI_ONLY,
+    RANGE,
+    ROWS,
+    values_of,
+)
 from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_figures
-from ddct_bringup.reproduction.calibration.record import check_frozen, values_of
+from ddct_bringup.reproduction.calibration.record import check_frozen
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
 from ddct_plant.base.errors import ParameterError

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ddct_bringup.reproduction.calibration import record
-from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.parameters import pi_growth_rate
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem
-from ddct_bringup.reproduction.calibration.search import LocalOptimum, Search, lowest_stable
+from ddct_bringup.reproduction.calibration.search import Search, lowest_stable
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -55,9 +55,9 @@ def test_too_much_proportional_gain_is_unstable_too():
     assert pi_growth_rate(driveline, 0.1, 0.02) < 0.0 < pi_growth_rate(driveline, 3.0, 0.02)
 
 
-def optimum(proportional_gain: float, integral_gain: float, residual: float) -> LocalOptimum:
+def optimum(proportional_gain: float, integral_gain: float, residual: float) -> Fit:
     values = (0.0, 250.0, 0.5, 110.0, proportional_gain, integral_gain)
-    return LocalOptimum(Fit(Problem(2.0), values, np.array([residual])))
+    return Fit(Problem(2.0), values, np.array([residual]))
 
 
 def test_an_unstable_pi_does_not_leave_the_search_however_well_it_fits():

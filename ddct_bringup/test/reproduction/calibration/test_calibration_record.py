@@ -6,12 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.reproduction.calibration.files import fill_page, scenario_text
-from ddct_bringup.reproduction.calibration.pi_loop import pi_growth_rate
+from ddct_bringup.reproduction.calibration.parameters import (
+    NAMES,
+    outside_tolerance,
+    pi_growth_rate,
+    residual_rows,
+    rounded,
+)
 from ddct_bringup.reproduction.calibration.problem import Problem, row_figures
-from ddct_bringup.reproduction.calibration.record import NAMES, outside_tolerance, residual_rows
-from ddct_bringup.reproduction.calibration.search import rounded
+from ddct_bringup.reproduction.calibration.record import scenario_text
+from ddct_bringup.reproduction.calibration.tables import all_tables
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.page_tables import fill_tables
 from ddct_plant.scenario.file import load_scenario
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
@@ -48,12 +54,14 @@ def test_scenario_file_is_what_the_record_writes():
 
 
 def test_page_has_the_numbers_of_the_record():
-    assert fill_page(PAGE, RECORD) == PAGE
+    assert fill_tables(PAGE, 'calibration', all_tables(RECORD)) == PAGE
 
 
 def test_page_that_lacks_a_table_is_refused():
     with pytest.raises(DdctError, match='must have these tables'):
-        fill_page(PAGE.replace('<!-- calibration: fit -->', ''), RECORD)
+        fill_tables(
+            PAGE.replace('<!-- calibration: fit -->', ''), 'calibration', all_tables(RECORD)
+        )
 
 
 def test_chosen_optimum_is_the_lowest_with_a_stable_pi():

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from tight_tolerance import tight_tolerance_run
 
-from ddct_bringup.reproduction.figures.collect import collect_figures, figures_not_drawn
-from ddct_bringup.reproduction.figures.figure_tables import page_tables
-from ddct_bringup.reproduction.figures.thesis_figure import (
-    Drawing,
-    DrawnFigure,
-    figure_order,
+from ddct_bringup.reproduction.figures.command import (
+    collect_figures,
+    figures_not_drawn,
+    page_tables,
 )
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.reproduction.figures.thesis_figure import figure_order
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
@@ -28,8 +28,9 @@ LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 PAGE = Path(__file__).parents[4] / 'docs' / 'figures.md'
 
 
-def drawing(number: str) -> Drawing:
-    return FIGURES[number].draw(FIGURES[number].heading)
+def drawing(number: str) -> tuple[Figure, str]:
+    """Return the chart of a figure and the remark on it."""
+    return FIGURES[number].draw()
 
 
 def lines(axes: Axes) -> dict[str, np.ndarray]:
@@ -48,7 +49,7 @@ def lines(axes: Axes) -> dict[str, np.ndarray]:
     ],
 )
 def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
-    axes = drawing(number).figure.axes[0]
+    axes = drawing(number)[0].axes[0]
     run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
     signals = {
         'w_d, rpm': rpm_from_rad_s(run.slip_speed),
@@ -63,8 +64,8 @@ def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture,
 
 
 def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
-    drawn = drawing('5.1')
-    shown = lines(drawn.figure.axes[0])
+    chart, _ = drawing('5.1')
+    shown = lines(chart.axes[0])
     for wear in (0.7, 1.3):
         run = run_headless(RunSettings(THESIS_SCENARIO, 'feedforward', wear_gain=wear), 'hinf2')
         label = f'H∞2 (K_usura = {wear:g})'
@@ -132,22 +133,22 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert min(times) > 0.46
     torsion = rpm_from_rad_s(run.joint_speed[:, 3])
     assert np.abs(torsion[np.isclose(run.time_s, 0.8).argmax() :]).max() < 0.25
-    assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6').remark
+    assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6')[1]
 
 
 def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():
-    assert drawing('2.27').remark.endswith('used in the calibration: LS8 1.15, PI 0.70.')
-    assert drawing('4.4').remark.endswith('not used in the calibration: MPC3 0.90.')
+    assert drawing('2.27')[1].endswith('used in the calibration: LS8 1.15, PI 0.70.')
+    assert drawing('4.4')[1].endswith('not used in the calibration: MPC3 0.90.')
 
 
 def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():
-    time, values = lines(drawing('1.12').figure.axes[0])['reference']
+    time, values = lines(drawing('1.12')[0].axes[0])['reference']
     run = run_headless(RunSettings(THESIS_SCENARIO), 'pi')
     np.testing.assert_array_equal(values, rpm_from_rad_s(run.slip_reference[: len(time), 0]))
 
 
 def test_plant_figure_has_all_models_on_one_curve():
-    shown = lines(drawing('1.23').figure.axes[0])
+    shown = lines(drawing('1.23')[0].axes[0])
     detailed = shown.pop('detailed model')[1]
     printed = shown.pop('LTI, coefficients as printed')[1]
     assert len(shown) == 3
@@ -157,7 +158,7 @@ def test_plant_figure_has_all_models_on_one_curve():
 
 
 def test_tanh_figure_reaches_zero_at_the_chosen_times():
-    shown = lines(drawing('1.27').figure.axes[0])
+    shown = lines(drawing('1.27')[0].axes[0])
     for end_s in (1.2, 1.6, 2.0):
         time, values = shown[f'tanh, zero at {end_s:.1f} s']
         assert values[np.isclose(time, end_s)] == 0.0
@@ -171,7 +172,7 @@ def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
 
 
 def test_page_of_the_documentation_is_what_the_command_writes():
-    drawn = [DrawnFigure(figure, drawing(number).remark) for number, figure in FIGURES.items()]
+    drawn = {figure: drawing(number)[1] for number, figure in FIGURES.items()}
     page = read_page(str(PAGE))
     written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn()))
     number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')

@@ -8,16 +8,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from ddct_bringup.programs import reproduce
-from ddct_bringup.reproduction.figures.collect import collect_figures
+from ddct_bringup.reproduction.figures.command import collect_figures
 from ddct_bringup.reproduction.figures.gallery import gallery_page
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
-from ddct_bringup.reproduction.figures.specification_figures import SPECIFICATION_FIGURES
-from ddct_bringup.reproduction.figures.thesis_figure import (
-    Drawing,
-    DrawnFigure,
-    ThesisFigure,
-)
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.step_response import step_response
@@ -27,12 +22,12 @@ from ddct_controllers.design.loop_shaping.specifications import rise_time_crosso
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
-WITHOUT_RUN = (*SPECIFICATION_FIGURES, *LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
+WITHOUT_RUN = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
 
 
-def drawing(number: str) -> Drawing:
-    figure = next(figure for figure in WITHOUT_RUN if figure.number == number)
-    return figure.draw(figure.heading)
+def drawing(number: str) -> tuple[Figure, str]:
+    """Return the chart of a figure and the remark on it."""
+    return next(figure for figure in WITHOUT_RUN if figure.number == number).draw()
 
 
 def line(figure: Figure, label: str, panel: int = 0) -> np.ndarray:
@@ -46,25 +41,25 @@ def labels(figure: Figure, panel: int = 0) -> tuple[str, str]:
 
 
 def test_rise_time_figure_is_the_prototypes_curve_and_says_what_2_02_belongs_to():
-    drawn = drawing('2.2')
-    damping, product = line(drawn.figure, 'second-order prototype')
+    chart, remark = drawing('2.2')
+    damping, product = line(chart, 'second-order prototype')
     expected = [rise_time_crossover_product(value) for value in damping]
     np.testing.assert_allclose(product, expected, rtol=1e-12)
-    assert labels(drawn.figure) == ('Damping ratio ζ', 't_r ω_c, rad')
-    assert 'ζ = 0.63' in drawn.remark
+    assert labels(chart) == ('Damping ratio ζ', 't_r ω_c, rad')
+    assert 'ζ = 0.63' in remark
 
 
 @pytest.mark.parametrize(('number', 'gain', 'unstable'), [('2.3', 1.0, 1), ('2.4', -1.0, 2)])
 def test_nyquist_figure_holds_the_loop_and_counts_as_the_thesis(number, gain, unstable):
-    drawn = drawing(number)
-    real, imaginary = line(drawn.figure, 'ω > 0', panel=1)
+    chart, remark = drawing(number)
+    real, imaginary = line(chart, 'ω > 0', panel=1)
     loop = continuous_loop(FactoredTransferFunction(gain, (), (0.0,)))
     for omega in (0.5, 5.0, 20.0):
         value = loop.response(np.array(omega))
         distance = np.abs(real + 1j * imaginary - value).min()
         assert distance < 2e-3 * abs(value)
-    assert f'P_cl = {unstable};' in drawn.remark
-    assert labels(drawn.figure, panel=1) == ('Re L', 'Im L')
+    assert f'P_cl = {unstable};' in remark
+    assert labels(chart, panel=1) == ('Re L', 'Im L')
 
 
 @pytest.mark.parametrize(
@@ -73,7 +68,7 @@ def test_nyquist_figure_holds_the_loop_and_counts_as_the_thesis(number, gain, un
 def test_network_of_ratio_16_changes_the_gain_by_24_db_and_the_phase_by_62_degrees(
     number, label, change
 ):
-    figure = drawing(number).figure
+    figure = drawing(number)[0]
     magnitude, phase = (line(figure, label, panel)[1] for panel in (0, 1))
     assert magnitude[-1] == pytest.approx(change * 20.0 * np.log10(16.0), abs=0.01)
     assert change * phase[np.argmax(np.abs(phase))] == pytest.approx(61.93, abs=0.01)
@@ -85,17 +80,17 @@ def test_network_of_ratio_16_changes_the_gain_by_24_db_and_the_phase_by_62_degre
     [('2.8', 'G_c1', 'ls2'), ('2.9', 'G_c2', 'ls7'), ('3.9', 'G_c = H∞1', 'hinf1')],
 )
 def test_nichols_figure_holds_the_loop_of_the_printed_controller(number, label, controller):
-    drawn = drawing(number)
+    chart, remark = drawing(number)
     expected = nichols_curve(LoopCurve(continuous_loop(PRINTED_CONTROLLERS[controller])).values)
-    phase, magnitude = line(drawn.figure, f'L with {label}')
+    phase, magnitude = line(chart, f'L with {label}')
     np.testing.assert_array_equal(phase, expected.phase_deg)
     np.testing.assert_array_equal(magnitude, expected.magnitude_db)
-    assert labels(drawn.figure) == ('Open-loop phase arg L, °', 'Open-loop magnitude |L|, dB')
-    assert 'enters the T curve' in drawn.remark
+    assert labels(chart) == ('Open-loop phase arg L, °', 'Open-loop magnitude |L|, dB')
+    assert 'enters the T curve' in remark
 
 
 def test_nichols_bounds_lie_on_the_constant_s_and_t_curves():
-    figure = drawing('2.9').figure
+    figure = drawing('2.9')[0]
     for label, function in (
         ('|S| = S_p = 1.43', lambda loop: 1.0 / (1.0 + loop)),
         ('|T| = T_p = 1.11', lambda loop: loop / (1.0 + loop)),
@@ -107,19 +102,19 @@ def test_nichols_bounds_lie_on_the_constant_s_and_t_curves():
 
 
 def test_step_figure_holds_the_step_response():
-    drawn = drawing('2.10')
-    legend = [text.get_text() for text in drawn.figure.axes[0].get_legend().get_texts()]
-    time, output = line(drawn.figure, legend[0])
+    chart, remark = drawing('2.10')
+    legend = [text.get_text() for text in chart.axes[0].get_legend().get_texts()]
+    time, output = line(chart, legend[0])
     expected = step_response(continuous_loop(PRINTED_CONTROLLERS['ls7']), time[-1])
     np.testing.assert_array_equal((time, output), expected)
     assert legend == ['G_c2: t_r = 0.54 s, overshoot 13.2 %', 'reference']
-    assert labels(drawn.figure) == ('Time, s', 'w_d / reference')
-    assert 't_r = 0.54 s and overshoot 13 %; the thesis prints 0.52 s and 13 %' in drawn.remark
+    assert labels(chart) == ('Time, s', 'w_d / reference')
+    assert 't_r = 0.54 s and overshoot 13 %; the thesis prints 0.52 s and 13 %' in remark
 
 
 @pytest.mark.parametrize(('number', 'function'), [('3.5', 'S_n'), ('3.6', 'T_n'), ('3.7', 'T_n')])
 def test_bound_figure_holds_s_and_t_of_the_printed_hinf1(number, function):
-    figure = drawing(number).figure
+    figure = drawing(number)[0]
     omega, magnitude = line(figure, f'|{function}|, G_c = H∞1')
     loop = continuous_loop(PRINTED_CONTROLLERS['hinf1']).response(omega)
     values = 1.0 / (1.0 + loop) if function == 'S_n' else 1.0 - 1.0 / (1.0 + loop)
@@ -128,43 +123,43 @@ def test_bound_figure_holds_s_and_t_of_the_printed_hinf1(number, function):
 
 
 def test_bound_figures_show_the_gain_that_gives_two_of_the_printed_norms():
-    remarks = [drawing(number).remark for number in ('3.5', '3.6', '3.7')]
+    remarks = [drawing(number)[1] for number in ('3.5', '3.6', '3.7')]
     norms = [float(remark.rstrip('.').split()[-1]) for remark in remarks]
     assert norms == pytest.approx([0.97, 1.047, 0.32], abs=0.006)
     assert '|S_n|, G_c = 2.45 H∞1' in [
-        line.get_label() for line in drawing('3.5').figure.axes[0].get_lines()
+        line.get_label() for line in drawing('3.5')[0].axes[0].get_lines()
     ]
 
 
 def test_bounds_have_the_values_of_section_3_2():
-    omega, sensitivity = line(drawing('3.5').figure, '|W_s^-1|')
+    omega, sensitivity = line(drawing('3.5')[0], '|W_s^-1|')
     assert sensitivity[0] == pytest.approx(20.0 * np.log10(0.15 * omega[0] ** 2), abs=0.01)
     assert sensitivity[-1] == pytest.approx(20.0 * np.log10(1.33), abs=0.01)
-    omega, complementary = line(drawing('3.6').figure, '|W_t^-1|')
+    omega, complementary = line(drawing('3.6')[0], '|W_t^-1|')
     assert complementary[0] == pytest.approx(20.0 * np.log10(1.02), abs=0.01)
     at_corner = np.interp(28.0, omega, complementary)
     assert at_corner == pytest.approx(complementary[0] - 10.0 * np.log10(2.0), abs=0.01)
 
 
 def test_wear_error_is_0_3_and_w_u_falls_short_of_it_at_high_frequency():
-    drawn = drawing('3.3')
+    chart, remark = drawing('3.3')
     for wear in (0.7, 1.3):
-        _, error = line(drawn.figure, f'error, K_usura = {wear:g}')
+        _, error = line(chart, f'error, K_usura = {wear:g}')
         np.testing.assert_allclose(error, 0.3, rtol=1e-12)
-    _, weight = line(drawn.figure, '|W_u|')
+    _, weight = line(chart, '|W_u|')
     assert weight[0] == pytest.approx(3913.0 / 13030.0, rel=1e-6)
     assert weight[-1] == pytest.approx(0.2987, rel=1e-4)
-    assert '0.4 % short of inequality (3.3)' in drawn.remark
+    assert '0.4 % short of inequality (3.3)' in remark
 
 
 def test_every_figure_has_a_heading_labelled_axes_and_a_remark():
     for figure in WITHOUT_RUN:
-        drawn = figure.draw(figure.heading)
-        assert figure.heading in [text.get_text() for text in drawn.figure.texts]
-        assert all(
-            text for panel in range(len(drawn.figure.axes)) for text in labels(drawn.figure, panel)
-        ), figure.number
-        assert drawn.remark.endswith('.')
+        chart, remark = figure.draw()
+        assert figure.heading in [text.get_text() for text in chart.texts]
+        assert all(text for panel in range(len(chart.axes)) for text in labels(chart, panel)), (
+            figure.number
+        )
+        assert remark.endswith('.')
 
 
 def test_symbols_with_an_index_are_typeset():
@@ -252,11 +247,8 @@ def test_figures_are_collected_once_and_in_order():
 
 
 def gallery(drawn: list[str], not_drawn: dict[str, str]) -> str:
-    entries = [
-        DrawnFigure(ThesisFigure(number, 'w_d & <A_x>', drawing), 'W_s^-1 agrees.')
-        for number in drawn
-    ]
-    return gallery_page(entries, not_drawn)
+    figures = [ThesisFigure(number, 'w_d & <A_x>', str) for number in drawn]
+    return gallery_page(dict.fromkeys(figures, 'W_s^-1 agrees.'), not_drawn)
 
 
 def test_gallery_has_drawn_and_other_figures_in_order_by_chapter():

@@ -7,7 +7,6 @@ from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP, pr
 from ddct_bringup.thesis.predictions import (
     Prediction,
     kept_predictions,
-    prediction,
     predictions_for,
 )
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE
@@ -56,10 +55,9 @@ def test_predictions_are_given_for_the_unchanged_packaged_scenario_only():
 
 
 def test_prediction_is_found_by_its_id_in_the_gate():
-    found = prediction('5.1 mpc3 torsion_speed_std_rpm')
-    assert found is not None
+    found = kept_predictions().by_id['5.1 mpc3 torsion_speed_std_rpm']
     assert found.frozen in found.values
-    assert prediction('5.1 pi engagement_time_s') is None
+    assert '5.1 pi engagement_time_s' not in kept_predictions().by_id
 
 
 def test_range_goes_from_the_least_to_the_largest_value_the_frozen_one_included():

@@ -5,10 +5,9 @@ import pytest
 from ddct_bringup.reproduction.numbers.gate import judge
 from ddct_bringup.reproduction.numbers.gate_tables import count_facts, facts_table
 from ddct_bringup.reproduction.numbers.number_file import parse_numbers
-from ddct_bringup.reproduction.values.coefficients import coefficients, in_the_form_of
-from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
+from ddct_bringup.reproduction.values.controller_values import coefficients, in_the_form_of
+from ddct_bringup.reproduction.values.h_infinity_values import RAW_CONTROLLER, h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
-from ddct_bringup.reproduction.values.raw_controller import RAW_CONTROLLER
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.synthesised import synthesised_design
 from ddct_plant.base.errors import ParameterError

@@ -7,7 +7,7 @@ import pytest
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.studies import command
-from ddct_bringup.reproduction.studies.catalogue import STUDIES
+from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_plant.program.page_tables import marked_tables
 

@@ -1,16 +1,27 @@
-"""Figures of several runs by controller, and how they order them: what claims in words rest on."""
+"""
+Figures of several runs by controller, and how they order them: what claims in words rest on.
+
+The thesis names no limits for the words of Table 5.2; what a word says is an order. They are
+judged by one rule that was set after looking at the figures: a row of words holds where every
+figure grows with the word, and within one word the largest is at most twice the smallest.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.runs.runs import thesis_metrics, thesis_run
+from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 
 COMPARED = tuple(row.controller for row in THESIS_TABLE)
 """The controllers of Table 5.1."""
 CLEARLY = 2.0
 """Factor behind `huge`, `very bad`, `no oscillations` and the only one that does something."""
+
+WORDS = (('good', 'low'), ('average',), ('bad', 'high'))
+"""From the best to the worst."""
+_ALIKE = 2.0
+"""Largest ratio of two figures that have the same word."""
 
 Row = Mapping[str, float]
 """One figure by controller; infinite where it does not exist."""
@@ -76,3 +87,41 @@ def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
     """Return the two standard deviations of some controllers for a reader."""
     twist, acceleration = ({name: row[name] for name in names} for row in rows)
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
+
+
+def judge_words(
+    words: Mapping[str, str], figures: Sequence[tuple[str, Mapping[str, float | None]]]
+) -> dict[str, Finding]:
+    """
+    Return what each controller's word comes to, by its name.
+
+    `words` has the printed word by controller; `figures` a unit and the figures by controller, for
+    each quantity that the words are about. A word holds when it is right beside all the others.
+    """
+    return {
+        name: Finding(
+            all(_stands(name, other, words, row) for _, row in figures for other in words),
+            ', '.join(_text(row[name], unit) for unit, row in figures),
+        )
+        for name in words
+    }
+
+
+def _stands(
+    name: str, other: str, words: Mapping[str, str], row: Mapping[str, float | None]
+) -> bool:
+    """Return whether the figures of two controllers are as their words say."""
+    known = {one: math.inf if figure is None else figure for one, figure in row.items()}
+    mine, theirs = known[name], known[other]
+    order = _rank(words[name]) - _rank(words[other])
+    if order == 0:
+        return max(mine, theirs) <= _ALIKE * min(mine, theirs)
+    return mine > theirs if order > 0 else mine < theirs
+
+
+def _rank(word: str) -> int:
+    return next(rank for rank, same in enumerate(WORDS) if word in same)
+
+
+def _text(figure: float | None, unit: str) -> str:
+    return 'no figure' if figure is None else f'{figure:.3g} {unit}'

@@ -5,21 +5,24 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.reproduction.studies.static_controller import StaticControllerAlone
-from ddct_bringup.reproduction.studies.study import Study
-from ddct_bringup.reproduction.studies.two_input.actuator_left_out import (
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, StaticControllerAlone, thesis_run
+from ddct_bringup.reproduction.studies.changed_loops import (
+    LoopWithMeasuredState,
     LoopWithoutActuator,
+    MeasuredState,
     model_without_actuator,
 )
-from ddct_bringup.reproduction.studies.two_input.measured_state import (
-    LoopWithMeasuredState,
-    MeasuredState,
+from ddct_bringup.reproduction.studies.study import (
+    TWO_INPUTS,
+    Study,
+    StudyRun,
+    cells,
+    headers,
+    study_run,
 )
-from ddct_bringup.reproduction.studies.two_input.torque_level import growth
-from ddct_bringup.reproduction.studies.two_input.two_input_figures import HEADERS, cells
+from ddct_bringup.reproduction.studies.torque_level import growth
 from ddct_bringup.run.headless import run_headless, run_loop
-from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import mpc4_settings
 from ddct_controllers.mpc.estimate.observer import Observer
@@ -78,49 +81,40 @@ class Reading:
         )
 
 
-_DEFAULT = Reading(mpc4_settings())
-_SQUARED = Reading(mpc4_settings(0.05, STIFFER_PULL))
-_MIXED = Reading(mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL))
-
-
-_NO_ACTUATOR = replace(_DEFAULT, model=model_without_actuator)
-
-
 def _no_delay(driveline: DrivelineParameters, wear_gain: float) -> TransmissionModel:
     return transmission_model(driveline, wear_gain, delay=False)
 
 
-def _held(reading: Reading) -> Reading:
-    return replace(reading, settings=replace(reading.settings, along_tangent=False))
+def _previewed(settings: MpcSettings) -> MpcSettings:
+    return replace(settings, preview=True)
 
 
-def _measured(reading: Reading) -> Reading:
-    return replace(reading, observer=MeasuredState)
+def _held(settings: MpcSettings) -> MpcSettings:
+    return replace(settings, along_tangent=False)
 
 
-def _previewed(reading: Reading) -> Reading:
-    return replace(reading, settings=replace(reading.settings, preview=True))
-
-
-def _without_actuator(reading: Reading) -> Reading:
-    return replace(reading, model=model_without_actuator, plant=model_without_actuator)
-
-
+_SETTINGS = mpc4_settings()
+_SQUARED = mpc4_settings(0.05, STIFFER_PULL)
+_MIXED = mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL)
+_NOWHERE = model_without_actuator, model_without_actuator
+"""Neither the controller nor the plant has an actuator."""
 READINGS: Mapping[str, Reading] = {
-    "x'Qx, reference along its tangent": _DEFAULT,
-    "x'Qx, coming reference": _previewed(_DEFAULT),
-    "x'Qx, reference held": _held(_DEFAULT),
-    'state measured': _measured(_DEFAULT),
-    'weights squared': _SQUARED,
-    'weights squared, coming reference': _previewed(_SQUARED),
-    'weights squared, reference held': _held(_SQUARED),
-    'w_d in rpm, dw_d/dt in rad/s^2': _MIXED,
-    'no delay in its model': replace(_DEFAULT, model=_no_delay),
-    'no actuator in its model': _NO_ACTUATOR,
-    'no actuator in its model, state measured': _measured(_NO_ACTUATOR),
-    'no actuator at all': _without_actuator(_DEFAULT),
-    'no actuator at all, coming reference': _previewed(_without_actuator(_DEFAULT)),
-    'no actuator at all, weights squared': _without_actuator(_SQUARED),
+    "x'Qx, reference along its tangent": Reading(_SETTINGS),
+    "x'Qx, coming reference": Reading(_previewed(_SETTINGS)),
+    "x'Qx, reference held": Reading(_held(_SETTINGS)),
+    'state measured': Reading(_SETTINGS, observer=MeasuredState),
+    'weights squared': Reading(_SQUARED),
+    'weights squared, coming reference': Reading(_previewed(_SQUARED)),
+    'weights squared, reference held': Reading(_held(_SQUARED)),
+    'w_d in rpm, dw_d/dt in rad/s^2': Reading(_MIXED),
+    'no delay in its model': Reading(_SETTINGS, _no_delay),
+    'no actuator in its model': Reading(_SETTINGS, model_without_actuator),
+    'no actuator in its model, state measured': Reading(
+        _SETTINGS, model_without_actuator, observer=MeasuredState
+    ),
+    'no actuator at all': Reading(_SETTINGS, *_NOWHERE),
+    'no actuator at all, coming reference': Reading(_previewed(_SETTINGS), *_NOWHERE),
+    'no actuator at all, weights squared': Reading(_SQUARED, *_NOWHERE),
 }
 """The first is what the registry has."""
 
@@ -130,19 +124,17 @@ def mpc4_readings() -> Study:
     rows = [
         (
             name,
-            *cells(SETTINGS, reading.run()),
+            *cells(TWO_INPUTS, StudyRun(SETTINGS, 'mpc4', reading.run())),
             *(f'{reading.growth(gain):.3f}' for gain in WEAR_GAINS),
         )
         for name, reading in READINGS.items()
     ]
-    alone = cells(SETTINGS, run_headless(SETTINGS, StaticControllerAlone()))
-    printed = thesis_row('mpc4')
-    assert printed is not None
-    time, torsion, acceleration = (format(value, 'g') for value in printed.figures().values())
+    alone = cells(TWO_INPUTS, study_run(SETTINGS, StaticControllerAlone()))
+    time, torsion, acceleration = ROW_OF['mpc4'].cells()
     none = ('-',) * len(WEAR_GAINS)
     return Study(
         'MPC4 in the thesis scenario, by reading',
-        ('reading', *HEADERS, *GROWTH_HEADERS),
+        ('reading', *headers(TWO_INPUTS), *GROWTH_HEADERS),
         [
             *rows,
             ('C_fOL alone, C_m as demanded', *alone, *none),

@@ -5,9 +5,15 @@ from types import SimpleNamespace
 
 import pytest
 
-from ddct_bringup.reproduction.claims import orders
-from ddct_bringup.reproduction.claims.orders import below, each_lower, is_extreme, sigma_text, text
-from ddct_bringup.reproduction.claims.words import judge_words
+from ddct_bringup.reproduction.values import orders
+from ddct_bringup.reproduction.values.orders import (
+    below,
+    each_lower,
+    is_extreme,
+    judge_words,
+    sigma_text,
+    text,
+)
 
 WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
 SLIPS = {'ls8': 30.0, 'hinf2': 1.0, 'mpc3': 20.0, 'mpc4': 10.0}

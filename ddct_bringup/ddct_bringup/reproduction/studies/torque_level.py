@@ -4,10 +4,8 @@ import math
 
 import numpy as np
 
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.study import Study
-from ddct_bringup.reproduction.studies.two_input.two_input_figures import HEADERS, cells
-from ddct_bringup.run.headless import run_headless
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO
+from ddct_bringup.reproduction.studies.study import TWO_INPUTS, Study, cells, headers, study_run
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import mpc4_settings
 from ddct_controllers.mpc.estimate.observer import Observer
@@ -42,12 +40,12 @@ def torque_level() -> Study:
         observer = make_observer(SETTINGS, model)
         settings = mpc4_settings(demand_weight=pull)
         mpc4 = MpcController(model, observer, settings, EngineAuthority())
-        run = run_headless(SETTINGS, mpc4)
-        left = run.engine_torque[-1] - run.torque_demand[-1]
+        run = study_run(SETTINGS, mpc4)
+        left = run.trajectory.engine_torque[-1] - run.trajectory.torque_demand[-1]
         rows.append(
             (
                 f'{pull:g}',
-                *cells(SETTINGS, run),
+                *cells(TWO_INPUTS, run),
                 f'{left:.1f}',
                 ', '.join(f'{time:.3g}' for time in slow_times_s(mpc4.program, observer)),
                 *(f'{growth(mpc4.program, observer, plant):.3f}' for plant in worn),
@@ -57,7 +55,7 @@ def torque_level() -> Study:
         'MPC4 in the thesis scenario, by its pull towards the demand',
         (
             'pull per N m',
-            *HEADERS,
+            *headers(TWO_INPUTS),
             'left at end N m',
             'slowest modes s',
             *(f'growth at K_usura {gain:g}' for gain in NEAR_WEAR),

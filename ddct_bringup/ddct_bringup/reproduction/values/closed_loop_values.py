@@ -2,16 +2,22 @@
 
 from collections.abc import Mapping
 
-from ddct_bringup.reproduction.claims.claims import claim_values
-from ddct_bringup.reproduction.claims.orders import CLEARLY, is_extreme, text
-from ddct_bringup.reproduction.claims.table_claims import table_claim_values
-from ddct_bringup.reproduction.claims.words import judge_words
-from ddct_bringup.reproduction.figures.scenario_figures import deviation_bound_percent
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
-from ddct_bringup.reproduction.runs.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.reproduction.runs import (
+    THESIS_SCENARIO,
+    metrics_of,
+    table_figures,
+    thesis_metrics,
+    thesis_run,
+)
+from ddct_bringup.reproduction.values.claims import claim_values
+from ddct_bringup.reproduction.values.orders import CLEARLY, is_extreme, judge_words, text
+from ddct_bringup.reproduction.values.plant_values import deviation_bound_percent
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_plant.base.timebase import steps_in
+from ddct_plant.scenario.settings import RunSettings
 
 WORN = (0.7, 1.3)
 """The two critical values of K_usura, inequality (3.2)."""
@@ -34,22 +40,16 @@ def closed_loop_values() -> dict[str, Value | None]:
     """Return the values by the ids that the thesis gate's files give them."""
     bound = deviation_bound_percent()
     models = Finding(bound <= _EQUAL_MODELS_PERCENT, f'within {bound:g} % of the peak')
-    return {
-        '1.5.1 models': models,
-        **claim_values(),
-        **_table_5_1(),
-        **table_claim_values(),
-        **_table_5_2(),
-    }
+    return {'1.5.1 models': models, **claim_values(), **_table_5_1(), **_table_5_2()}
 
 
 def _table_5_1() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     for row in THESIS_TABLE:
-        metrics = thesis_metrics(thesis_run(row.controller, 'detailed', 1.0))
-        time = metrics.engagement_time_s
-        found |= {f'5.1 {row.controller} {name}': getattr(metrics, name) for name in row.figures()}
-        found[f'5.1 {row.controller} engagement_time_s'] = NOT_REACHED if time is None else time
+        figures = table_figures(thesis_metrics(thesis_run(row.controller, 'detailed', 1.0)))
+        if figures['engagement_time_s'] is None:
+            figures['engagement_time_s'] = NOT_REACHED
+        found |= {f'5.1 {row.controller} {name}': value for name, value in figures.items()}
     return found
 
 
@@ -57,36 +57,36 @@ def _table_5_2() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     ends = {}
     for wear in WORN:
+        settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, wear_gain=wear)
         runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
-        slips = {name: abs(float(run.slip_speed[_end_step()])) for name, run in runs.items()}
-        metrics = {name: thesis_metrics(run) for name, run in runs.items()}
-        found |= judge_table_5_2(wear, slips, metrics)
-        ends[wear] = slips
+        ends[wear], _, findings = judge_table_5_2(settings, runs)
+        found |= findings
     return found | {'5.1 robust': _only_robust('hinf2', ends)}
 
 
 def judge_table_5_2(
-    wear: float, slips: Mapping[str, float], metrics: Mapping[str, Metrics]
-) -> dict[str, Finding]:
-    """Return what the words come to, by the gate's ids; `slips` are |w_d| at the end in rad/s."""
+    settings: RunSettings, runs: Mapping[str, Trajectory]
+) -> tuple[dict[str, float], dict[str, Metrics], dict[str, Finding]]:
+    """Return by controller |w_d| at the end in rad/s and metrics; by the gate's ids the words."""
+    end = steps_in('score_window_s', settings.scenario.score_window_s[1])
+    slips = {name: abs(float(run.slip_speed[end])) for name, run in runs.items()}
+    metrics = {name: metrics_of(settings, run) for name, run in runs.items()}
     twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
     acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
+    sigma_words = OSCILLATION_WORDS[settings.wear_gain]
     words = {
         'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-        'w_sr': judge_words(OSCILLATION_WORDS[wear], [('rpm', twist), ('m/s^2', acceleration)]),
+        'w_sr': judge_words(sigma_words, [('rpm', twist), ('m/s^2', acceleration)]),
     }
-    return {
-        f'5.2 {name} {what} {wear:g}': finding
-        for what, findings in words.items()
-        for name, finding in findings.items()
+    findings = {
+        f'5.2 {name} {what} {settings.wear_gain:g}': finding
+        for what, found in words.items()
+        for name, finding in found.items()
     }
+    return slips, metrics, findings
 
 
 def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:
     """Return whether one controller ends clearly nearer to zero at both values of K_usura."""
     figures = '; '.join(f'K_usura {wear:g}: {text("rad/s", row)}' for wear, row in ends.items())
     return Finding(is_extreme(name, min, ends.values(), CLEARLY), figures)
-
-
-def _end_step() -> int:
-    return steps_in('score_window_s', THESIS_SCENARIO.score_window_s[1])

@@ -1,1 +1,0 @@
-"""Studies of the controllers that command the engine too."""

@@ -1,0 +1,136 @@
+"""What we compute of a controller: every coefficient by name, z-form, rise time, overshoot."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from ddct_bringup.reproduction.numbers.thesis_number import Value
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.design.state_space import pulse_transfer_function
+from ddct_controllers.mpc.costs import TABLE_4_1
+from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+
+_DURATION_S = 8.0
+_RISE_TOLERANCE = (0.08, 0.02)
+_OVERSHOOT_TOLERANCE = 1.5
+"""Those of Tables 2.1 and 3.1: a fraction or seconds, and points; what is read off a plot."""
+_OUTPUT_WEIGHT, _RATE_WEIGHT = 1.0, 0.1
+"""Defaults of MATLAB's mpcDesigner; its slider multiplies the one and divides the other."""
+
+
+def coefficients(name: str, transfer_function: FactoredTransferFunction) -> dict[str, float]:
+    """
+    Return the gain and all coefficients by `NAME.gain`, `NAME.zero 1`, `NAME.pole 2 b` and so on.
+
+    The number counts the factors of the numerator or the denominator; (s + a) has no letter.
+    """
+    found = {f'{name}.gain': transfer_function.gain}
+    for kind, factors in (
+        ('zero', transfer_function.numerator),
+        ('pole', transfer_function.denominator),
+    ):
+        for index, factor in enumerate(factors, start=1):
+            label = f'{name}.{kind} {index}'
+            if isinstance(factor, tuple):
+                found |= {f'{label} b': factor[0], f'{label} c': factor[1]}
+            else:
+                found[label] = factor
+    return found
+
+
+def in_the_form_of(
+    printed: FactoredTransferFunction, computed: FactoredTransferFunction
+) -> FactoredTransferFunction:
+    """
+    Return the computed transfer function in the factors that the print has.
+
+    Slowest with slowest: its roots, by magnitude, go to the printed factors, by magnitude, two to
+    each pair. Raise ParameterError when one has more roots than the other.
+    """
+    return FactoredTransferFunction(
+        computed.gain,
+        _dealt(printed.numerator, computed.zeros),
+        _dealt(printed.denominator, computed.poles),
+    )
+
+
+def _dealt(form: Sequence[Factor], roots: np.ndarray) -> tuple[Factor, ...]:
+    if sum(2 if isinstance(factor, tuple) else 1 for factor in form) != len(roots):
+        raise ParameterError(f'{len(roots)} roots do not fill {len(form)} printed factors')
+    left = list(roots[np.argsort(np.abs(roots), kind='stable')])
+    found: list[Factor] = list(form)
+    for index in sorted(range(len(form)), key=lambda index: _rate(form[index])):
+        root = left.pop(0)
+        if isinstance(form[index], tuple):
+            other = left.pop(0)
+            found[index] = (float(-(root + other).real), float((root * other).real))
+        else:
+            found[index] = float(-root.real) + 0.0  # no minus zero
+    return tuple(found)
+
+
+def _rate(factor: Factor) -> float:
+    return math.sqrt(abs(factor[1])) if isinstance(factor, tuple) else abs(factor)
+
+
+def real(factor: Factor) -> float:
+    """Return a of a factor (s + a)."""
+    assert isinstance(factor, float)
+    return factor
+
+
+def pair(factor: Factor) -> tuple[float, float]:
+    """Return b and c of a factor (s^2 + b s + c)."""
+    assert isinstance(factor, tuple)
+    return factor
+
+
+def step_values(names: Iterable[str]) -> dict[str, float | None]:
+    """Return `NAME.rise time` in s and `NAME.overshoot` in % of these controllers."""
+    found: dict[str, float | None] = {}
+    for name in names:
+        rise_time, percent = step_figures(continuous_loop(PRINTED_CONTROLLERS[name]))
+        found |= {f'{name}.rise time': rise_time, f'{name}.overshoot': percent}
+    return found
+
+
+def fulfilled(controller: FactoredTransferFunction, specifications: TimeSpecifications) -> str:
+    """Return which specifications the step response meets, as far as a plot can tell."""
+    rise_time, percent = step_figures(continuous_loop(controller))
+    limit = specifications.rise_time_s
+    quick = rise_time is not None and rise_time <= limit + max(
+        _RISE_TOLERANCE[0] * limit, _RISE_TOLERANCE[1]
+    )
+    low = percent <= 100.0 * specifications.overshoot + _OVERSHOOT_TOLERANCE
+    if quick and low:
+        return 'both'
+    return 'only the rise time' if quick else 'only the overshoot' if low else 'none'
+
+
+def step_figures(loop: ContinuousLoop | StateSpace) -> tuple[float | None, float]:
+    """Return the rise time in s, and the overshoot in %."""
+    response = step_response(loop, _DURATION_S)
+    return rise_time_s(*response), 100.0 * overshoot(*response)
+
+
+def sampled_values(name: str) -> dict[str, float]:
+    """
+    Return the coefficients of G_c(z) of a printed controller, in its order, by `NAME(z)...`.
+
+    It is discretised by zero-order hold at 10 ms.
+    """
+    return coefficients(f'{name}(z)', pulse_transfer_function(PRINTED_CONTROLLERS[name]))
+
+
+def predictive_values() -> dict[str, Value | None]:
+    """Return R of Table 4.1 by the ids of the gate's file, for one position of the slider."""
+    return {
+        f'4.1 {name} R': _OUTPUT_WEIGHT * _RATE_WEIGHT / row.output_weight
+        for name, row in TABLE_4_1.items()
+    }
