@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from ddct_bringup.report.columns import FigureColumn
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.thesis.conditions import is_thesis_run, predicted_range, verdict
-from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, thesis_row
+from ddct_bringup.thesis.predictions import predicted_range
+from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
 
 
 @dataclass(frozen=True)
@@ -71,5 +71,5 @@ def _cell(
         thesis / largest,
         '' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
         predicted_range(row.controller, column.key) if predicted else '',
-        verdict(row, column.key, value) if predicted else '',
+        row.verdict(column.key, value) if predicted else '',
     )

@@ -17,8 +17,14 @@ from ddct_bringup.scores.tables import (
     Column,
     print_runs,
 )
-from ddct_bringup.thesis.conditions import is_thesis_run, predicted_range, verdict
-from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED, PREDICTION_TOLERANCE, thesis_row
+from ddct_bringup.thesis.predictions import predicted_range
+from ddct_bringup.thesis.table_5_1 import (
+    FIGURES,
+    PREDICTED,
+    PREDICTION_TOLERANCE,
+    is_thesis_run,
+    thesis_row,
+)
 from ddct_plant.scenario.settings import RunSettings
 
 _NOTE = (
@@ -85,7 +91,7 @@ def _thesis(unit: str, name: str) -> Column:
         row = thesis_row(run['controller'])
         if row is None or row.use != PREDICTED:
             return ''
-        return verdict(row, name, run['metrics'][name])
+        return row.verdict(name, run['metrics'][name])
 
     return Column(f'thesis\n{unit}', text, below=below)
 

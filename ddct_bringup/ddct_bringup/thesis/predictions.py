@@ -8,8 +8,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.files.json_text import parse_json
-from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 
 FOLDER = 'admissible_scenarios'
@@ -98,3 +99,14 @@ def predictions_for(scenario: Scenario) -> Mapping[str, Prediction]:
     """Return the kept predictions by id; none for another scenario than the packaged one."""
     kept = kept_predictions()
     return kept.by_id if kept.scenario_digest == scenario_digest(scenario) else {}
+
+
+def predicted_range(controller: str, name: str) -> str:
+    """
+    Return a figure's range over the admissible scenarios, for a run with the thesis's conditions.
+
+    Empty for a figure that is no prediction, and for all where the ranges are not those of the
+    packaged scenario.
+    """
+    found = predictions_for(load_scenario('thesis')).get(f'5.1 {controller} {name}')
+    return found.text(FORMS[name]) if found else ''

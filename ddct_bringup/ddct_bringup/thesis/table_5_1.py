@@ -1,6 +1,9 @@
-"""Table 5.1 of the thesis as printed, and which of its rows the scenario was fitted to."""
+"""Table 5.1 as printed, which of its rows were fitted to, and what may stand beside them."""
 
 from dataclasses import dataclass
+
+from ddct_plant.scenario.file import load_scenario, scenario_digest
+from ddct_plant.scenario.settings import RunSettings
 
 CALIBRATED = 'calibrated'
 PREDICTED = 'predicted'
@@ -36,6 +39,10 @@ class ThesisRow:
         printed = self.figures()[name]
         return value is not None and abs(value / printed - 1.0) <= PREDICTION_TOLERANCE
 
+    def verdict(self, name: str, value: float | None) -> str:
+        """Return the same in a word."""
+        return 'hit' if self.hit(name, value) else 'miss'
+
 
 FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
 """Metrics that the table has, in its order."""
@@ -67,3 +74,17 @@ ROW_OF = {row.controller: row for row in THESIS_TABLE}
 def thesis_row(controller: str) -> ThesisRow | None:
     """Return the row of a registry name, None for a controller that the table does not have."""
     return ROW_OF.get(controller)
+
+
+def is_thesis_run(settings: RunSettings) -> bool:
+    """
+    Return whether a run has the thesis's own conditions.
+
+    They are its scenario unchanged, the detailed architecture, and the linear clutch, new.
+    """
+    return (
+        settings.detailed
+        and settings.clutch == 'linear'
+        and settings.wear_gain == 1.0
+        and scenario_digest(settings.scenario) == scenario_digest(load_scenario('thesis'))
+    )

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from ddct_bringup.reproduction.runs import scored_run
+from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight
 from ddct_bringup.reproduction.studies.wear import (
     LOAD_STEP_N_M,
     WEAR_GAINS,
-    NoisySpeeds,
-    slip_after_load_step,
     wear_estimate,
 )
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop

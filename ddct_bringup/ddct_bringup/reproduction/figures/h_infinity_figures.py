@@ -7,10 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.optimize import brentq
 
-from ddct_bringup.reproduction.figures.loop_shaping_figures import (
-    draw_loop_in_nichols,
-    draw_step,
-)
+from ddct_bringup.reproduction.figures.loop_figures import nichols_figure, step_figure
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY
@@ -110,21 +107,18 @@ H_INFINITY_FIGURES = (
             ('3.7', 'T_n', 'W_u', PRINTED_W_U, 0.32),
         )
     ),
-    ThesisFigure(
-        '3.8',
-        'Step response of the system with G_c(s)',
-        partial(draw_step, name='G_c = H∞1', controller=_G_C, printed=(0.3, 0.08)),
+    step_figure(
+        *('3.8', 'Step response of the system with G_c(s)'),
+        name='G_c = H∞1',
+        controller=_G_C,
+        printed=(0.3, 0.08),
     ),
-    ThesisFigure(
-        '3.9',
-        'Nichols plot with G_c(s)',
-        partial(
-            draw_loop_in_nichols,
-            name='L with G_c = H∞1',
-            controller=_G_C,
-            specifications=THESIS_SPECIFICATIONS,
-            thesis_says='the requirements are met',
-        ),
+    nichols_figure(
+        *('3.9', 'Nichols plot with G_c(s)'),
+        name='L with G_c = H∞1',
+        controller=_G_C,
+        specifications=THESIS_SPECIFICATIONS,
+        thesis_says='the requirements are met',
     ),
 )
 """Those of Section 3.2."""

@@ -4,29 +4,24 @@ Figures 2.2 to 2.10: from the specifications to the loops of the loop-shaping de
 They are the prototype's rise time, the sign of K_c, the two networks, and L of each step.
 """
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from ddct_bringup.reproduction.figures.loop_figures import nichols_figure, step_figure
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
-from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, SKY, VERMILLION, line_styles
-from ddct_controllers.design.drawing.charts import decibel, draw_nichols, draw_step_response
+from ddct_controllers.design.drawing.charts import decibel
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_SPECIFICATIONS,
 )
 from ddct_controllers.design.loop_shaping.networks import integrators, lag_network, lead_network
-from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
 from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
-from ddct_controllers.design.loop_shaping.specifications import (
-    TimeSpecifications,
-    rise_time_crossover_product,
-)
+from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
@@ -34,7 +29,6 @@ _PRINTED_PRODUCT = 2.02
 """t_r w_c that Section 2.2 reads off the curve for its zeta."""
 _G_C1 = LOOP_SHAPING_CONTROLLERS['ls2']
 _G_C2 = LOOP_SHAPING_CONTROLLERS['ls7']
-_STEP_DURATION_S = 4.0
 _RATIOS = (2.0, 3.0, 4.0, 6.0, 10.0, 16.0)
 """m_d and m_i of the normalised networks; the thesis's G_c1 has 16."""
 _SLOWEST_RAD_S, _FASTEST_RAD_S = 1e-3, 1e4
@@ -107,66 +101,31 @@ def _compressed(values: np.ndarray) -> np.ndarray:
     return values / size * np.log10(1.0 + size)
 
 
-def _draw_network(*panels: Axes, kind: str) -> str:
+def _draw_network(
+    *panels: Axes,
+    name: str,
+    ratio_name: str,
+    corner: str,
+    network: Callable[[float, float], FactoredTransferFunction],
+) -> str:
     normalised = np.geomspace(0.01, 1000.0, 500)
     for ratio, style in zip(_RATIOS, line_styles(), strict=False):
-        network = lead_network(1.0, ratio) if kind == 'd' else lag_network(1.0, ratio)
-        response = network.frequency_response(normalised)
+        response = network(1.0, ratio).frequency_response(normalised)
         for axes, values in zip(panels, (decibel(response), _degrees(response)), strict=True):
-            axes.semilogx(normalised, values, label=f'm_{kind} = {ratio:g}', **style)
-    frequency = 'ω/z_d' if kind == 'd' else 'ω/p_i'
+            axes.semilogx(normalised, values, label=f'{ratio_name} = {ratio:g}', **style)
+    frequency = f'Normalised frequency ω/{corner}'
     for axes, quantity in zip(panels, ('Magnitude, dB', 'Phase, °'), strict=True):
-        axes.set(xlabel=f'Normalised frequency {frequency}', ylabel=quantity, xlim=(0.01, 1000.0))
+        axes.set(xlabel=frequency, ylabel=quantity, xlim=(0.01, 1000.0))
     panels[0].legend(loc='best')
     largest = float(np.max(np.abs(_degrees(response))))
-    change = 'lead' if kind == 'd' else 'lag'
     return (
-        f'For the m_{kind} = {_RATIOS[-1]:g} of G_c1 the {change} is {largest:.0f}° at most. The '
-        'thesis names the magnitude only, but also reads the phase off its chart.'
+        f'For the {ratio_name} = {_RATIOS[-1]:g} of G_c1 the {name} is {largest:.0f}° at most. '
+        'The thesis names the magnitude only, but also reads the phase off its chart.'
     )
 
 
 def _degrees(response: np.ndarray) -> np.ndarray:
     return np.degrees(np.angle(response))
-
-
-def draw_loop_in_nichols(
-    axes: Axes,
-    name: str,
-    controller: FactoredTransferFunction,
-    specifications: TimeSpecifications,
-    thesis_says: str,
-) -> str:
-    """Draw L of one controller, without hold and delay, with the bounds that it was made for."""
-    loop = continuous_loop(controller)
-    curve = LoopCurve(loop)
-    draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications)
-    margins = loop_margins(loop)
-    if not margins.stable:
-        return f'The closed loop is unstable. Thesis: {thesis_says}.'
-    crossed = [
-        f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
-        for found in contours(curve, specifications)
-        if not found.respected
-    ]
-    return (
-        f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
-        f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
-        f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
-    )
-
-
-def draw_step(
-    axes: Axes, name: str, controller: FactoredTransferFunction, printed: tuple[float, float]
-) -> str:
-    """Draw the step response of one loop; `printed` are the thesis's t_r in s and overshoot."""
-    time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
-    draw_step_response(axes, {name: (time, output)})
-    return (
-        f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
-        f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '
-        f'{100.0 * printed[1]:.0f} %.'
-    )
 
 
 LOOP_SHAPING_FIGURES = (
@@ -182,44 +141,41 @@ LOOP_SHAPING_FIGURES = (
         panels=2,
     ),
     ThesisFigure(
-        '2.5', 'Contribution of a lead network', partial(_draw_network, kind='d'), panels=2
+        *('2.5', 'Contribution of a lead network'),
+        partial(_draw_network, name='lead', ratio_name='m_d', corner='z_d', network=lead_network),
+        panels=2,
     ),
     ThesisFigure(
-        '2.6', 'Contribution of a lag network', partial(_draw_network, kind='i'), panels=2
+        *('2.6', 'Contribution of a lag network'),
+        partial(_draw_network, name='lag', ratio_name='m_i', corner='p_i', network=lag_network),
+        panels=2,
     ),
-    ThesisFigure(
+    nichols_figure(
         *('2.7', 'Nichols chart with G_c(s) = K_c/s, K_c = -1'),
-        partial(
-            draw_loop_in_nichols,
-            name='L with G_c = -1/s',
-            controller=integrators(-1.0, 1),
-            specifications=NETWORK_SPECIFICATIONS,
-            thesis_says='very close to -1, and 70° of phase are missing',
-        ),
+        name='L with G_c = -1/s',
+        controller=integrators(-1.0, 1),
+        specifications=NETWORK_SPECIFICATIONS,
+        thesis_says='very close to -1, and 70° of phase are missing',
     ),
-    ThesisFigure(
+    nichols_figure(
         *('2.8', 'Nichols chart with G_c1(s)'),
-        partial(
-            draw_loop_in_nichols,
-            name='L with G_c1',
-            controller=_G_C1,
-            specifications=NETWORK_SPECIFICATIONS,
-            thesis_says='far from -1, but crosses the circle',
-        ),
+        name='L with G_c1',
+        controller=_G_C1,
+        specifications=NETWORK_SPECIFICATIONS,
+        thesis_says='far from -1, but crosses the circle',
     ),
-    ThesisFigure(
+    nichols_figure(
         *('2.9', 'Nichols chart with G_c2(s)'),
-        partial(
-            draw_loop_in_nichols,
-            name='L with G_c2',
-            controller=_G_C2,
-            specifications=PLACEMENT_SPECIFICATIONS,
-            thesis_says='the specifications are met; it does not mention the curve',
-        ),
+        name='L with G_c2',
+        controller=_G_C2,
+        specifications=PLACEMENT_SPECIFICATIONS,
+        thesis_says='the specifications are met; it does not mention the curve',
     ),
-    ThesisFigure(
+    step_figure(
         *('2.10', 'Step response with G_c2(s)'),
-        partial(draw_step, name='G_c2', controller=_G_C2, printed=(0.52, 0.13)),
+        name='G_c2',
+        controller=_G_C2,
+        printed=(0.52, 0.13),
     ),
 )
 """Those of Section 2.2."""

@@ -7,9 +7,9 @@ import pytest
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
     admissible_scenarios,
     prediction_ranges,
-    score_windows,
     worn_ranges,
 )
+from ddct_bringup.reproduction.studies.score_windows import score_windows
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_plant.program.page_tables import fill_tables
 

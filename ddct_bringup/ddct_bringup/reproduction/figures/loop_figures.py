@@ -1,0 +1,69 @@
+"""Figures that both design methods draw of a loop: its Nichols chart and its step response."""
+
+from matplotlib.axes import Axes
+
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
+from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_plant.linear.lti import FactoredTransferFunction
+
+_STEP_DURATION_S = 4.0
+
+
+def nichols_figure(
+    number: str,
+    title: str,
+    *,
+    name: str,
+    controller: FactoredTransferFunction,
+    specifications: TimeSpecifications,
+    thesis_says: str,
+) -> ThesisFigure:
+    """Return L of one controller, without hold and delay, with the bounds it was made for."""
+
+    def draw(axes: Axes) -> str:
+        loop = continuous_loop(controller)
+        curve = LoopCurve(loop)
+        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications)
+        margins = loop_margins(loop)
+        if not margins.stable:
+            return f'The closed loop is unstable. Thesis: {thesis_says}.'
+        crossed = [
+            f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
+            for found in contours(curve, specifications)
+            if not found.respected
+        ]
+        return (
+            f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
+            f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
+            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
+        )
+
+    return ThesisFigure(number, title, draw)
+
+
+def step_figure(
+    number: str,
+    title: str,
+    *,
+    name: str,
+    controller: FactoredTransferFunction,
+    printed: tuple[float, float],
+) -> ThesisFigure:
+    """Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot."""
+
+    def draw(axes: Axes) -> str:
+        time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
+        draw_step_response(axes, {name: (time, output)})
+        return (
+            f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
+            f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '
+            f'{100.0 * printed[1]:.0f} %.'
+        )
+
+    return ThesisFigure(number, title, draw)
