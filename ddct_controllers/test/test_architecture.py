@@ -3,6 +3,7 @@
 import inspect
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -151,7 +152,7 @@ def test_a_command_that_is_not_finite_ends_the_run(torque):
     ],
 )
 def test_a_status_that_the_graph_cannot_carry_names_controller_and_step(status):
-    controller = Recording()
+    controller: Any = Recording()
     controller.registered_name = 'mine'
     controller.update = lambda measurement: Command(7.0, status)
     with pytest.raises(DdctError) as caught:

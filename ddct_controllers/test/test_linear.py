@@ -10,6 +10,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
+ONE = np.eye(1)
+
 
 def response(controller: LinearController, errors_rpm: list[float]) -> list[float]:
     return [
@@ -64,7 +66,7 @@ def test_reset_forgets_the_past(name):
 
 def test_a_sampled_controller_is_taken_as_it_is():
     """G_c(z) = 3 + 2/(z - 0.5): its first outputs by hand."""
-    model = StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]], 0.01)
+    model = StateSpace(0.5 * ONE, ONE, 2.0 * ONE, 3.0 * ONE, 0.01)
     controller = LinearController(model)
     assert response(controller, [1.0, 0.0, 2.0]) == pytest.approx([3.0, 2.0, 7.0])
     assert controller.linear_model() is model
@@ -73,9 +75,9 @@ def test_a_sampled_controller_is_taken_as_it_is():
 @pytest.mark.parametrize(
     'model',
     [
-        StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]]),
-        StateSpace([[0.5]], [[1.0]], [[2.0]], [[3.0]], 0.02),
-        StateSpace([[0.5]], [[1.0, 1.0]], [[2.0]], [[3.0, 1.0]], 0.01),
+        StateSpace(0.5 * ONE, ONE, 2.0 * ONE, 3.0 * ONE),
+        StateSpace(0.5 * ONE, ONE, 2.0 * ONE, 3.0 * ONE, 0.02),
+        StateSpace(0.5 * ONE, np.ones((1, 2)), 2.0 * ONE, np.array([[3.0, 1.0]]), 0.01),
     ],
 )
 def test_another_period_or_size_is_refused(model):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,11 +25,13 @@ DYMOLA_END = (3.247035, 2.463208)
 """w1, and w2 = w3 = w4, in rad/s."""
 
 
-def driving_torque(time: np.ndarray) -> np.ndarray:
+def driving_torque(time: Any) -> Any:
+    """Return the torque in N m at times in s: a number or an array."""
     return 10.0 * np.sin(10.0 * np.pi * time)
 
 
-def first_capacity(time: np.ndarray) -> np.ndarray:
+def first_capacity(time: Any) -> Any:
+    """Return the capacity of clutch 1 in N m at times in s: a number or an array."""
     return 10.0 * np.maximum(np.cos(0.4 * np.pi * time), 0.0)
 
 

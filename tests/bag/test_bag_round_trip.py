@@ -131,8 +131,9 @@ def test_an_unknown_message_type_is_an_error_that_says_what_to_install(tmp_path)
 
 
 def test_an_exception_leaves_the_bag_unfinished(tmp_path):
+    empty: dict[str, int] = {}
     with pytest.raises(KeyError), BagWriter(tmp_path, 'x', recorded_topics(RunKind()), {}):
-        raise KeyError
+        empty.pop('no such key')
     assert not (tmp_path / 'metadata.yaml').exists()
     with pytest.raises(DdctError, match='unfinished'):
         read_bag(tmp_path)

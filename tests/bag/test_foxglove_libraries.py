@@ -6,6 +6,7 @@ import shutil
 import subprocess
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from mcap.reader import make_reader
@@ -58,7 +59,7 @@ def plain(value):
 
 
 def by_topic(messages):
-    result = {}
+    result: dict[str, list[tuple[int, Any]]] = {}
     for topic, log_time, message in messages:
         result.setdefault(topic, []).append((log_time, message))
     return result

@@ -101,7 +101,7 @@ def _print_synthesis(figures: dict[str, Any]) -> None:
     )
 
 
-def _measure(layout: str, settings: RunSettings, rounds: int) -> dict[str, object]:
+def _measure(layout: str, settings: RunSettings, rounds: int) -> dict[str, Any]:
     """Return the times per step of chain and graph in us, and the ratio of their medians."""
     bare, graph = [], []
     for _ in range(rounds):

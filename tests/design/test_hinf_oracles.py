@@ -72,7 +72,8 @@ def test_the_norm_is_that_of_slicot():
     rng = np.random.default_rng(7)
     for _ in range(20):
         a = rng.normal(size=(6, 6)) - 3.5 * np.eye(6)
-        system = StateSpace(a, *(rng.normal(size=s) for s in ((6, 2), (3, 6), (3, 2))))
+        b, c, d = (rng.normal(size=shape) for shape in ((6, 2), (3, 6), (3, 2)))
+        system = StateSpace(a, b, c, d)
         if np.linalg.eigvals(a).real.max() < 0.0:
             theirs, _ = control.linfnorm(control.ss(system.a, system.b, system.c, system.d))
             assert h_infinity_norm(system) == pytest.approx(theirs, rel=1e-6)

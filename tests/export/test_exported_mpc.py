@@ -1,6 +1,7 @@
 """Exported predictive controllers in the loop, in place of their Python originals."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -116,7 +117,7 @@ def test_the_engines_authority_is_exported(tmp_path, changes):
 @pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': True}, {'limits': True}])
 def test_short_plans_preview_and_soft_limits_are_exported(tmp_path, changes):
     settings = run_settings()
-    original = make_controller('mpc3', settings)
+    original: Any = make_controller('mpc3', settings)
     chosen = original.settings
     if changes.pop('limits', False):
         # Slip may not fall below 30 rad/s, which costs against the reference that goes to 0.

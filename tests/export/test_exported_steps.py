@@ -2,6 +2,7 @@
 
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ def answers(controller: Controller, seed: int) -> list[tuple[list[float], tuple[
     """
     random = np.random.default_rng(seed)
     controller.reset()
-    given = []
+    given: list[tuple[list[float], tuple[str, ...], bool]] = []
     for step in range(STEPS):
         measurement = random_measurement(random, step, controller.preview_steps + 1)
         if random.random() < 0.3:
@@ -115,7 +116,7 @@ def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path,
         f'{section}.torque_rate_n_m_s=40000',
         f'{section}.control_steps=3',
     )
-    original = make_controller(name, settings)
+    original: Any = make_controller(name, settings)
     export_controller(original, name, settings, tmp_path / 'c')
     original._solver = Hasty(original.program.structure)
     in_c = never_changing_its_active_set(tmp_path / 'c')

@@ -3,6 +3,7 @@
 import math
 import signal
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -156,13 +157,17 @@ def test_a_node_that_was_stopped_answers_again_when_it_goes_on(
     graph.wait_for_publisher(topic, START_S)
     graph.add_all(without=[name])
     owner = realtime_owner(graph)
+
+    def reached(step: int) -> bool:
+        return owner.step >= step
+
+    def in_time(step: int) -> bool:
+        return owner._silent_since[topic] >= step
+
     for _ in range(2):
         start = owner.step
-        graph.spin_until(lambda start=start: owner.step >= start + 50, 'half a second', START_S)
+        graph.spin_until(partial(reached, start + 50), 'half a second', START_S)
         node.send(signal.SIGSTOP)
-        graph.spin_until(lambda start=start: owner.step >= start + 100, 'half a second more')
+        graph.spin_until(partial(reached, start + 100), 'half a second more')
         node.send(signal.SIGCONT)
-        graph.spin_until(
-            lambda start=start: owner._silent_since[topic] >= start + 150,
-            f'{topic} in time once more',
-        )
+        graph.spin_until(partial(in_time, start + 150), f'{topic} in time once more')

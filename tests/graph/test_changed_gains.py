@@ -25,7 +25,7 @@ def declared(node: GraphNode, names: Iterable[str]) -> dict[str, Any]:
 
 
 def test_a_refused_request_leaves_every_gain_as_it_was(graph_of: GraphOf) -> None:
-    node = graph_of(plan('pi')).add('controller')
+    node: Any = graph_of(plan('pi')).add('controller')
     running = node._controller
     before = dict(running.gains())
     refused = change(node, {'proportional_gain': 0.2, 'integral_gain': -1.0})

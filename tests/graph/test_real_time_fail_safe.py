@@ -1,6 +1,7 @@
 """Real time: the clutch opens by itself, at the stated rate, when the controller falls silent."""
 
 import signal
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -111,18 +112,22 @@ class _Bench(_Listener):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self.time = -1
-        self._clock = self.create_publisher(Clock, '/clock', LOOP_QOS)
+        self._ticks = self.create_publisher(Clock, '/clock', LOOP_QOS)
         self.create_subscription(Clock, '/clock', self._on_clock, LOOP_QOS)
         self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
 
     def connected(self) -> bool:
         """Say whether the actuator is there."""
-        heard = all(each.get_subscription_count() for each in (self._clock, self._request))
+        heard = all(each.get_subscription_count() for each in (self._ticks, self._request))
         return heard and self.count_publishers('actuator/torque') > 0
+
+    def is_at(self, step: int) -> bool:
+        """Say whether the time of this step was heard."""
+        return self.time == step
 
     def tell_time(self, step: int) -> None:
         """Publish the time of a step."""
-        self._clock.publish(CLOCK.message(stamp_of_step(step)))
+        self._ticks.publish(CLOCK.message(stamp_of_step(step)))
 
     def ask(self, step: int, torque: float = 200.0) -> None:
         """Publish a request for a step."""
@@ -172,6 +177,6 @@ def test_a_clock_that_is_heard_late_makes_the_actuator_answer(
     graph.spin_until(answered_again, 'the answer to a request that comes again')
     for step in range(1, 2 * HELD_STEPS):
         driver.tell_time(step)
-        graph.spin_until(lambda step=step: driver.time == step, 'the tick')
+        graph.spin_until(partial(driver.is_at, step), 'the tick')
         driver.ask(step)
-        graph.spin_until(lambda step=step: driver.has_torque(step), 'the torque')
+        graph.spin_until(partial(driver.has_torque, step), 'the torque')

@@ -38,9 +38,12 @@ class Viewer:
     def __enter__(self) -> 'Viewer':
         # The tests of errors need no viewer.
         from websockets.sync.client import connect
+        from websockets.typing import Subprotocol
 
         self._opened = contextlib.ExitStack()
-        self._socket = self._opened.enter_context(connect(self.url, subprotocols=[SUBPROTOCOL]))
+        self._socket = self._opened.enter_context(
+            connect(self.url, subprotocols=[Subprotocol(SUBPROTOCOL)])
+        )
         self._thread = threading.Thread(target=self._read)
         self._thread.start()
         return self

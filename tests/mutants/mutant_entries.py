@@ -55,4 +55,4 @@ def _mutant(entry: Any, where: str) -> Mutant:
         raise ValueError(f'{where}: {", ".join(keys[:-1])} must be texts')
     if not (isinstance(tests, list) and tests and all(isinstance(test, str) for test in tests)):
         raise ValueError(f'{where}: tests must be a list of one or more arguments of pytest')
-    return Mutant(*texts, tests=tuple(tests))
+    return Mutant(**{**entry, 'tests': tuple(tests)})

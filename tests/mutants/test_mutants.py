@@ -49,7 +49,7 @@ def entry(claim: str, find: str, replace: str, test: str = 'ddct_sums/test_sums.
 def run_mutants(repository: Path, *entries: str) -> subprocess.CompletedProcess[str]:
     file = repository / 'seeded.yaml'
     file.write_text(''.join(entries), encoding='utf-8')
-    command = [sys.executable, HERE / 'run.py', '--root', repository, file]
+    command = [sys.executable, str(HERE / 'run.py'), '--root', str(repository), str(file)]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 

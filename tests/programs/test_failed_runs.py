@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.runs import SHORT_S, plan
@@ -38,7 +39,7 @@ def failed(run: RunPlan, folder: Path) -> None:
 def bad_ls8(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Spoil:
     """Let every run of LS8 go wrong, and no other."""
 
-    def execute(run: RunPlan, folder: Path, *rest: object) -> None:
+    def execute(run: RunPlan, folder: Path, *rest: Any) -> None:
         if run.name == 'ls8':
             request.param(run, folder)
         else:

@@ -15,8 +15,10 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-STRICT = ('-std=c99', '-Wall', '-Wextra', '-Wpedantic', '-Werror', '-Wconversion', '-Wshadow')
-STRICT += ('-Wdouble-promotion', '-Wstrict-prototypes')
+STRICT = (
+    *('-std=c99', '-Wall', '-Wextra', '-Wpedantic', '-Werror', '-Wconversion', '-Wshadow'),
+    *('-Wdouble-promotion', '-Wstrict-prototypes'),
+)
 STATUS = ('solved', 'iteration limit', 'infeasible', 'bad measurement')
 NOT_IN_C = {'mpc_wear', 'mpc4_wear'}
 """Predictive controllers that do more than observer and program."""

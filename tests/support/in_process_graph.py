@@ -24,7 +24,7 @@ LOOK_S = 0.001
 """How often the graph is looked at while it spins."""
 
 
-def node_class(name: str) -> Callable[..., GraphNode]:
+def node_class(name: str) -> type[GraphNode]:
     """Return the class of the node with this name."""
     spec = next(spec for spec in GRAPH_NODES if spec.name == name)
     return getattr(importlib.import_module(spec.module), spec.class_name)

@@ -1,11 +1,13 @@
 """Each chart of the report draws the signal that its title names, with its sign and unit."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from bokeh.document import Document
-from bokeh.models import GlyphRenderer
+from bokeh.models import ColumnDataSource
+from bokeh.models.renderers import GlyphRenderer
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
@@ -67,14 +69,16 @@ SHOWN = {
 def charts():
     """Return the charts by name, as the page loads them."""
     run = ChartRun(0, 'pi', LineLook(0, ()), RUN, FACTS, True, thesis_engagement_time_s=0.088)
-    document, _ = chart_document([run])
+    document: Any = chart_document([run])[0]
     return {chart.name: chart for chart in Document.from_json(document).roots}
 
 
 def drawn(renderer: GlyphRenderer) -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of a line or mark."""
-    data, glyph = renderer.data_source.data, renderer.glyph
-    return data[glyph.x.field], data[glyph.y.field]
+    source, glyph = renderer.data_source, renderer.glyph
+    assert isinstance(source, ColumnDataSource)
+    x, y = (np.asarray(source.data[spec.field]) for spec in (glyph.x, glyph.y))
+    return x, y
 
 
 def lines(chart) -> list[GlyphRenderer]:

@@ -1,6 +1,7 @@
 """What docs/mpc4.md claims of clutch and engine together holds in the thesis's scenario."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -117,7 +118,7 @@ def test_the_engine_delivers_what_is_asked_as_the_controller_expects(name, chang
 
 def test_mpc4_does_not_survive_a_worn_clutch_and_its_level_is_why():
     assert abs(rpm_from_rad_s(run('mpc4', wear_gain=0.95).slip_speed[-1])) > 100.0
-    mpc4 = make_controller('mpc4', SETTINGS)
+    mpc4: Any = make_controller('mpc4', SETTINGS)
     new, worn = (transmission_model(SETTINGS.scenario.driveline, gain) for gain in (1.0, 0.95))
     assert growth(mpc4.program, mpc4.observer, new) < 1.0
     assert growth(mpc4.program, mpc4.observer, worn) > 1.05

@@ -171,9 +171,9 @@ class ExactLoop(ClosedLoop):
         super().__init__(run, controller)
         start, request = self._driveline.outputs(), initial_state(run).torque_request
         self._exact = transmission_model(run.scenario.driveline)
-        self._state = self._exact.at_rest(
-            tuple(start.joint_speed[:3]), start.joint_position[3], request
-        )
+        engine, shaft, wheel, _ = start.joint_speed
+        twist = start.joint_position[3]
+        self._state = self._exact.at_rest((engine, shaft, wheel), twist, request)
 
     def advance(self, reply):
         super().advance(reply)

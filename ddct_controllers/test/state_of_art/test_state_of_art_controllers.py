@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -96,7 +97,7 @@ def test_the_horizon_shrinks_to_a_third_and_stays():
 
 
 def test_without_a_solution_the_request_stays_and_is_counted():
-    controller = make_controller('pedal_mpc', SETTINGS)
+    controller: Any = make_controller('pedal_mpc', SETTINGS)
     controller.hold(measurement(59))
     before = controller.update(measurement(60)).clutch_torque
 

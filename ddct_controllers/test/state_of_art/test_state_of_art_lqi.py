@@ -97,7 +97,7 @@ def test_on_a_rigid_driveline_the_weights_give_the_double_pole(monkeypatch):
     from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
     slip_gain = RigidTransmission(DRIVELINE).slip_gain
-    rigid = StateSpace(np.zeros((1, 1)), [[-slip_gain]], np.eye(1), np.zeros((1, 1)))
+    rigid = StateSpace(np.zeros((1, 1)), np.array([[-slip_gain]]), np.eye(1), np.zeros((1, 1)))
     plant = discretise_zoh(rigid, PERIOD_S)
     gain = lqi._feedback_gain(plant, DRIVELINE, 5.0)
     a = np.array([[1.0, 0.0], [-PERIOD_S, 1.0]])

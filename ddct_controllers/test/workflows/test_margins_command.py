@@ -5,6 +5,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ddct_controllers.interface import Command, Controller
@@ -15,6 +16,7 @@ from ddct_plant.program.command_line import run_program
 
 pytestmark = pytest.mark.slow
 
+ZERO, ONE = np.zeros((1, 1)), np.eye(1)
 PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'frequency_evidence.md'
 
 
@@ -148,8 +150,7 @@ def test_controllers_that_are_not_linear_are_named_below_the_table(monkeypatch, 
 
 
 def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
-    one = [[1.0]]
-    stub(StateSpace(one, one, one, one))
+    stub(StateSpace(ONE, ONE, ONE, ONE))
     assert run('--controller', 'ls1') == 1
     message = "controller 'ls1': its linear_model cannot be used: controller is continuous"
     assert message in capsys.readouterr().err
@@ -160,9 +161,9 @@ def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
     [
         ('text', 'it is of type str'),
         ([[1.0]], 'it is of type list'),
-        (StateSpace([[0.0]], [[1.0, 1.0]], [[1.0]], [[0.0, 0.0]], 0.01), 'it has 2 inputs'),
-        (StateSpace([[0.0]], [[1.0]], [[1.0], [1.0]], [[0.0], [0.0]], 0.01), '2 outputs'),
-        (StateSpace([[0.0]], [[1.0]], [[1.0]], [[0.0]], 0.02), 'controller is sampled at 0.02 s'),
+        (StateSpace(ZERO, np.ones((1, 2)), ONE, np.zeros((1, 2)), 0.01), 'it has 2 inputs'),
+        (StateSpace(ZERO, ONE, np.ones((2, 1)), np.zeros((2, 1)), 0.01), '2 outputs'),
+        (StateSpace(ZERO, ONE, ONE, ZERO, 0.02), 'controller is sampled at 0.02 s'),
     ],
 )
 def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, complaint):

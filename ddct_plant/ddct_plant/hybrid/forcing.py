@@ -8,7 +8,7 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.mode_flow import Signs
 
-Value = float | Sequence[float]
+Value = float | Sequence[float] | np.ndarray
 """An input over an interval: one number if it is held, else one for each node."""
 _NUMBER = (float, int)
 """As a tuple, for which `isinstance` takes a third of the time."""

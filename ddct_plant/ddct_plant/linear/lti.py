@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
@@ -90,7 +91,7 @@ class FactoredTransferFunction:
         s = np.asarray(s, dtype=complex)
         return self.gain * _product(self.numerator, s) / _product(self.denominator, s)
 
-    def frequency_response(self, omega: np.ndarray) -> np.ndarray:
+    def frequency_response(self, omega: ArrayLike) -> np.ndarray:
         """Return the complex response, the shape of `omega`, at frequencies in rad/s."""
         return self.at(1j * np.asarray(omega, dtype=float))
 

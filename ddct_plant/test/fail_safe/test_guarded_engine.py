@@ -36,9 +36,9 @@ def test_the_demand_takes_over_one_step_after_the_timeout_and_no_request_counts_
     engine = guarded(EngineAuthority(slew_n_m_s=500.0))
     assert engine.request(0, 320.0) == 313.0
     assert [engine.tick(step) for step in range(1, 6)] == [None] * 5
-    assert not engine.on_demand
+    before = engine.on_demand
     assert engine.tick(6) == 315.0, 'the request was held for five steps, then the demand'
-    assert engine.on_demand
+    assert (before, engine.on_demand) == (False, True)
     assert engine.request(7, 400.0) is None
     assert [engine.tick(step) for step in (7, 7, 8, 9, 6)] == [310.0, 310.0, 308.0, 308.0, None]
 

@@ -1,6 +1,7 @@
 """What a spinning node changes for the whole process is as before when it ends."""
 
 import gc
+from typing import Any
 
 import pytest
 
@@ -17,7 +18,7 @@ class FakeExecutor:
     def __init__(self, fails=False):
         self.fails = fails
         self.frozen = 0
-        self.threshold = ()
+        self.threshold: tuple[int, ...] = ()
 
     def spin_until_future_complete(self, over, _timeout):
         self.frozen, self.threshold = gc.get_freeze_count(), gc.get_threshold()
@@ -29,7 +30,7 @@ class FakeExecutor:
 @pytest.mark.parametrize('fails', [False, True])
 def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails):
     before = gc.get_threshold(), gc.get_freeze_count()
-    executor = FakeExecutor(fails)
+    executor: Any = FakeExecutor(fails)
     try:
         spin_until(executor, Future())
     except RuntimeError:

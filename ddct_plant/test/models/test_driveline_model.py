@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import Factor
 from ddct_plant.models.driveline_model import (
     clutch_to_slip,
     driveline_matrices,
@@ -57,8 +58,9 @@ def test_p2_gain_and_p3_zero_have_their_closed_forms():
     assert p3.numerator == (DEFAULT.halfshaft_stiffness / DEFAULT.halfshaft_damping,)
 
 
-def mode(pair: tuple[float, float]) -> tuple[float, float]:
+def mode(pair: Factor) -> tuple[float, float]:
     """Return the natural frequency in Hz and the damping ratio of s^2 + b s + c."""
+    assert isinstance(pair, tuple)
     frequency = math.sqrt(pair[1])
     return frequency / (2 * math.pi), pair[0] / (2 * frequency)
 

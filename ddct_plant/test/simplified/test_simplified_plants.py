@@ -38,8 +38,8 @@ START = np.array(
 @pytest.fixture(scope='module')
 def detailed() -> np.ndarray:
     """Return w_d of the detailed plant over the slip phase, (111,)."""
-    torques = ENGINE[0], LOAD_N_M, CLUTCH[0, 0], CLUTCH[0, 0]
-    driveline = Driveline(PARAMETERS, VehicleParameters(), InitialState(*START, *torques))
+    start = [*START, ENGINE[0], LOAD_N_M, CLUTCH[0, 0], CLUTCH[0, 0]]
+    driveline = Driveline(PARAMETERS, VehicleParameters(), InitialState(*start))
     slip_speed = [driveline.outputs().slip_speed]
     for engine, points, load in zip(ENGINE, CLUTCH, LOAD, strict=True):
         driveline.step(engine, load, points.tolist())

@@ -26,8 +26,8 @@ class Harness:
 
     def __init__(self, owner_type, steps=3, require_recorder=False):
         self.now = 0.0
-        self.published = []
-        self.ends = []
+        self.published: list[int] = []
+        self.ends: list[DdctError | None] = []
         self.driveline = FakeDriveline()
         self.owner = owner_type(
             self.driveline,

@@ -1,10 +1,10 @@
 """What the nine numbers say about the fitted parameters, and what the fit predicts by itself."""
 
 import dataclasses
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.stats import t as student_t
 
 from ddct_bringup.reproduction.calibration.parameters import (
@@ -54,7 +54,7 @@ class Identifiability:
     covariance_root_given_start: np.ndarray
     """(6, 5) the same with C_m start held."""
 
-    def std_of(self, gradient: Sequence[float]) -> tuple[float, float]:
+    def std_of(self, gradient: ArrayLike) -> tuple[float, float]:
         """
         Return the std of a function of the parameters, free and with C_m start held.
 

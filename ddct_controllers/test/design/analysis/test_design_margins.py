@@ -185,8 +185,8 @@ def test_a_sampled_loop_is_looked_at_up_to_half_the_sampling_rate():
     ids=['z = 1', 'z = -1', 'z = +-j', 's = 0', 's = +-j'],
 )
 def test_a_closed_loop_pole_on_the_boundary_is_not_stable(a, c, period_s):
-    b = [[0.0]] * (len(a) - 1) + [[1.0]]
-    loop = StateSpace(a, b, c, np.zeros((1, 1)), period_s)
+    b = np.eye(len(a))[:, -1:]
+    loop = StateSpace(np.array(a), b, np.array(c), np.zeros((1, 1)), period_s)
     assert unstable_poles(loop) == len(a)
     assert not closed_loop_stable(loop)
     assert not loop_margins(loop).stable

@@ -2,6 +2,7 @@
 
 import itertools
 from types import SimpleNamespace
+from typing import Any
 
 import control
 import numpy as np
@@ -112,7 +113,7 @@ def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, un
     )
     plant = StateSpace(loop.A, loop.B, loop.C, loop.D, PERIOD_S)
     response = frequency_response(plant, PlantCorners.omega)
-    one_corner = SimpleNamespace(
+    one_corner: Any = SimpleNamespace(
         plants=[plant],
         omega=PlantCorners.omega,
         responses=response[None, :],

@@ -166,7 +166,8 @@ def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
     start_factor[[0, 1, 2], [0, 1, 2]] = NOISE.speed_rad_s
     start_factor[4, 3] = wear.initial_gain
     start_factor[[3, 6], 4] = drift * twist_per_torque, drift
-    mean, factors, seen = start, start_factor, []
+    mean, factors = start, start_factor
+    seen: list[tuple[np.ndarray, np.ndarray]] = []
     for k in range(len(requests)):
         effect = plant.a[:4, 4:] @ actuator
         step = np.eye(7)

@@ -41,7 +41,9 @@ def test_a_high_pass_has_its_peak_at_infinity_and_a_low_pass_at_rest():
 
 
 def test_a_constant_and_nothing():
-    static = StateSpace(np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), [[3.0, 4.0]])
+    static = StateSpace(
+        np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([[3.0, 4.0]])
+    )
     assert h_infinity_norm(static) == pytest.approx(5.0)
     assert norm_of(0.0, (), (1.0,)) == 0.0
 
@@ -53,7 +55,8 @@ def test_a_loop_that_is_not_stable_has_no_norm(pole):
 
 def test_the_bilinear_transform_keeps_the_norm():
     """That of a sampled system over the unit circle, by a fine sweep."""
-    system = StateSpace([[0.9, 0.2], [-0.3, 0.8]], [[1.0], [0.5]], [[1.0, 0.0]], [[0.2]], 0.01)
+    a, b = np.array([[0.9, 0.2], [-0.3, 0.8]]), np.array([[1.0], [0.5]])
+    system = StateSpace(a, b, np.array([[1.0, 0.0]]), np.array([[0.2]]), 0.01)
     z = np.exp(1j * np.linspace(0.0, math.pi, 100001)).reshape(-1, 1, 1)
     values = system.c @ np.linalg.solve(z * np.eye(2) - system.a, system.b[None]) + system.d
     assert h_infinity_norm(to_w_plane(system)) == pytest.approx(np.abs(values).max(), rel=1e-7)

@@ -2,6 +2,7 @@
 
 import builtins
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,9 +42,9 @@ W_1, W_2 = PRINTED.sensitivity.shifted(), PRINTED.complementary.transfer_functio
 PRINTED_OPTIMUM = 1.105
 
 
-def simple_plant(**changes: object) -> GeneralisedPlant:
+def simple_plant(**changes: Any) -> GeneralisedPlant:
     """dx/dt = x + w_1 + u, v = x + w_2, z = [x; u]: unstable, every matrix by hand."""
-    parts = {
+    parts: dict[str, Any] = {
         'a': [[1.0]],
         'b': [[1.0, 0.0, 1.0]],
         'c': [[1.0], [0.0], [1.0]],
