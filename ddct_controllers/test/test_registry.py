@@ -1,7 +1,7 @@
 """Controllers are found by name; what cannot be built says why."""
 
 import importlib.metadata
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 
@@ -129,9 +129,10 @@ def test_declared_options_reach_a_third_partys_controller_checked_and_whole(add_
     add_entry_point('mine', f'{__name__}:Declaring')
     settings = RunSettings(load_scenario('thesis', ['controllers.mine.gain=2']))
     expected = {'gain': 2.0, 'steps': 3, 'limit_n_m': None}
-    assert make_controller('mine', settings).taken == expected
-    changed = make_controller('mine', settings, {'steps': 4, 'limit_n_m': 5.0}).taken
-    assert changed == {**expected, 'steps': 4, 'limit_n_m': 5.0}
+    plain: Any = make_controller('mine', settings)
+    changed: Any = make_controller('mine', settings, {'steps': 4, 'limit_n_m': 5.0})
+    assert plain.taken == expected
+    assert changed.taken == {**expected, 'steps': 4, 'limit_n_m': 5.0}
 
 
 @pytest.mark.parametrize(

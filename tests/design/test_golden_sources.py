@@ -26,6 +26,7 @@ from typed_loops import (
 )
 
 
+@pytest.mark.slow
 def test_hinf2_on_paper_and_as_it_runs():
     """M_s 1.454, 3.354 with hold and delay, 9.656 worn, 2.79 with 15 ms; 76 %; stable to 1.45."""
     assert peaks(driveline() * G_A * HINF2)[0] == pytest.approx(1.454, abs=0.001)
@@ -73,6 +74,7 @@ def test_steps_of_hinf1_as_printed_and_with_2_14_times_its_gain():
     assert louder == pytest.approx((0.300, 7.29), abs=0.01)
 
 
+@pytest.mark.slow
 def test_worst_m_s_of_hinf1_by_trying_every_corner():
     """3.38 over 128 corners, K_usura from 0.7 to 1.3 in steps of 0.01, 2000 frequencies."""
     z = np.exp(1j * np.geomspace(0.1, math.pi / DT, 2000) * DT)

@@ -40,7 +40,7 @@ def test_a_refused_request_leaves_every_gain_as_it_was(graph_of: GraphOf) -> Non
 def test_every_option_of_a_controller_is_a_parameter_that_reaches_it(graph_of: GraphOf) -> None:
     graph = graph_of(plan('mpc3', changes=('controllers.mpc3.control_steps=3',)))
     given = {'gains.prediction_steps': 9, 'gains.torque_rate_n_m_s': 100.0}
-    node = graph.add('controller', given)
+    node: Any = graph.add('controller', given)
     settings = node._controller.settings
     assert (settings.prediction_steps, settings.control_steps) == (9, 3)
     assert settings.inputs[0].rate_n_m_s == 100.0

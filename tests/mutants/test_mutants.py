@@ -53,6 +53,7 @@ def run_mutants(repository: Path, *entries: str) -> subprocess.CompletedProcess[
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_a_defect_that_lives_is_reported_and_one_that_is_caught_is_told(repository: Path) -> None:
     caught, lives = entry('it multiplies', 'a + b', 'a * b'), entry('-b', 'a + b', 'a - b')
     ended = run_mutants(repository, caught, lives)
@@ -67,6 +68,7 @@ def test_a_defect_that_lives_is_reported_and_one_that_is_caught_is_told(reposito
     assert 'return a + b' in (repository / file).read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('find', 'times'), [('a - b', 0), ('a', 3)])
 def test_an_entry_whose_text_is_not_there_exactly_once_is_an_error(
     repository: Path, find: str, times: int
@@ -76,6 +78,7 @@ def test_an_entry_whose_text_is_not_there_exactly_once_is_an_error(
     assert f'stale: `find` occurs {times} times' in ended.stderr
 
 
+@pytest.mark.slow
 def test_a_defect_is_not_caught_by_tests_that_fail_without_it_or_cannot_be_run(
     repository: Path,
 ) -> None:
@@ -88,6 +91,7 @@ def test_a_defect_is_not_caught_by_tests_that_fail_without_it_or_cannot_be_run(
     assert 'without a defect these fail: ddct_sums/test_sums.py' in ended.stderr
 
 
+@pytest.mark.slow
 def test_a_package_from_outside_the_copy_is_an_error(repository: Path) -> None:
     source = repository / 'ddct_sums' / 'ddct_sums'
     tests = repository / 'ddct_sums' / 'test_sums.py'

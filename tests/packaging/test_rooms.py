@@ -107,6 +107,7 @@ def test_controllers_load_no_design_code_before_they_need_it(module: str) -> Non
     assert done.stdout.split() == []
 
 
+@pytest.mark.slow
 def test_no_controller_or_architecture_loads_python_control_to_run():
     """Not even those that are synthesised, or the feedforward that is designed, at the start."""
     code = (

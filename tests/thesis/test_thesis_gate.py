@@ -24,6 +24,8 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP
 from ddct_plant.program.page_tables import fill_tables
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / 'docs' / 'thesis_gate.md'
 NUMBERS = thesis_numbers()

@@ -14,6 +14,8 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1.0']))
 
 

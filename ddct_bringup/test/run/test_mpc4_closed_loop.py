@@ -27,6 +27,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = RunSettings(load_scenario('thesis'))
 START = SETTINGS.scenario.control_start_step
 BOTH = ('mpc4', 'mpc4_wear')

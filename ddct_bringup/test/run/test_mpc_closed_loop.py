@@ -17,6 +17,8 @@ from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = RunSettings(THESIS_SCENARIO)
 
 

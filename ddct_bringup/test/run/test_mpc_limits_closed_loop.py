@@ -13,6 +13,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 PAGE = Path(__file__).parents[3] / 'docs' / 'mpc.md'
 START = load_scenario('thesis').control_start_step
 AS_DRAWN = ('mpc1', 'mpc2', 'mpc3')

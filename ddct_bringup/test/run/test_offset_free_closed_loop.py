@@ -23,6 +23,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SCENARIO = load_scenario('thesis')
 LONG = replace(SCENARIO, duration_s=5.0)
 OWN = ('mpc_offset_free', 'mpc_torsion', 'mpc_wear')

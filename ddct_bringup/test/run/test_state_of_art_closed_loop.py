@@ -17,6 +17,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SCENARIO = load_scenario('thesis')
 LITTLE_AUTHORITY = {'lag_s': 0.1, 'deviation_n_m': 40.0, 'slew_n_m_s': 500.0}
 CORNERS = [

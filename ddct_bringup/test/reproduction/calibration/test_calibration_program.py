@@ -11,6 +11,8 @@ from ddct_bringup.reproduction.calibration import command
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import ReferenceParameters
 
+pytestmark = pytest.mark.slow
+
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
 RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
 

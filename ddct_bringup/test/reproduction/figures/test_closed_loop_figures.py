@@ -23,6 +23,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 FIGURES = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 PAGE = Path(__file__).parents[4] / 'docs' / 'figures.md'

@@ -18,6 +18,8 @@ from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'feedforward.md'
 SCENARIO = load_scenario('thesis')
 DRIVELINE = SCENARIO.driveline

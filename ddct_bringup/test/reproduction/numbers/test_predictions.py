@@ -22,6 +22,7 @@ def scenario(name: str) -> Scenario:
     return FROZEN if name == 'thesis' else next(one for one in members() if one.name == name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', AGAIN)
 def test_kept_values_are_those_of_the_controllers_as_they_are(name):
     """After a change of a controller: reproduce calibration --predict, see docs/predictions.md."""

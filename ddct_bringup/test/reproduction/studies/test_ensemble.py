@@ -22,6 +22,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 
+pytestmark = pytest.mark.slow
+
 FROZEN = load_scenario('thesis')
 MEMBERS = {member.name: member for member in members()}
 

@@ -1,0 +1,21 @@
+"""CONTRIBUTING tells how to add each kind of thing, and names no file that is not there."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
+
+
+def test_every_path_is_there() -> None:
+    named = re.findall(r'`((?:ddct_\w+|docs|tests)/[\w./]+)`', PAGE)
+    linked = re.findall(r'\]\((?!https?:)([\w./]+)\)', PAGE)
+    assert len(named) >= 6
+    assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize('thing', ['topic', 'controller', 'scenario', 'number of the thesis'])
+def test_it_tells_where_to_add(thing: str) -> None:
+    assert re.search(rf'^\| an? {thing} \|', PAGE, re.MULTILINE)
