@@ -12,7 +12,6 @@ from scipy.optimize import minimize_scalar
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
-from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, make_weights
 from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
 from ddct_controllers.design.state_space import factored_form
