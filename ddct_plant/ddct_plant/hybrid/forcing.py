@@ -38,28 +38,26 @@ def require_capacities(kinetic: Sequence[Value], static: Sequence[Value]) -> Non
 
 
 class Forcing:
-    """The inputs w = [u, c] at the nodes, whichever mode they are asked in."""
+    """The inputs w = [u, c] of each piece, whichever mode they are asked in."""
 
-    def __init__(
-        self,
-        inputs: Sequence[Value],
-        kinetic: Sequence[Value],
-        static: Sequence[Value],
-        nodes: int,
-    ) -> None:
-        """Take in u (m entries) and the capacities (N entries each), held or by node."""
-        self._inputs, self._kinetic, self._static = (
-            np.array([np.broadcast_to(value, nodes) for value in values]).reshape(-1, nodes).T
-            for values in (inputs, kinetic, static)
-        )
+    def __init__(self, nodes: np.ndarray, elements: int) -> None:
+        """Take in the values (nodes, m + 2 N) of u, the kinetic and the static capacities."""
+        self._nodes, self._elements = nodes, elements
+        self._by_mode: dict[Signs, np.ndarray] = {}
 
-    def nodes(self, signs: Signs) -> np.ndarray:
-        """Return w (nodes, m + N), with the capacities that count in a mode."""
-        capacities = np.where(signs, self._kinetic, self._static)
-        return np.hstack([self._inputs, capacities])
+    def pieces(self, signs: Signs) -> np.ndarray:
+        """Return [w, dw] (pieces, 2 (m + N)) in a mode; dw is the change over a piece."""
+        if signs not in self._by_mode:
+            count = self._elements
+            first = self._nodes.shape[1] - 2 * count
+            in_force = [first + i + (0 if sign else count) for i, sign in enumerate(signs)]
+            w = self._nodes[:, [*range(first), *in_force]]
+            self._by_mode[signs] = np.hstack([w[:-1], w[1:] - w[:-1]])
+        return self._by_mode[signs]
 
     def at(self, signs: Signs, piece: int, part: float) -> np.ndarray:
-        """Return [w, dw] after a `part` (0 to 1) of a piece; dw is the change over the piece."""
-        start, end = self.nodes(signs)[piece : piece + 2]
-        change = end - start
-        return np.concatenate((start + part * change, change))
+        """Return [w, dw] after a `part` (0 to 1) of a piece."""
+        forcing = self.pieces(signs)[piece].copy()
+        inputs = len(forcing) // 2
+        forcing[:inputs] += part * forcing[inputs:]
+        return forcing

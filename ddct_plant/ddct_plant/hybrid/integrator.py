@@ -19,8 +19,8 @@ from ddct_plant.hybrid.motion import Event, Motion
 class Interval(NamedTuple):
     """What an interval ends with, and what happened in it."""
 
-    states: np.ndarray
-    """(pieces, n): the states at the end of each piece, the last of them the new state."""
+    state: np.ndarray
+    """(n,) at the end."""
     signs: Signs
     """The mode at the end."""
     events: list[Event]
@@ -35,10 +35,13 @@ class HybridIntegrator:
     Integrates a FrictionSystem over intervals of equal pieces, in which inputs are linear.
 
     Between events a mode's flow is a matrix exponential, taken by its series, which is exact to
-    rounding over one piece. Slips and margins are then polynomials in time. Their Bernstein
-    coefficients for the whole interval come with the new state out of one product; none is
-    negative unless an event is near. Otherwise the first root is found on the polynomial, and
-    the motion goes on from there in the mode that `choose_mode` gives.
+    rounding over one piece. Slips and margins are then polynomials in time. One product gives
+    the new state together with lower bounds of their Bernstein coefficients; if none is negative
+    there is no event. Otherwise the interval is passed piece by piece, in which the coefficients
+    themselves tell: the first root is found on the polynomial, and the motion goes on from there
+    in the mode that `choose_mode` gives.
+
+    It holds nothing of a motion, so that threads and runs may share it.
     """
 
     def __init__(
@@ -53,24 +56,29 @@ class HybridIntegrator:
         self._piece_s = require_number('piece_s', piece_s, above=0.0)
         self._pieces = int(require_number('pieces', pieces, at_least=1))
         self._states, inputs = system.b.shape
-        self._first_capacity = inputs
-        self._columns = self._layout(set(held))
+        capacities = range(inputs, inputs + system.elements)
+        columns = self._layout([j in set(held) for j in (*range(inputs), *capacities, *capacities)])
         self._flows = {
             signs: ModeFlow(system, signs, piece_s)
             for signs in product((-1, 0, 1), repeat=system.elements)
         }
         self._maps = {
-            signs: IntervalMap(flow, piece_s, self._pieces, self._columns)
+            signs: IntervalMap(flow, piece_s, self._pieces, columns)
             for signs, flow in self._flows.items()
         }
         # A single number by its index: numpy writes it in a third of the time.
-        self._places = [c.start if c.stop - c.start == 1 else c for c in self._columns]
-        self._v = np.zeros(self._columns[-1].stop)
+        self._places = [c.start if c.stop - c.start == 1 else c for c in columns]
+        self._width = columns[-1].stop
+        self._nodes = np.array(
+            [np.broadcast_to(np.arange(c.start, c.stop), self._pieces + 1) for c in columns]
+        ).T
+        """(nodes, m + 2 N): where in v each value at a node is."""
 
-    def _layout(self, held: set[int]) -> list[slice]:
+    def _layout(self, held: Sequence[bool]) -> list[slice]:
+        """Return the place in v of each of u, of the kinetic and of the static capacities."""
         columns, start = [], self._states
-        for j in range(self._first_capacity + self.system.elements):
-            stop = start + (1 if j in held else self._pieces + 1)
+        for once in held:
+            stop = start + (1 if once else self._pieces + 1)
             columns.append(slice(start, stop))
             start = stop
         return columns
@@ -105,70 +113,43 @@ class HybridIntegrator:
         `inputs` are u (m entries), `kinetic` and `static` the capacities (N entries). Raise
         ParameterError for a capacity that is negative or a static one below the kinetic one.
         """
-        require_capacities(kinetic, static)
+        v = self._argument(state, inputs, kinetic, static)
         interval_map = self._maps[signs]
-        v = self._argument(state, signs, inputs, kinetic, static)
         product = interval_map.apply(v)
-        guards = product[interval_map.first_guard :]
-        if guards[guards.argmin()] >= 0.0:
-            work = [0.0] * len(signs)
-            for element, integrals, capacities in interval_map.work:
-                work[element] = float(product[integrals].dot(v[capacities]))
-            friction = product[interval_map.friction].tolist()
-            return Interval(interval_map.states(product), signs, [], work, friction)
-        forcing = Forcing(inputs, kinetic, static, self._pieces + 1)
-        return self._through_events(state, signs, forcing)
+        if product is None:
+            require_capacities(kinetic, static)
+            return self._through_pieces(signs, v)
+        work = [0.0] * len(signs)
+        for element, integrals, capacities in interval_map.work:
+            work[element] = float(product[integrals].dot(v[capacities]))
+        friction = product[interval_map.friction].tolist()
+        return Interval(product[: self._states], signs, [], work, friction)
 
     def _argument(
         self,
         state: np.ndarray,
-        signs: Signs,
         inputs: Sequence[Value],
         kinetic: Sequence[Value],
         static: Sequence[Value],
     ) -> np.ndarray:
-        """Return v, the argument of the map of a mode, for a whole interval."""
-        v = self._v
+        """Return v, the argument of the map of a mode."""
+        v = np.empty(self._width)
         v[: self._states] = state
-        in_force = [
-            low if sign else high for sign, low, high in zip(signs, kinetic, static, strict=True)
-        ]
         try:
-            for where, value in zip(self._places, (*inputs, *in_force), strict=True):
+            for where, value in zip(self._places, (*inputs, *kinetic, *static), strict=True):
                 v[where] = value
-        except ValueError as error:
+        except (TypeError, ValueError) as error:
+            require_capacities(kinetic, static)
             raise ParameterError(
-                f'friction: the inputs {inputs} and capacities {in_force} do not fit the '
+                f'friction: the inputs {inputs} and capacities {kinetic} do not fit the '
                 f'interval: {error}'
             ) from error
         return v
 
-    def _rest_argument(
-        self, state: np.ndarray, signs: Signs, forcing: Forcing, piece: int
-    ) -> np.ndarray:
-        """Return v for the rest of the interval from `piece` on."""
-        nodes = np.roll(forcing.nodes(signs), -piece, axis=0)
-        values = [nodes[: c.stop - c.start, j] for j, c in enumerate(self._columns)]
-        return np.concatenate((state, *values))
-
-    def _through_events(self, state: np.ndarray, signs: Signs, forcing: Forcing) -> Interval:
-        """Advance over pieces without an event at once, and through the others one by one."""
-        states = np.zeros((self._pieces, self._states))
-        motion = Motion(self.system, self._flows, self._piece_s, forcing, state, signs)
-        piece = 0
-        while piece < self._pieces:
-            interval_map = self._maps[motion.signs]
-            product = interval_map.apply(
-                self._rest_argument(motion.state, motion.signs, forcing, piece)
-            )
-            ends, guards = interval_map.states(product), interval_map.guards(product)
-            left = self._pieces - piece
-            eventful = ~(guards[:, :, :left] >= 0.0).all(axis=(0, 1))
-            quiet = int(eventful.argmax()) if eventful.any() else left
-            motion.pass_quiet_pieces(piece, ends[:quiet], guards[:, :, :quiet])
-            states[piece : piece + quiet] = ends[:quiet]
-            piece += quiet
-            if quiet < left:
-                states[piece] = motion.pass_piece(piece)
-                piece += 1
-        return Interval(states, motion.signs, motion.events, motion.work, motion.friction())
+    def _through_pieces(self, signs: Signs, v: np.ndarray) -> Interval:
+        """Advance piece by piece, as there may be an event in any."""
+        forcing = Forcing(v[self._nodes], len(signs))
+        motion = Motion(self.system, self._flows, self._piece_s, forcing, v[: self._states], signs)
+        for piece in range(self._pieces):
+            motion.pass_piece(piece)
+        return Interval(motion.state, motion.signs, motion.events, motion.work, motion.friction())

@@ -4,6 +4,7 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
+from ddct_plant.hybrid.polynomials import bernstein_of_powers
 
 Signs = tuple[int, ...]
 """A mode: by element 0 where it sticks, else the sign of its slip."""
@@ -54,7 +55,15 @@ class ModeFlow:
         for order in range(1, self.degree + 1):
             powers.append(powers[-1] @ generator / order)
         self.series = np.array(powers)
-        self._sizes = np.abs(self.series[:, states:])
+        self.powers = np.arange(self.degree + 1)
+        """0, 1, ..., d."""
+        self._series = self.series.reshape(-1, size)
+        self._sizes = np.abs(self.series[:, states:]).reshape(-1, size)
+        powers_of_guards = np.moveaxis(self.series[:, states:], 0, 1)
+        self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
+        """(guards, d+1, y): their Bernstein coefficients over a whole piece, as rows on y."""
+        end = self.series[:, :states].sum(axis=0)
+        self._piece = np.vstack([end, self.guards.reshape(-1, size)])
 
     def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
         """Return the rows of the guards on [x, w], and by guard its element."""
@@ -71,14 +80,19 @@ class ModeFlow:
             guarded += [i] * (len(rows) - len(guarded))
         return np.array(rows), guarded
 
+    def over_a_piece(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the state (n,) after a piece and the guards in Bernstein form, one by one."""
+        values = self._piece.dot(y)
+        return values[: self.states], values[self.states :]
+
     def polynomials(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return states (d+1, n) and guards (guards, d+1) in powers of t, from y at t = 0."""
-        values = self.series @ y
+        values = self._series.dot(y).reshape(self.degree + 1, -1)
         return values[:, : self.states], values[:, self.states :].T
 
     def guard_sizes(self, y: np.ndarray) -> np.ndarray:
         """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
-        return (self._sizes @ np.abs(y)).T
+        return self._sizes.dot(np.abs(y)).reshape(self.degree + 1, -1).T
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:

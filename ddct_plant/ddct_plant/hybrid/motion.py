@@ -47,22 +47,23 @@ class Motion:
 
     def friction(self) -> list[float]:
         """Return the friction torques (N,) at the end of the interval."""
-        w = self._forcing.nodes(self.signs)[-1]
-        return (self._flows[self.signs].force @ np.concatenate((self.state, w))).tolist()
+        flow = self._flows[self.signs]
+        w = self._forcing.at(self.signs, -1, 1.0)[: flow.inputs]
+        return flow.force.dot(np.concatenate((self.state, w))).tolist()
 
-    def pass_quiet_pieces(self, piece: int, ends: np.ndarray, guards: np.ndarray) -> None:
-        """
-        Go on from a `piece` over k pieces without an event.
+    def pass_piece(self, piece: int) -> None:
+        """Go on to the end of a piece."""
+        flow = self._flows[self.signs]
+        forcing = self._forcing.pieces(self.signs)[piece]
+        ends, guards = flow.over_a_piece(np.concatenate((self.state, forcing)))
+        if guards[guards.argmin()] >= 0.0:
+            self._add_work(guards.reshape(-1, flow.degree + 1), forcing, 1.0)
+            self.state = ends
+        else:
+            self._through_events(piece)
 
-        `ends` (k, n) are the states at their ends, `guards` (guards, d+1, k) in Bernstein form.
-        """
-        if len(ends):
-            nodes = self._forcing.nodes(self.signs)[piece : piece + len(ends) + 1]
-            self._add_work(guards, nodes, self._piece_s)
-            self.state = ends[-1]
-
-    def pass_piece(self, piece: int) -> np.ndarray:
-        """Go on to the end of a piece, and return the state there."""
+    def _through_events(self, piece: int) -> None:
+        """Go on to the end of a piece from event to event."""
         done = 0.0
         orders: np.ndarray | None = None
         for _ in range(MOST_EVENTS):
@@ -74,32 +75,28 @@ class Motion:
                     'friction: a state, an input or a capacity is not finite or far too large'
                 )
             if orders is not None:
-                guards[np.arange(flow.degree + 1) < orders[:, None]] = 0.0
+                guards[flow.powers < orders[:, None]] = 0.0
             part, guard = _first_event(guards, orders, 1.0 - done)
-            w, change = forcing[: flow.inputs], forcing[flow.inputs :]
-            nodes = np.stack((w, w + part * change))
-            self._add_work(on_interval(guards, part)[:, :, None], nodes, part * self._piece_s)
-            self.state = part ** np.arange(flow.degree + 1) @ states
+            self._add_work(on_interval(guards, part), forcing, part)
+            self.state = (part**flow.powers).dot(states)
             done += part
             if guard is None:
-                return self.state
+                return
             orders = self._change_mode(piece, done, flow.guarded[guard])
         raise DdctError(
             f'friction: more than {MOST_EVENTS} events in {self._piece_s:g} s: '
             'look for values that are far too large'
         )
 
-    def _add_work(self, guards: np.ndarray, nodes: np.ndarray, length_s: float) -> None:
-        """Add the exact integrals of slip times capacity over k stretches with k + 1 nodes w."""
-        weights = linear_weights(guards.shape[1] - 1)
-        capacities = nodes[:, -self._system.elements :]
-        for guard, element in zip(guards, self._flows[self.signs].guarded, strict=True):
+    def _add_work(self, guards: np.ndarray, forcing: np.ndarray, part: float) -> None:
+        """Add the exact integrals of slip times capacity over a part of a piece."""
+        flow = self._flows[self.signs]
+        for guard, element in enumerate(flow.guarded):
             if self.signs[element]:
-                before, after = weights @ guard
-                capacity = capacities[:, element]
-                self.work[element] += length_s * float(
-                    before @ capacity[:-1] + after @ capacity[1:]
-                )
+                before, after = linear_weights(flow.degree).dot(guards[guard]).tolist()
+                capacity, change = forcing[flow.inputs - len(self.signs) + element :: flow.inputs]
+                work = (before + after) * capacity + after * part * change
+                self.work[element] += part * self._piece_s * float(work)
 
     def _change_mode(self, piece: int, done: float, element: int) -> np.ndarray:
         """Choose the mode that goes on, note what changes, return the orders of its guards."""
@@ -130,7 +127,7 @@ def _first_event(
     guard divided by t^k.
     """
     first, which = end, None
-    suspects = np.flatnonzero((on_interval(guards, end) < 0.0).any(axis=1))
+    suspects = np.flatnonzero(on_interval(guards, end).min(axis=1) < 0.0)
     for guard in suspects.tolist():
         order = 0 if orders is None else int(orders[guard])
         at = first_negative(guards[guard, order:], end)

@@ -1,6 +1,7 @@
 """The driveline with a clutch that sticks and wheels that dry friction holds."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -114,7 +115,7 @@ class StickSlipDriveline:
             (kinetic_torque, holding_torque),
             (static_torque, holding_torque),
         )
-        self._state, self._signs = interval.states[-1], interval.signs
+        self._state, self._signs = interval.state, interval.signs
         self._torques = (engine_torque, load_torque)
         self._friction = interval.friction
         self.period = FrictionPeriod(
@@ -131,6 +132,7 @@ def _phase(sign: int, capacity: float) -> str:
     return 'slipping' if capacity else 'open'
 
 
+@lru_cache
 def _integrator(parameters: DrivelineParameters) -> HybridIntegrator:
     a, b = matrices_with_angles(parameters)
     engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]

@@ -116,7 +116,7 @@ def simulated(torque_as_states: bool) -> tuple[dict[tuple[int, str], list[float]
         kinetic = [first_capacity(nodes), *(np.full(PIECES + 1, step) for step in steps)]
         static = [STATIC_RATIO * capacity for capacity in kinetic]
         done = integrator.advance(state, signs, [torque], kinetic, static)
-        state, signs = done.states[-1], done.signs
+        state, signs = done.state, done.signs
         for event in done.events:
             time_s = nodes[0] + event.time_s
             if time_s > 0.4:

@@ -71,49 +71,66 @@ def test_work_done_is_kinetic_and_elastic_energy_and_friction_work(seed):
     kinds = set()
     for torque, kinetic, static in run.intervals:
         done = integrator.advance(state, signs, [torque], [*kinetic], [*static])
-        work = torque * (done.states[-1][size] - state[size])
+        work = torque * (done.state[size] - state[size])
         work_in, turnover = work_in + work, turnover + abs(work)
         friction += sum(done.work)
         assert min(done.work) >= 0.0
         kinds |= {event.kind for event in done.events}
-        state, signs = done.states[-1], done.signs
+        state, signs = done.state, done.signs
     gained = run.energy(state) - run.energy(run.start)
     assert kinds >= {'lock', 'release'}
     assert friction > 0.01
     assert work_in - gained - friction == pytest.approx(0.0, abs=1e-9 * (turnover + friction))
 
 
+class Cut:
+    """A motion in intervals of `pieces` pieces that are `cuts` times as short."""
+
+    def __init__(self, run: RandomRun, cuts: int, pieces: int) -> None:
+        self.pieces, self.piece_s = pieces, PIECE_S / cuts
+        self.integrator = HybridIntegrator(run.system, self.piece_s, pieces, held=[0])
+        self.state, self.signs = run.start, self.integrator.mode_of(run.start)
+        self.nodes = np.linspace(0.0, PIECES, cuts * PIECES + 1)
+
+    def advance(
+        self, torque: float, *capacities: np.ndarray
+    ) -> tuple[list[np.ndarray], np.ndarray, list[tuple[float, int, str]]]:
+        """Return the states at the ends of the short intervals, work and events."""
+        kinetic, static = (
+            np.array([np.interp(self.nodes, range(PIECES + 1), c) for c in each])
+            for each in capacities
+        )
+        ends, events, work = [], [], np.zeros(len(kinetic))
+        for first in range(0, len(self.nodes) - 1, self.pieces):
+            now = slice(first, first + self.pieces + 1)
+            done = self.integrator.advance(
+                self.state, self.signs, [torque], [*kinetic[:, now]], [*static[:, now]]
+            )
+            self.state, self.signs = done.state, done.signs
+            ends.append(self.state)
+            work += done.work
+            start_s = first * self.piece_s
+            events += [(start_s + e.time_s, e.element, e.kind) for e in done.events]
+        return ends, work, events
+
+
 @pytest.mark.parametrize('seed', range(6))
 @pytest.mark.parametrize('cuts', [2, 5])
 def test_the_trajectory_is_the_same_when_the_pieces_are_cut(seed, cuts):
     run = RandomRun(seed)
-    whole = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
-    cut = HybridIntegrator(run.system, PIECE_S / cuts, PIECES, held=[0])
-    state = other = run.start
-    signs = others = whole.mode_of(state)
-    fine = np.linspace(0.0, PIECES, cuts * PIECES + 1)
-    for torque, kinetic, static in run.intervals:
-        done = whole.advance(state, signs, [torque], [*kinetic], [*static])
-        state, signs = done.states[-1], done.signs
-        events, work, points = [], np.zeros(run.elements), []
-        for part in range(cuts):
-            now = slice(part * PIECES, (part + 1) * PIECES + 1)
-            low, high = (
-                [np.interp(fine, range(PIECES + 1), capacity)[now] for capacity in capacities]
-                for capacities in (kinetic, static)
-            )
-            finer = cut.advance(other, others, [torque], low, high)
-            other, others = finer.states[-1], finer.signs
-            work += finer.work
-            points += [*finer.states]
-            start_s = part * PIECES * PIECE_S / cuts
-            events += [(start_s + e.time_s, e.element, e.kind) for e in finer.events]
-        assert others == signs
-        np.testing.assert_allclose(points[cuts - 1 :: cuts], done.states, rtol=0.0, atol=1e-9)
-        np.testing.assert_allclose(work, done.work, rtol=0.0, atol=1e-9)
-        assert [e[1:] for e in events] == [(e.element, e.kind) for e in done.events]
-        expected = [e.time_s for e in done.events]
-        assert [e[0] for e in events] == pytest.approx(expected, abs=1e-9)
+    whole, by_piece = Cut(run, 1, PIECES), Cut(run, 1, 1)
+    others = [by_piece, Cut(run, cuts, PIECES), Cut(run, cuts, 1)]
+    for interval in run.intervals:
+        (end,), work, events = whole.advance(*interval)
+        found = [other.advance(*interval) for other in others]
+        np.testing.assert_allclose(found[2][0][cuts - 1 :: cuts], found[0][0], rtol=0.0, atol=1e-9)
+        for other, (ends, other_work, other_events) in zip(others, found, strict=True):
+            assert other.signs == whole.signs
+            np.testing.assert_allclose(ends[-1], end, rtol=0.0, atol=1e-9)
+            np.testing.assert_allclose(other_work, work, rtol=0.0, atol=1e-9)
+            assert [e[1:] for e in other_events] == [e[1:] for e in events]
+            expected = [e[0] for e in events]
+            assert [e[0] for e in other_events] == pytest.approx(expected, abs=1e-9)
 
 
 def held_torque(system: FrictionSystem, x: np.ndarray, torque: float) -> float:
@@ -162,8 +179,8 @@ def test_a_random_system_moves_as_scipy_integrates_it(seed):
                     assert abs(held) >= (static if sign == 0 else kinetic) * (1.0 - 1e-9)
                 sign = 0 if event.kind == 'lock' else int(np.sign(held))
         assert (sign,) == done.signs
-        np.testing.assert_allclose(done.states[-1], expected, rtol=0.0, atol=1e-9)
-        state, signs = done.states[-1], done.signs
+        np.testing.assert_allclose(done.state, expected, rtol=0.0, atol=1e-9)
+        state, signs = done.state, done.signs
     assert count >= 3
 
 
@@ -181,7 +198,7 @@ def test_a_slip_that_grazes_zero_between_two_nodes_is_found(depth, events):
         half = np.sqrt(depth * PIECE_S / strength)
         expected = [PIECE_S / 2.0 - half, PIECE_S / 2.0 + half]
         assert [e.time_s for e in done.events] == pytest.approx(expected, abs=1e-12)
-    assert done.states[-1] == pytest.approx([slip], abs=1e-15)
+    assert done.state == pytest.approx([slip], abs=1e-15)
 
 
 @pytest.mark.parametrize('excess', [1e-9, -1e-9])
@@ -213,7 +230,7 @@ def test_a_release_is_one_event_at_any_ratio_of_static_to_kinetic_capacity(ratio
     assert start_s == pytest.approx(ratio * 4.05e-3, abs=1e-15)
     left_s = PIECE_S * PIECES - start_s
     gained = (ratio - 1.0) * 4.05 * left_s + 1000.0 * left_s**2 / 2.0
-    assert done.states[-1] == pytest.approx([gained], rel=1e-12)
+    assert done.state == pytest.approx([gained], rel=1e-12)
 
 
 def symmetric_star(arms: int) -> FrictionSystem:
@@ -239,7 +256,7 @@ def test_elements_that_release_together_do_so_in_one_instant(arms, ratio):
     ]
     expected = ratio * 8.0 * (arms + 1) / 1e4
     assert [e.time_s for e in done.events] == pytest.approx([expected] * arms, abs=1e-15)
-    hub, *others = done.states[-1][: arms + 1]
+    hub, *others = done.state[: arms + 1]
     assert done.signs == (1,) * arms
     assert others == pytest.approx([others[0]] * arms, rel=1e-13)
 
@@ -264,7 +281,7 @@ def test_capacity_that_equals_the_held_torque_lets_it_stick_without_events():
     for _ in range(100):
         done = integrator.advance(state, signs, [0.3], [0.1, 0.1], [0.1, 0.1])
         assert done.events == []
-        state, signs = done.states[-1], done.signs
+        state, signs = done.state, done.signs
     assert state[:3] == pytest.approx([0.1] * 3, rel=1e-12)
 
 
@@ -280,7 +297,7 @@ def test_two_events_in_one_piece():
     assert [e.time_s for e in done.events] == pytest.approx([lock_s, 0.00025], abs=1e-15)
     moved_s = 0.00075
     expected = (3.0 - 2.0) * moved_s + 12000.0 * moved_s**2 / 2.0
-    assert done.states[-1] == pytest.approx([expected], rel=1e-12)
+    assert done.state == pytest.approx([expected], rel=1e-12)
     moved = (3.0 - 2.0) * moved_s**2 / 2.0 + 12000.0 * moved_s**3 / 6.0
     before = 0.0005 * lock_s - lock_s**2 - 2000.0 * lock_s**3
     assert done.work == pytest.approx([2.0 * (moved + before)], rel=1e-10)
@@ -367,4 +384,4 @@ def test_events_come_in_the_order_of_time():
     for torque, kinetic, static in run.intervals:
         done = integrator.advance(state, signs, [torque], [*kinetic], [*static])
         assert all(one.time_s <= two.time_s for one, two in pairwise(done.events))
-        state, signs = done.states[-1], done.signs
+        state, signs = done.state, done.signs
