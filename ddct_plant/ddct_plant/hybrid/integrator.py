@@ -57,7 +57,9 @@ class HybridIntegrator:
         self._pieces = int(require_number('pieces', pieces, at_least=1))
         self._states, inputs = system.b.shape
         capacities = range(inputs, inputs + system.elements)
-        columns = self._layout([j in set(held) for j in (*range(inputs), *capacities, *capacities)])
+        columns = self._layout(
+            [j in set(held) for j in (*range(inputs), *capacities, *capacities)]
+        )
         self._flows = {
             signs: ModeFlow(system, signs, piece_s)
             for signs in product((-1, 0, 1), repeat=system.elements)

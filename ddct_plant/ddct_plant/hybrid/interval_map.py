@@ -36,7 +36,9 @@ class IntervalMap:
         """Take in `columns` the place in v of each of u, kinetic and static capacities."""
         elements = len(flow.signs)
         kinetic, static = columns[-2 * elements : -elements], columns[-elements:]
-        in_force = [k if sign else s for sign, k, s in zip(flow.signs, kinetic, static, strict=True)]
+        in_force = [
+            k if sign else s for sign, k, s in zip(flow.signs, kinetic, static, strict=True)
+        ]
         starts = _piece_starts(flow, pieces, [*columns[: -2 * elements], *in_force])
         starts = np.pad(starts, ((0, 0), (0, 0), (0, columns[-1].stop - starts.shape[2])))
         last = starts[-1]
@@ -117,7 +119,7 @@ def _by_node(guard: np.ndarray, column: slice) -> np.ndarray:
 
 
 def _shortfall(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return D (guards, r) and W (r, v): how far coefficients are off the lines, at most D |W v|."""
+    """Return D (guards, r) and W (r, v): coefficients are off the lines by at most D |W v|."""
     part = np.linspace(0.0, 1.0, guards.shape[1])[:, None]
     off = guards - (1.0 - part) * guards[:, :1] - part * guards[:, -1:]
     # In units of each guard, as slips and torques share the directions.

@@ -4,7 +4,7 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
-from ddct_plant.hybrid.polynomials import bernstein_of_powers
+from ddct_plant.hybrid.polynomials import bernstein_of_powers, linear_weights
 
 Signs = tuple[int, ...]
 """A mode: by element 0 where it sticks, else the sign of its slip."""
@@ -48,6 +48,9 @@ class ModeFlow:
         self.force[:, states + inputs :] = np.diag(signs)
         self.force[self.stuck] = -hold @ moved
         guards, self.guarded = self._guards(system)
+        self.slipping = [i for i, sign in enumerate(signs) if sign]
+        """The elements that slip."""
+        self._slip_guards = [self.guarded.index(i) for i in self.slipping]
         rows = np.zeros((states + len(guards), size))
         rows[:states, :states] = self.projection
         rows[states:, : states + self.inputs] = guards
@@ -63,7 +66,9 @@ class ModeFlow:
         self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
         """(guards, d+1, y): their Bernstein coefficients over a whole piece, as rows on y."""
         end = self.series[:, :states].sum(axis=0)
-        self._piece = np.vstack([end, self.guards.reshape(-1, size)])
+        slips = linear_weights(self.degree) @ self.guards[self._slip_guards]
+        self._piece = np.vstack([end, slips.reshape(-1, size), self.guards.reshape(-1, size)])
+        self._first_guard = states + 2 * len(self.slipping)
 
     def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
         """Return the rows of the guards on [x, w], and by guard its element."""
@@ -80,10 +85,20 @@ class ModeFlow:
             guarded += [i] * (len(rows) - len(guarded))
         return np.array(rows), guarded
 
-    def over_a_piece(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the state (n,) after a piece and the guards in Bernstein form, one by one."""
+    def over_a_piece(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the state (n,) after a piece, `slip_integrals` and the guards, all flat."""
         values = self._piece.dot(y)
-        return values[: self.states], values[self.states :]
+        first = self._first_guard
+        return values[: self.states], values[self.states : first], values[first:]
+
+    def slip_integrals(self, guards: np.ndarray) -> list[float]:
+        """
+        Return the integrals of |s| (1 - t) and |s| t over [0, 1], by element that slips.
+
+        `guards` (guards, d+1) are in Bernstein form.
+        """
+        weights = linear_weights(self.degree)
+        return guards[self._slip_guards].dot(weights.T).ravel().tolist()
 
     def polynomials(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return states (d+1, n) and guards (guards, d+1) in powers of t, from y at t = 0."""

@@ -10,7 +10,7 @@ from ddct_plant.hybrid.forcing import Forcing
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.mode_choice import choose_mode
 from ddct_plant.hybrid.mode_flow import ModeFlow, Signs
-from ddct_plant.hybrid.polynomials import first_negative, linear_weights, on_interval
+from ddct_plant.hybrid.polynomials import first_negative, on_interval
 
 MOST_EVENTS = 1000
 """In one piece; a motion with more is not one of dry friction between inertias."""
@@ -55,9 +55,9 @@ class Motion:
         """Go on to the end of a piece."""
         flow = self._flows[self.signs]
         forcing = self._forcing.pieces(self.signs)[piece]
-        ends, guards = flow.over_a_piece(np.concatenate((self.state, forcing)))
+        ends, slips, guards = flow.over_a_piece(np.concatenate((self.state, forcing)))
         if guards[guards.argmin()] >= 0.0:
-            self._add_work(guards.reshape(-1, flow.degree + 1), forcing, 1.0)
+            self._add_work(slips.tolist(), forcing, 1.0)
             self.state = ends
         else:
             self._through_events(piece)
@@ -77,7 +77,7 @@ class Motion:
             if orders is not None:
                 guards[flow.powers < orders[:, None]] = 0.0
             part, guard = _first_event(guards, orders, 1.0 - done)
-            self._add_work(on_interval(guards, part), forcing, part)
+            self._add_work(flow.slip_integrals(on_interval(guards, part)), forcing, part)
             self.state = (part**flow.powers).dot(states)
             done += part
             if guard is None:
@@ -88,15 +88,15 @@ class Motion:
             'look for values that are far too large'
         )
 
-    def _add_work(self, guards: np.ndarray, forcing: np.ndarray, part: float) -> None:
-        """Add the exact integrals of slip times capacity over a part of a piece."""
-        flow = self._flows[self.signs]
-        for guard, element in enumerate(flow.guarded):
-            if self.signs[element]:
-                before, after = linear_weights(flow.degree).dot(guards[guard]).tolist()
-                capacity, change = forcing[flow.inputs - len(self.signs) + element :: flow.inputs]
-                work = (before + after) * capacity + after * part * change
-                self.work[element] += part * self._piece_s * float(work)
+    def _add_work(self, slips: list[float], forcing: np.ndarray, part: float) -> None:
+        """Add slip times capacity over a part of a piece; for `slips` see `slip_integrals`."""
+        inputs, elements = len(forcing) // 2, len(self.signs)
+        capacities = forcing[inputs - elements : inputs].tolist()
+        changes = forcing[-elements:].tolist()
+        for place, element in enumerate(self._flows[self.signs].slipping):
+            before, after = slips[2 * place : 2 * place + 2]
+            work = (before + after) * capacities[element] + after * part * changes[element]
+            self.work[element] += part * self._piece_s * work
 
     def _change_mode(self, piece: int, done: float, element: int) -> np.ndarray:
         """Choose the mode that goes on, note what changes, return the orders of its guards."""

@@ -67,6 +67,7 @@ def first_negative(powers: np.ndarray, end: float) -> float | None:
 def _root(powers: np.ndarray, low: float, high: float) -> float:
     """Return the one root in [low, high], by Newton's rule kept within its bracket."""
     falling = powers[::-1].tolist()
+    close = 2.0**-52 * high
     at = 0.5 * (low + high)
     for _ in range(_STEPS):
         value = slope = 0.0
@@ -78,9 +79,10 @@ def _root(powers: np.ndarray, low: float, high: float) -> float:
         else:
             high = at
         following = at - value / slope if slope else low
+        # First, as a step from an end of the bracket to itself is the end of the search.
+        if abs(following - at) <= close:
+            break
         if not low < following < high:
             following = 0.5 * (low + high)
-        if abs(following - at) <= 2.0**-53 * high:
-            break
         at = following
-    return following
+    return min(max(following, low), high)
