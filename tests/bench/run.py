@@ -2,8 +2,9 @@
 `make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
-times do not. Also measured: the headless loop, each controller's update, H-infinity synthesis,
-the quadratic programs of predictive control, and a whole step of `mpc_preview`.
+times do not. Also measured: the headless loop, with a clutch that sticks as well, each
+controller's update, H-infinity synthesis, the quadratic programs of predictive control, and a
+whole step of `mpc_preview`.
 """
 
 import argparse
@@ -23,6 +24,8 @@ from mpc_step import measure as measure_mpc_step
 from mpc_step import print_table as print_mpc_step
 from qp import measure as measure_qp
 from qp import print_table as print_qp
+from stick_slip import measure as measure_stick_slip
+from stick_slip import print_table as print_stick_slip
 from synthesis import measure as measure_synthesis
 
 from ddct_bringup.processes.ros_domain import own_domain
@@ -65,6 +68,8 @@ def main() -> int:
             f'headless {name}: {step_us:.1f} us per step ({PERIOD_US / step_us:.0f}x real time), '
             f'of which its update {update_us:.1f} us'
         )
+    stick_slip = measure_stick_slip()
+    print_stick_slip(stick_slip)
     synthesis = measure_synthesis()
     _print_synthesis(synthesis)
     programs = measure_qp()
@@ -77,6 +82,7 @@ def main() -> int:
         figures = {
             **results,
             'headless_us': headless,
+            'stick_slip': stick_slip,
             'synthesis': synthesis,
             'quadratic_programs': programs,
             'mpc_step': mpc_step,

@@ -1,0 +1,53 @@
+"""What a clutch that sticks costs a headless run, set-up excluded, over the linear clutch."""
+
+import statistics
+import time
+from typing import Any
+
+from ddct_bringup.run.headless import ClosedLoop, run_loop
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.settings import RunSettings
+
+MEDIAN_GOAL, WORST_GOAL = 1.5, 3.0
+_CLUTCHES = ('linear', 'stick_slip')
+_ROUNDS = 9
+
+
+def measure() -> dict[str, Any]:
+    """Return the ratio of each controller on `thesis`, and of each packaged scenario with PI."""
+    thesis = {name: _ratio('thesis', name) for name in controller_names()}
+    others = {name: _ratio(name, 'pi') for name in scenario_names() if name != 'thesis'}
+    return {'controllers': thesis, 'scenarios': others}
+
+
+def print_table(figures: dict[str, Any]) -> None:
+    """Print what `measure` returned."""
+    ratios = sorted(figures['controllers'].values())
+    runs = {**figures['controllers'], **figures['scenarios']}
+    worst = max(runs, key=lambda name: runs[name])
+    median = statistics.median(ratios)
+    met = median <= MEDIAN_GOAL and runs[worst] <= WORST_GOAL
+    print(
+        f'stick_slip over linear, headless (goal: median {MEDIAN_GOAL:g}, worst {WORST_GOAL:g}: '
+        f'{"met" if met else "MISSED"}): median {median:.2f} ({ratios[0]:.2f} to '
+        f'{ratios[-1]:.2f}), worst {runs[worst]:.2f} with {worst}'
+    )
+
+
+def _ratio(scenario: str, controller: str) -> float:
+    """Return the median ratio of the time a step takes, of runs in turn."""
+    runs = [RunSettings(load_scenario(scenario), clutch=clutch) for clutch in _CLUTCHES]
+    ratios = []
+    for _ in range(_ROUNDS):
+        linear, stick_slip = (_step_s(settings, controller) for settings in runs)
+        ratios.append(stick_slip / linear)
+    return statistics.median(ratios)
+
+
+def _step_s(settings: RunSettings, controller: str) -> float:
+    """Return the time of this thread per step: others on the machine must not count."""
+    loop = ClosedLoop(settings, make_controller(controller, settings))
+    started = time.thread_time()
+    trajectory = run_loop(loop, settings.scenario.steps)
+    return (time.thread_time() - started) / (len(trajectory.slip_speed) - 1)
