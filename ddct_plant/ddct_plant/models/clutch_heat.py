@@ -102,7 +102,7 @@ class ClutchHeat:
     @property
     def facing_c(self) -> float:
         """The facing's temperature in degrees Celsius, that friction depends on."""
-        return self.temperatures_c[1]
+        return self._ambient_c + float(self._above_ambient[1])
 
     def advance(self, friction_work: float) -> None:
         """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""

@@ -116,4 +116,7 @@ class FrictionClutch:
 
 
 def _curve(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    return float(np.interp(x, xs, ys)) if xs else 1.0
+    if not xs:
+        return 1.0
+    # Where most runs stay; numpy takes longer than the rest of the clutch.
+    return ys[0] if x <= xs[0] else float(np.interp(x, xs, ys))
