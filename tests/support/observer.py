@@ -36,7 +36,7 @@ class Observer(Node):
         self.joints[step_of_stamp(stamp_ns(message))] = message
 
     def _on_torque(self, message: JointTrajectory) -> None:
-        self.clutch_torque[step_of_stamp(stamp_ns(message))] = CLUTCH_TORQUE.read(message)
+        self.clutch_torque[step_of_stamp(stamp_ns(message))] = CLUTCH_TORQUE.read(message)[0]
 
     def require_same(self, trajectory: Trajectory) -> None:
         """Require the end of the run, and each tick that was heard, to the last bit."""

@@ -75,7 +75,13 @@ def recording_of(records: BagRecords) -> Recording:
         if not topic.signals:
             continue
         rows, held = _rows(topic, messages.get(topic.resolved_name, []), last)
-        for signal, column in zip(topic.signals, zip(*rows, strict=True), strict=True):
+        signals = topic.signals_in(run)
+        if len(rows[0]) != len(signals):
+            raise DdctError(
+                f'{topic.resolved_name}: a message has {len(rows[0])} values, not the '
+                f'{len(signals)} of a {run.clutch} run'
+            )
+        for signal, column in zip(signals, zip(*rows, strict=True), strict=True):
             columns[signal.name] = column
         if held:
             missed[topic.name] = held

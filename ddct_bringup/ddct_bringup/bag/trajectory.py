@@ -36,12 +36,14 @@ class Trajectory:
             }
         )
 
-    def __getattr__(self, name: str) -> np.ndarray:
-        """Return a signal; raise AttributeError where the run has none of this name."""
-        try:
-            return self.__dict__['signals'][name]
-        except KeyError:
-            raise AttributeError(f'the run has no signal {name}') from None
+    def __getattr__(self, name: str) -> Any:
+        """Return a signal, None where the run has it not; AttributeError for any other name."""
+        signals = self.__dict__.get('signals', {})
+        if name in signals:
+            return signals[name]
+        if any(signal.name == name for signal in all_signals()):
+            return None
+        raise AttributeError(f'there is no signal {name}')
 
     @property
     def status(self) -> tuple[tuple[tuple[str, str], ...], ...]:

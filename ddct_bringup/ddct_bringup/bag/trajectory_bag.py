@@ -34,10 +34,12 @@ def write_trajectory(
         for node in run_info_order(run_info):
             message = RUN_INFO.message(START_NS, run_info[node], name=node)
             bag.write(RUN_INFO.name, START_NS, serialize_message(message))
-        writers = [(topic, topic.writer()) for topic in topics if topic.every_tick]
+        writers = [
+            (topic, topic.writer(), topic.signals_in(run)) for topic in topics if topic.every_tick
+        ]
         for k in range(trajectory.steps + 1):
             stamp = stamp_of_step(k)
-            for topic, write in writers:
-                values = (trajectory.signals[signal.name][k] for signal in topic.signals)
+            for topic, write, signals in writers:
+                values = (trajectory.signals[signal.name][k] for signal in signals)
                 bag.write(topic.name, stamp, serialize_message(write(stamp, *values)))
     return bag.path

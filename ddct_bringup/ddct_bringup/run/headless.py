@@ -15,12 +15,18 @@ from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import make_controller
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.engine import Engine
-from ddct_plant.models.load import RoadLoad
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import (
+    holding_torque,
+    linear_clutch,
+    make_driveline,
+    make_load,
+    stick_slip_clutch,
+)
 from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_reference
 
@@ -32,6 +38,48 @@ class TorqueActuator(Protocol):
         """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and take the next request in."""
 
 
+class Linear:
+    """The linear clutch in the loop."""
+
+    torques = ('clutch_torque',)
+    """What the driveline integrates of `reply`."""
+
+    def __init__(self, settings: RunSettings) -> None:
+        self._clutch = linear_clutch(settings)
+
+    def reply(
+        self, step: int, actuator_torque: list[float], now: DrivelineOutputs
+    ) -> dict[str, Any]:
+        """Return the signals by name that answer t_k."""
+        return {'clutch_torque': self._clutch.transmit(actuator_torque)}
+
+
+class StickSlip:
+    """The clutch that sticks in the loop, and what holds the wheels."""
+
+    torques = ('clutch_torque', 'clutch_static_torque', 'holding_torque')
+
+    def __init__(self, settings: RunSettings) -> None:
+        self._clutch = stick_slip_clutch(settings)
+        self._holding = holding_torque(settings)
+
+    def reply(
+        self, step: int, actuator_torque: list[float], now: DrivelineOutputs
+    ) -> dict[str, Any]:
+        """Return the signals by name that answer t_k, and the phases of the period before."""
+        assert now.friction_work is not None
+        clutch = self._clutch.reply(step, actuator_torque, now.slip_speed, now.friction_work)
+        return {
+            'clutch_torque': clutch.kinetic,
+            'clutch_static_torque': clutch.static,
+            'clutch_temperature': clutch.temperature_c,
+            'holding_torque': self._holding.capacity(time_of_step(step)),
+            'clutch_phase': now.clutch_phase,
+            'friction_work': now.friction_work,
+            'phase_events': now.phase_events,
+        }
+
+
 class ClosedLoop:
     """Engine, load, driveline, reference, controller, actuator and clutch, wired as the graph."""
 
@@ -39,13 +87,13 @@ class ClosedLoop:
         """Start in the run's initial state."""
         scenario = settings.scenario
         initial = initial_state(settings)
-        self._driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
+        self._driveline = make_driveline(settings, initial)
         self._engine = Engine(scenario.engine, scenario.engine_authority)
-        self._load = RoadLoad(scenario.load, scenario.vehicle)
+        self._load = make_load(settings)
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
         self._actuator: TorqueActuator = Actuator(initial.torque_request)
-        self._clutch = LinearClutch(settings.wear_gain)
+        self._friction = StickSlip(settings) if settings.stick_slip else Linear(settings)
         self.update_time_us = 0.0
         """Wall time that the controller took for the last reply."""
 
@@ -85,14 +133,18 @@ class ClosedLoop:
             'slip_reference_rate': rates,
             'torque_request': request.torque,
             'actuator_torque': actuator_torque,
-            'clutch_torque': self._clutch.transmit(actuator_torque),
             'status': request.status,
             'engine_torque_request': request.engine_torque,
+            **self._friction.reply(step, actuator_torque, now),
         }
 
     def advance(self, reply: dict[str, Any]) -> None:
         """Integrate the driveline over the period that `reply` answered."""
-        self._driveline.step(reply['engine_torque'], reply['load_torque'], reply['clutch_torque'])
+        self._driveline.step(
+            reply['engine_torque'],
+            reply['load_torque'],
+            *(reply[name] for name in self._friction.torques),
+        )
 
 
 def run_headless(

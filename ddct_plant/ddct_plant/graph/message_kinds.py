@@ -14,11 +14,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
-from typing import Any
+from typing import Any, ClassVar
 
-from ddct_plant.base.checks import require_finite
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.checks import require_finite, require_number
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
+from ddct_plant.hybrid.forcing import require_capacities
+from ddct_plant.models.driveline import PHASE_CHANGES, PHASES, PhaseEvent
 
 NS_PER_S = 1_000_000_000
 Write = Callable[..., Any]
@@ -100,10 +102,12 @@ class Scalar(MessageKind):
 
     path: str
     """Where in the message, such as 'twist.angular.x'."""
+    at_least: float | None = None
+    """Lowest value that a node takes in."""
 
     def _filler(self, message: Any) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
-        holder = attrgetter(parent)(message)
+        holder = attrgetter(parent)(message) if parent else message
 
         def fill(value: float) -> None:
             setattr(holder, field, value)
@@ -119,8 +123,10 @@ class Scalar(MessageKind):
         return (self._get(message),)
 
     def read(self, topic: str, message: Any) -> float:
-        """Return the number; raise DdctError unless finite."""
-        return require_finite(topic, self._get(message))
+        """Return the number; raise DdctError unless finite and high enough."""
+        if self.at_least is None:
+            return require_finite(topic, self._get(message))
+        return require_number(topic, self._get(message), at_least=self.at_least)
 
 
 @dataclass(frozen=True)
@@ -162,9 +168,13 @@ class Joints(MessageKind):
 
 @dataclass(frozen=True)
 class Points(MessageKind):
-    """A JointTrajectory of one joint: a row of points, one number per point in each field."""
+    """
+    A JointTrajectory: a row of points, one number per point in each field of each joint.
 
-    joint: str
+    A message has as many of the joints as it was given values for, the first ones.
+    """
+
+    joints: tuple[str, ...]
     fields: tuple[str, ...]
     """Of 'velocities', 'accelerations' and 'effort'."""
     spacing_ns: int
@@ -172,22 +182,27 @@ class Points(MessageKind):
     """How many points; None leaves that to the first message of a writer."""
 
     def _filler(self, message: Any) -> Callable[..., None]:
-        message.joint_names = [self.joint]
-        columns: list[list[Any]] = []
+        columns: list[tuple[int, list[Any]]] = []
 
         def fill(*values: Sequence[float]) -> None:
             if not columns:
-                message.points = self._points(self.count or len(values[0]))
-                columns.extend([getattr(p, name) for p in message.points] for name in self.fields)
-            for column, numbers in zip(columns, values, strict=True):
+                joints = self.joints[: len(values) // len(self.fields)]
+                message.joint_names = list(joints)
+                message.points = self._points(self.count or len(values[0]), len(joints))
+                columns.extend(
+                    (joint, [getattr(point, field) for point in message.points])
+                    for field in self.fields
+                    for joint in range(len(joints))
+                )
+            for (joint, column), numbers in zip(columns, values, strict=True):
                 for holder, number in zip(column, numbers, strict=True):
-                    holder[0] = number
+                    holder[joint] = number
 
         return fill
 
-    def _points(self, count: int) -> list[Any]:
+    def _points(self, count: int, joints: int) -> list[Any]:
         new = message_class('trajectory_msgs/msg/JointTrajectoryPoint')
-        points = [new(**{field: [0.0] for field in self.fields}) for _ in range(count)]
+        points = [new(**{field: [0.0] * joints for field in self.fields}) for _ in range(count)]
         for i, point in enumerate(points):
             set_time(point.time_from_start, i * self.spacing_ns)
         return points
@@ -197,31 +212,68 @@ class Points(MessageKind):
         return [attrgetter(field) for field in self.fields]
 
     def values(self, message: Any) -> tuple[list[float], ...]:
-        """Return one row of numbers per field; raise IndexError where one is missing."""
+        """Return a row of numbers per field and joint; raise IndexError where one is missing."""
         points = message.points
-        return tuple([[get(point)[0] for point in points] for get in self._getters])
+        joints = range(len(message.joint_names))
+        return tuple(
+            [[get(point)[joint] for point in points] for get in self._getters for joint in joints]
+        )
 
 
 @dataclass(frozen=True)
-class TorquePoints(Points):
-    """A torque in N m at 0, 1, ..., 10 ms after the stamp."""
+class TorqueRows(Points):
+    """Torques in N m at 0, 1, ..., 10 ms after the stamp."""
 
     fields: tuple[str, ...] = ('effort',)
     spacing_ns: int = SUBSTEP_NS
     count: int | None = SUBSTEPS + 1
 
-    def read(self, topic: str, message: Any) -> list[float]:
-        """Return the (11,) torques in N m; raise DdctError unless finite."""
+    def _rows(self, topic: str, message: Any, joints: int) -> list[list[float]]:
+        """Return as many rows as there must be joints; raise DdctError for any other message."""
+        needed = list(self.joints[:joints])
+        if list(message.joint_names) != needed:
+            raise DdctError(
+                f'{topic} has the joints {", ".join(message.joint_names) or "(none)"}: this run '
+                f'needs {", ".join(needed)}; start every node with the same clutch'
+            )
         try:
-            (torques,) = self.values(message)
+            rows = self.values(message)
         except IndexError:
-            torques = []
-        if len(torques) != self.count:
+            rows = ()
+        if not rows or len(rows[0]) != self.count:
             raise DdctError(
                 f'{topic} has {len(message.points)} points: it needs {self.count}, '
                 '1 ms apart, each with an effort'
             )
-        return _finite(topic, torques)
+        return [_finite(topic, row) for row in rows]
+
+
+@dataclass(frozen=True)
+class TorquePoints(TorqueRows):
+    """The torque of one joint."""
+
+    def read(self, topic: str, message: Any) -> list[float]:
+        """Return the (11,) torques in N m; raise DdctError unless finite."""
+        return self._rows(topic, message, 1)[0]
+
+
+@dataclass(frozen=True)
+class ClutchPoints(TorqueRows):
+    """What the clutch transmits or, of two joints, its two capacities."""
+
+    def read(self, topic: str, message: Any, joints: int = 1) -> list[list[float]]:
+        """
+        Return the (11,) torques in N m of each joint.
+
+        Raise DdctError unless finite and, where there are two, 0 <= kinetic <= static.
+        """
+        rows = self._rows(topic, message, joints)
+        try:
+            if joints > 1:
+                require_capacities(*([row] for row in rows))
+        except ParameterError as error:
+            raise ParameterError(f'{topic}: {error}') from error
+        return rows
 
 
 @dataclass(frozen=True)
@@ -286,6 +338,44 @@ class Status(MessageKind):
     def read(self, topic: str, message: Any) -> tuple[str, dict[str, str]]:
         """Return who says it, and the pairs."""
         return message.status[0].name, dict(*self.values(message))
+
+
+@dataclass(frozen=True)
+class PhaseReport(MessageKind):
+    """A DiagnosticArray about the plates: phase, friction work, then each lock and release."""
+
+    _WORK: ClassVar[str] = 'friction_work_j'
+
+    def _filler(self, message: Any) -> Callable[..., None]:
+        fill_pairs = Status(self.type, 'clutch')._filler(message)
+
+        def fill(phase: float, work: float, events: Sequence[PhaseEvent]) -> None:
+            changes = [(kind, repr(time_s)) for time_s, kind in events]
+            fill_pairs([('phase', PHASES[int(phase)]), (self._WORK, repr(float(work))), *changes])
+
+        return fill
+
+    def values(self, message: Any) -> tuple[float, float, tuple[PhaseEvent, ...]]:
+        """Return number of the phase, work in J and events; raise LookupError if one is bad."""
+        pairs = [(pair.key, pair.value) for pair in message.status[0].values]
+        try:
+            (_, phase), (key, work), *changes = pairs
+            events = tuple((float(time_s), kind) for kind, time_s in changes)
+            if key == self._WORK and all(kind in PHASE_CHANGES for _, kind in events):
+                return float(PHASES.index(phase)), float(work), events
+        except ValueError:
+            pass
+        raise LookupError(f'its status holds {pairs}')
+
+    def read(self, topic: str, message: Any) -> float:
+        """Return the friction work in J; raise DdctError unless finite and not negative."""
+        try:
+            _, work, _ = self.values(message)
+        except LookupError as error:
+            raise DdctError(
+                f'{topic}: {error}: it needs phase, {self._WORK}, then the locks and releases'
+            ) from error
+        return require_number(topic, work, at_least=0.0)
 
 
 def _finite(topic: str, values: Sequence[float]) -> list[float]:

@@ -11,8 +11,10 @@ from operator import itemgetter
 from typing import Any
 
 from ddct_plant.graph.message_kinds import (
+    ClutchPoints,
     Joints,
     MessageKind,
+    PhaseReport,
     PreviewPoints,
     Scalar,
     StampOnly,
@@ -21,6 +23,7 @@ from ddct_plant.graph.message_kinds import (
     Write,
     message_class,
 )
+from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 
 JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
 """Order of the joints in `driveline/joint_states`."""
@@ -39,7 +42,7 @@ class RunKind:
     lockstep: bool = True
     two_input: bool = False
     """Whether the controller also commands the engine."""
-    clutch: str = 'linear'
+    clutch: str = LINEAR
 
 
 @dataclass(frozen=True)
@@ -48,13 +51,17 @@ class Signal:
 
     name: str
     unit: str
-    """SI, such as 'rad/s'; '' for text."""
+    """SI, such as 'rad/s'; '1' for a bare number, '' for what is none."""
     about: str
     """Which quantity, and its shape if it is more than one number."""
+    when: Callable[[RunKind], bool] | None = None
+    """Says in which of the runs that have its topic it is; None for all of them."""
 
     @property
     def column(self) -> str:
-        """Name of its column in a table: name and unit."""
+        """Name of its column in a table: name and unit, if it has one."""
+        if self.unit == '1':
+            return self.name
         unit = self.unit.replace('/', '_').replace(' ', '_').replace('^', '').lower()
         return f'{self.name}_{unit}'
 
@@ -103,6 +110,10 @@ class Topic:
         """Say whether a run has it."""
         return self.when is None or self.when(run)
 
+    def signals_in(self, run: RunKind) -> tuple[Signal, ...]:
+        """Return those of its signals that a run has, which must have the topic."""
+        return tuple(each for each in self.signals if each.when is None or each.when(run))
+
     def recorded_in(self, run: RunKind) -> bool:
         """Say whether the recording of a run has it."""
         return self.in_run(run) and not (run.lockstep and self.wall_clock)
@@ -129,11 +140,6 @@ def _torque(name: str, publisher: str, signal: str, about: str, **options: Any) 
     return Topic(name, kind, publisher, (Signal(signal, 'N m', about),), **options)
 
 
-def _torque_points(name: str, publisher: str, signal: str, about: str) -> Topic:
-    kind = TorquePoints('trajectory_msgs/msg/JointTrajectory', 'clutch')
-    return Topic(name, kind, publisher, (Signal(signal, 'N m', about),))
-
-
 def _status(name: str, publisher: str, **options: Any) -> Topic:
     kind = Status('diagnostic_msgs/msg/DiagnosticArray', options.pop('status_name', ''))
     return Topic(name, kind, publisher, **options)
@@ -141,6 +147,13 @@ def _status(name: str, publisher: str, **options: Any) -> Topic:
 
 def _two_input(run: RunKind) -> bool:
     return run.two_input
+
+
+def _stick_slip(run: RunKind) -> bool:
+    return run.clutch == STICK_SLIP
+
+
+_TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
 RUN_INFO = _status('run_info', 'every node', every_tick=False, latched=True)
@@ -161,6 +174,17 @@ SLIP = Topic(
     'driveline',
     (Signal('slip_speed', 'rad/s', 'w_d = w_m - w_p'),),
 )
+CLUTCH_PHASE = Topic(
+    'clutch/phase',
+    PhaseReport('diagnostic_msgs/msg/DiagnosticArray'),
+    'driveline',
+    (
+        Signal('clutch_phase', '1', '0 open, 1 slipping, 2 locked'),
+        Signal('friction_work', 'J', 'exact, of the period that has ended'),
+        Signal('phase_events', '', 'scenario time in s and `lock` or `release`, in that period'),
+    ),
+    when=_stick_slip,
+)
 VEHICLE_SPEED = Topic(
     'vehicle/twist',
     Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
@@ -178,9 +202,16 @@ TORQUE_DEMAND = _torque(
 )
 ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
 LOAD_TORQUE = _torque('load/torque', 'load', 'load_torque', 'C_load, held over the period')
+HOLDING_TORQUE = Topic(
+    'load/holding_torque',
+    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x', at_least=0.0),
+    'load',
+    (Signal('holding_torque', 'N m', 'capacity of rolling resistance and brake at the wheel'),),
+    when=_stick_slip,
+)
 SLIP_REFERENCE = Topic(
     'clutch/slip_reference',
-    PreviewPoints('trajectory_msgs/msg/JointTrajectory', 'clutch_slip'),
+    PreviewPoints(_TRAJECTORY, ('clutch_slip',)),
     'reference',
     (
         Signal('slip_reference', 'rad/s', '(P+1,) column i is i x 10 ms ahead'),
@@ -203,11 +234,32 @@ ENGINE_REQUEST = _torque(
     'asked of the engine',
     when=_two_input,
 )
-ACTUATOR_TORQUE = _torque_points(
-    'actuator/torque', 'actuator', 'actuator_torque', '(11,) at 0, 1, ..., 10 ms after t_k'
+ACTUATOR_TORQUE = Topic(
+    'actuator/torque',
+    TorquePoints(_TRAJECTORY, ('clutch',)),
+    'actuator',
+    (Signal('actuator_torque', 'N m', '(11,) at 0, 1, ..., 10 ms after t_k'),),
 )
-CLUTCH_TORQUE = _torque_points(
-    'clutch/torque', 'clutch', 'clutch_torque', '(11,) as actuator_torque, after wear'
+CLUTCH_TORQUE = Topic(
+    'clutch/torque',
+    ClutchPoints(_TRAJECTORY, ('clutch', 'clutch_static')),
+    'clutch',
+    (
+        Signal(
+            'clutch_torque',
+            'N m',
+            '(11,) as actuator_torque, after wear; of a clutch that '
+            'sticks the capacity while it slips',
+        ),
+        Signal('clutch_static_torque', 'N m', '(11,) while it sticks', when=_stick_slip),
+    ),
+)
+CLUTCH_TEMPERATURE = Topic(
+    'clutch/temperature',
+    Scalar('sensor_msgs/msg/Temperature', 'temperature'),
+    'clutch',
+    (Signal('clutch_temperature', 'degC', 'of the facing, which friction follows'),),
+    when=_stick_slip,
 )
 RECORDER_ACK = Topic('recorder/ack', StampOnly('std_msgs/msg/Header'), 'recorder')
 CONTROLLER_TIMING = _status('controller/timing', 'controller', every_tick=False, wall_clock=True)
@@ -237,7 +289,7 @@ def tick_names() -> frozenset[str]:
 def all_signals() -> tuple[Signal, ...]:
     """Return every signal: numbers, then text, and last what only some runs have."""
     ranked = [
-        ((topic.when is not None, not signal.unit), signal)
+        ((bool(topic.when or signal.when), not signal.unit), signal)
         for topic in TOPICS
         for signal in topic.signals
     ]

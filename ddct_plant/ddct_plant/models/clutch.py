@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ddct_plant.base.options import Option
 
-CLUTCHES = ('linear',)
+LINEAR, STICK_SLIP = CLUTCHES = ('linear', 'stick_slip')
 """Names of the clutch models that `--clutch` takes."""
 WEAR_GAIN = Option(
     1.0, 'K_usura, wear gain of the clutch, 1 for a new one', above=0.0, at_most=3.0

@@ -1,7 +1,9 @@
 """Driveline: engine, primary shaft, wheel and driveshaft, stepped exactly (Section 1.5)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +39,15 @@ class InitialState:
     """What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere."""
     clutch_torque: float
     """What it transmits then, in N m."""
+    wheel_torque: float = 0.0
+    """Friction of rolling and brake at the wheel, in N m; 0 where C_load has the rolling in it."""
+
+
+PHASES = OPEN, SLIPPING, LOCKED = ('open', 'slipping', 'locked')
+"""What the plates of a clutch that sticks can do; in signals by number."""
+PHASE_CHANGES = ('lock', 'release')
+PhaseEvent = tuple[float, str]
+"""Scenario time in s, and one of PHASE_CHANGES."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +66,12 @@ class DrivelineOutputs:
     """V_x in m/s."""
     vehicle_accel: float
     """A_x in m/s^2, left limit."""
+    clutch_phase: float | None = None
+    """Number of the phase in `PHASES`; this and what follows is None for the linear clutch."""
+    friction_work: float | None = None
+    """Exact friction work in J of the period that has ended."""
+    phase_events: tuple[PhaseEvent, ...] | None = None
+    """Locks and releases in it, in the order of time."""
 
 
 def driveline_outputs(
@@ -64,9 +81,12 @@ def driveline_outputs(
     torques: tuple[float, float, float],
     clutch_sticks: bool = False,
     wheels_stick: bool = False,
+    friction: Mapping[str, Any] = MappingProxyType({}),
 ) -> DrivelineOutputs:
     """
     Return the outputs in a state (7,) with C_m, C_f and C_load just before, in N m.
+
+    `friction` holds the fields that only a clutch that sticks has.
 
     While the clutch sticks the slip is 0, and while the wheels stick the acceleration is, not the
     rounding of a difference.
@@ -84,6 +104,7 @@ def driveline_outputs(
         slip_speed=0.0 if clutch_sticks else engine - shaft,
         vehicle_speed=wheel_radius * wheel,
         vehicle_accel=wheel_radius * wheel_accel,
+        **friction,
     )
 
 

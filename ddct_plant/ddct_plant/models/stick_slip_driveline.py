@@ -2,15 +2,24 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
+from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS, time_of_step
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
 from ddct_plant.hybrid.motion import Event
-from ddct_plant.models.driveline import DrivelineOutputs, InitialState, driveline_outputs
+from ddct_plant.models.driveline import (
+    LOCKED,
+    OPEN,
+    PHASE_CHANGES,
+    PHASES,
+    SLIPPING,
+    DrivelineOutputs,
+    InitialState,
+    driveline_outputs,
+)
 from ddct_plant.models.driveline_model import matrices_with_angles
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
@@ -48,17 +57,9 @@ class StickSlipDriveline:
     """
 
     def __init__(
-        self,
-        parameters: DrivelineParameters,
-        vehicle: VehicleParameters,
-        initial: InitialState,
-        wheel_torque: float = 0.0,
+        self, parameters: DrivelineParameters, vehicle: VehicleParameters, initial: InitialState
     ) -> None:
-        """
-        Start in the given state; `wheel_torque` is the friction at the wheel before t_0, in N m.
-
-        `initial.load_torque` is then that of air and slope alone.
-        """
+        """Start in the given state, whose load torque is that of air and slope alone."""
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
         self._integrator = _integrator(parameters)
@@ -71,10 +72,11 @@ class StickSlipDriveline:
         )
         self._signs = self._integrator.mode_of(self._state)
         self._torques = (initial.engine_torque, initial.load_torque)
-        self._friction = [initial.clutch_torque, wheel_torque]
+        self._friction = [initial.clutch_torque, initial.wheel_torque]
+        self._steps = 0
         self.period = FrictionPeriod(
             _phase(self._signs[CLUTCH], initial.clutch_torque),
-            _phase(self._signs[WHEEL], wheel_torque),
+            _phase(self._signs[WHEEL], initial.wheel_torque),
             [],
             0.0,
             0.0,
@@ -91,7 +93,21 @@ class StickSlipDriveline:
             (engine_torque, clutch_torque, load_torque + wheel_torque),
             clutch_sticks=self._signs[CLUTCH] == 0,
             wheels_stick=self._signs[WHEEL] == 0,
+            friction=self._clutch_signals(),
         )
+
+    def _clutch_signals(self) -> dict[str, Any]:
+        period = self.period
+        start_s = time_of_step(self._steps - 1)
+        return {
+            'clutch_phase': float(PHASES.index(period.clutch_phase)),
+            'friction_work': period.clutch_work,
+            'phase_events': tuple(
+                (start_s + event.time_s, event.kind)
+                for event in period.events
+                if event.element == CLUTCH and event.kind in PHASE_CHANGES
+            ),
+        }
 
     def step(
         self,
@@ -118,6 +134,7 @@ class StickSlipDriveline:
         self._state, self._signs = interval.state, interval.signs
         self._torques = (engine_torque, load_torque)
         self._friction = interval.friction
+        self._steps += 1
         self.period = FrictionPeriod(
             _phase(self._signs[CLUTCH], kinetic_torque[-1]),
             _phase(self._signs[WHEEL], holding_torque),
@@ -128,8 +145,8 @@ class StickSlipDriveline:
 
 def _phase(sign: int, capacity: float) -> str:
     if sign == 0:
-        return 'locked'
-    return 'slipping' if capacity else 'open'
+        return LOCKED
+    return SLIPPING if capacity else OPEN
 
 
 @lru_cache

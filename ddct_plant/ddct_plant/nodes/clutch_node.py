@@ -5,25 +5,49 @@ from typing import Any
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLUTCH_TORQUE
-from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.graph.topics import (
+    ACTUATOR_TORQUE,
+    CLUTCH_PHASE,
+    CLUTCH_TEMPERATURE,
+    CLUTCH_TORQUE,
+    SLIP,
+)
+from ddct_plant.scenario.plant import linear_clutch, stick_slip_clutch
 
 
 class ClutchNode(FollowerNode):
-    """Answer `actuator/torque` with `clutch/torque`."""
+    """
+    Answer `actuator/torque` with `clutch/torque`: what the linear clutch transmits.
+
+    In a stick-slip run it is what the clutch can carry, which depends on `clutch/slip` and on the
+    work of `clutch/phase` too, and `clutch/temperature` comes with it.
+    """
 
     def __init__(self, **kwargs: Any) -> None:
-        """Build the clutch with the run's wear gain."""
+        """Build the clutch of the run, with its wear gain."""
         super().__init__('clutch', **kwargs)
-        self._clutch = LinearClutch(self.settings.wear_gain)
         self._torque = Output(self, CLUTCH_TORQUE)
         self.publish_run_info()
-        self.follow(ACTUATOR_TORQUE)
+        if self.settings.stick_slip:
+            self._friction = stick_slip_clutch(self.settings)
+            self._temperature = Output(self, CLUTCH_TEMPERATURE)
+            self.follow(ACTUATOR_TORQUE, SLIP, CLUTCH_PHASE)
+        else:
+            self._linear = linear_clutch(self.settings)
+            self.follow(ACTUATOR_TORQUE)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return the transmitted torque over the period of step k."""
-        transmitted = self._clutch.transmit(inputs[ACTUATOR_TORQUE.name])
-        return (self._torque.fill(stamp_ns, transmitted),)
+        """Return the transmitted torque, or the capacities, over the period of step k."""
+        actuator_torque = inputs[ACTUATOR_TORQUE.name]
+        if not self.settings.stick_slip:
+            return (self._torque.fill(stamp_ns, self._linear.transmit(actuator_torque)),)
+        reply = self._friction.reply(
+            step, actuator_torque, inputs[SLIP.name], inputs[CLUTCH_PHASE.name]
+        )
+        return (
+            self._torque.fill(stamp_ns, reply.kinetic, reply.static),
+            self._temperature.fill(stamp_ns, reply.temperature_c),
+        )
 
 
 def main() -> int:

@@ -15,9 +15,11 @@ from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import (
     CLOCK,
+    CLUTCH_PHASE,
     CLUTCH_TORQUE,
     DIAGNOSTICS,
     ENGINE_TORQUE,
+    HOLDING_TORQUE,
     JOINT_STATES,
     LOAD_TORQUE,
     RECORDER_ACK,
@@ -25,16 +27,18 @@ from ddct_plant.graph.topics import (
     TICKS_STATUS,
     VEHICLE_ACCEL,
     VEHICLE_SPEED,
+    RunKind,
     Topic,
 )
-from ddct_plant.models.driveline import Driveline
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_driveline
 from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
 
-REPLIES = Replies(ENGINE_TORQUE.name, LOAD_TORQUE.name, CLUTCH_TORQUE.name, RECORDER_ACK.name)
-TICK = (CLOCK, SLIP, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
+TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
+"""What the driveline integrates, in the order in which it takes them."""
+TICK = (CLOCK, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
 """What makes a tick, in the order of sending: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
 """How often an unanswered tick is looked at."""
@@ -54,16 +58,15 @@ class DrivelineNode(GraphNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the driveline in its initial state; `begin` starts the run."""
         super().__init__('driveline', **kwargs)
-        scenario = self.settings.scenario
+        self._run = RunKind(self.settings.lockstep, clutch=self.settings.clutch)
+        self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self.plan = self._declare_plan()
-        self.driveline = Driveline(
-            scenario.driveline, scenario.vehicle, initial_state(self.settings)
-        )
+        self.driveline = make_driveline(self.settings, initial_state(self.settings))
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.plan.steps))
         self.owner = self._make_owner()
         self.refusals = Refusals(self)
         self._create_publishers()
-        for topic in (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE):
+        for topic in self._torques:
             self.listen(topic, self._receiver(topic))
         if self.plan.require_recorder:
             self.listen(RECORDER_ACK, self._receiver(RECORDER_ACK))
@@ -88,7 +91,9 @@ class DrivelineNode(GraphNode):
             ),
         )
         return TickPlan(
-            REPLIES,
+            Replies(
+                tuple(topic.name for topic in self._torques), CLUTCH_TORQUE.name, RECORDER_ACK.name
+            ),
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
             require_recorder=declare(
                 self,
@@ -132,17 +137,22 @@ class DrivelineNode(GraphNode):
         self.every(PERIOD_S, owner.tick)
 
     def _create_publishers(self) -> None:
-        self._outputs = [(Output(self, topic), topic.signals) for topic in TICK]
+        self._outputs = [
+            (Output(self, topic), topic.signals) for topic in TICK if topic.in_run(self._run)
+        ]
         self._diagnostics = Output(self, DIAGNOSTICS)
         self._safe_state = SafeStateReport(self)
 
     def _receiver(self, topic: Topic) -> Callable[[Any], None]:
+        rows = len(CLUTCH_TORQUE.signals_in(self._run))
+        options = {'joints': rows} if topic is CLUTCH_TORQUE else {}
+
         def receive(message: Any) -> None:
             if topic is CLUTCH_TORQUE and self._sole_publishers.found:
                 return  # whose torque it is cannot be told: without it the clutch opens
             stamp = stamp_ns(message)
             try:
-                reply = topic.read(message)
+                reply = topic.read(message, **options)
             except DdctError as error:
                 self.refusals.bad_values(stamp, error)
                 return

@@ -2,27 +2,35 @@
 
 from typing import Any
 
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import LOAD_TORQUE, VEHICLE_SPEED
-from ddct_plant.models.load import RoadLoad
+from ddct_plant.graph.topics import HOLDING_TORQUE, LOAD_TORQUE, VEHICLE_SPEED
+from ddct_plant.scenario.plant import holding_torque, make_load
 
 
 class LoadNode(FollowerNode):
-    """Answer `vehicle/twist` with `load/torque`."""
+    """Answer `vehicle/twist` with `load/torque`, in stick-slip runs `load/holding_torque` too."""
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the load of the run's scenario."""
         super().__init__('load', **kwargs)
-        self._load = RoadLoad(self.settings.scenario.load, self.settings.scenario.vehicle)
+        self._load = make_load(self.settings)
         self._torque = Output(self, LOAD_TORQUE)
+        if self.settings.stick_slip:
+            self._friction = holding_torque(self.settings)
+            self._holding = Output(self, HOLDING_TORQUE)
         self.publish_run_info()
         self.follow(VEHICLE_SPEED)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return C_load at the vehicle speed of t_k."""
-        return (self._torque.fill(stamp_ns, self._load.torque(inputs[VEHICLE_SPEED.name])),)
+        """Return C_load at the vehicle speed of t_k, and what holds the wheels by friction."""
+        torque = self._torque.fill(stamp_ns, self._load.torque(inputs[VEHICLE_SPEED.name]))
+        if not self.settings.stick_slip:
+            return (torque,)
+        capacity = self._friction.capacity(time_of_step(step))
+        return (torque, self._holding.fill(stamp_ns, capacity))
 
 
 def main() -> int:

@@ -4,6 +4,7 @@ import dataclasses
 import hashlib
 import importlib.resources
 import json
+import typing
 from collections.abc import Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -127,6 +128,9 @@ def _value(field: dataclasses.Field[Any], value: Any) -> Any:
     """Return what the dataclass takes for what YAML has: a group of options, or a tuple."""
     if isinstance(field.type, type) and issubclass(field.type, OptionGroup):
         return _build(field.type, value)
+    typed = next(iter(typing.get_args(field.type)), field.type)
+    if isinstance(typed, type) and dataclasses.is_dataclass(typed):
+        return typed(**{k: tuple(v) if isinstance(v, list) else v for k, v in value.items()})
     described = field.metadata.get('option')
     return tuple(value) if described and described.many and isinstance(value, list) else value
 
@@ -141,5 +145,5 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
 
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _plain(item) for key, item in value.items() if item is not None}
     return [_plain(item) for item in value] if isinstance(value, tuple) else value

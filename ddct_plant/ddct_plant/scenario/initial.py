@@ -1,10 +1,13 @@
 """The state a run starts from."""
 
+from dataclasses import replace
+
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import InitialState
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.plant import holding_torque, make_load, stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -24,7 +27,7 @@ def initial_state(settings: RunSettings) -> InitialState:
     )
     torque_request = max(static_torque, 0.0) if settings.detailed else 0.0
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
-    return InitialState(
+    initial = InitialState(
         engine_speed=scenario.initial.engine_speed_rad_s,
         shaft_speed=shaft_speed,
         wheel_speed=wheel_speed,
@@ -34,3 +37,46 @@ def initial_state(settings: RunSettings) -> InitialState:
         torque_request=torque_request,
         clutch_torque=clutch_torque,
     )
+    return _with_friction(settings, initial) if settings.stick_slip else initial
+
+
+def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
+    """
+    Return the start of a run whose clutch and wheels stick, from that of the linear clutch.
+
+    Plates that slip transmit the kinetic capacity of the first request against their slip. Plates
+    of one speed are locked, and carry the torque that keeps them so, as far as the static
+    capacity goes. So are wheels at rest, with the shaft between them and the clutch at rest too.
+    """
+    scenario = settings.scenario
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    load_torque = make_load(settings).torque(linear.wheel_speed * scenario.vehicle.wheel_radius_m)
+    holding = holding_torque(settings).capacity(0.0)
+    resisting = load_torque + holding
+    slip = linear.engine_speed - linear.shaft_speed
+    capacity = stick_slip_clutch(settings).reply(0, [linear.torque_request], slip, 0.0)
+    (kinetic,), (static_capacity,) = capacity.kinetic, capacity.static
+    if slip:
+        clutch_torque = kinetic if slip > 0.0 else -kinetic
+    else:
+        carried = static.torque(
+            linear.engine_torque, resisting, linear.engine_speed, linear.shaft_speed
+        )
+        clutch_torque = _within(carried, static_capacity)
+    wheel_torque = holding
+    twist = static.twist(clutch_torque, resisting, linear.shaft_speed)
+    if linear.wheel_speed == 0.0:
+        shaft_torque = scenario.driveline.total_ratio * clutch_torque
+        wheel_torque = _within(shaft_torque - load_torque, holding)
+        twist = shaft_torque / scenario.driveline.halfshaft_stiffness
+    return replace(
+        linear,
+        twist=twist,
+        load_torque=load_torque,
+        clutch_torque=clutch_torque,
+        wheel_torque=wheel_torque,
+    )
+
+
+def _within(torque: float, most: float) -> float:
+    return min(max(torque, -most), most)

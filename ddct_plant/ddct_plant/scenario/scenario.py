@@ -8,7 +8,11 @@ from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option
 from ddct_plant.base.timebase import steps_in
+from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
+from ddct_plant.models.engine_limits import EngineLimits
+from ddct_plant.models.friction_clutch import FrictionParameters
+from ddct_plant.models.holding import BrakeProfile
 from ddct_plant.models.load import LoadParameters
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
@@ -122,6 +126,10 @@ class Scenario(OptionGroup):
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
+    friction: FrictionParameters = FrictionParameters()
+    heat: HeatParameters = HeatParameters()
+    brake: BrakeProfile = BrakeProfile()
+    engine_limits: EngineLimits | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field
-from ddct_plant.models.clutch import CLUTCHES, WEAR_GAIN
+from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
 from ddct_plant.scenario.scenario import Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
@@ -40,6 +40,11 @@ class RunSettings(OptionGroup):
         architectures have feedback from t = 0 and a reference that is a stored function of time.
         """
         return self.architecture == 'detailed'
+
+    @property
+    def stick_slip(self) -> bool:
+        """Whether the clutch sticks, and rolling resistance and brake hold the wheels."""
+        return self.clutch == STICK_SLIP
 
     @property
     def reference_shape(self) -> str:

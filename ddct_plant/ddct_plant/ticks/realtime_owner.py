@@ -32,8 +32,8 @@ class RealtimeOwner(TickOwner):
         self.missed_replies = dict.fromkeys(self._replies.torques, 0)
         self.worst_lateness_s = 0.0
         self._held: dict[str, Any] = {}
-        self._held_clutch = 0.0
         self._silent_since: dict[str, int] = dict.fromkeys(self._replies.torques, 0)
+        self._held_clutch: list[float] = []
         self._clutch = FailSafe(self._plan.clutch)
         self._started_at: float | None = None
 
@@ -91,22 +91,26 @@ class RealtimeOwner(TickOwner):
             else:
                 self._silent_since[topic] = self.step
                 self._held[topic] = reply
-        engine, load, clutch = self._replies.torques
+        clutch = self._replies.clutch
         torques = self._clutch_torques(replies[clutch])
-        self._integrate(self._held[engine], self._held[load], torques)
+        self._integrate({**self._held, clutch: torques})
 
-    def _clutch_torques(self, reply: list[float] | None) -> list[float]:
-        """Return the (11,) torques in N m of this period: the reply, the last one, or the ramp."""
+    def _clutch_torques(self, reply: list[list[float]] | None) -> list[list[float]]:
+        """Return the rows of torques in N m of this period: the reply, the last, or a ramp."""
         if reply is not None and not self.safe:
-            self._clutch.request(self.step, reply[-1])
-            self._held_clutch = reply[-1]
+            self._held_clutch = [row[-1] for row in reply]
+            self._clutch.request(self.step, self._held_clutch[0])
             return reply
         held = self._held_clutch
-        if not self._clutch.tick(self.step):
-            return [held] * (SUBSTEPS + 1)
-        self._held_clutch = self._clutch.next_torque()
-        change = (self._held_clutch - held) / SUBSTEPS
-        return [held + i * change for i in range(SUBSTEPS + 1)]
+        if self._clutch.tick(self.step):
+            self._held_clutch = self._ramped(held)
+        return [_line(*ends) for ends in zip(held, self._held_clutch, strict=True)]
+
+    def _ramped(self, held: list[float]) -> list[float]:
+        """Return the torques one period later on the way to zero; the static one in proportion."""
+        first = self._clutch.next_torque()
+        share = first / held[0] if held[0] else 0.0
+        return [first, *(max(share * other, first) for other in held[1:])]
 
     def _miss(self, topic: str) -> None:
         self.missed_replies[topic] += 1
@@ -118,3 +122,9 @@ class RealtimeOwner(TickOwner):
                     f'{silent_s:.2f} s ago: check that the node which publishes it is running'
                 )
             )
+
+
+def _line(first: float, last: float) -> list[float]:
+    """Return the (11,) torques of a period that run from one to the other."""
+    change = (last - first) / SUBSTEPS
+    return [*(first + i * change for i in range(SUBSTEPS)), last]

@@ -2,7 +2,7 @@
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +10,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
 
 RESEND_AFTER_S = 0.1
 """How long a tick may stay unanswered before it is sent again."""
@@ -19,15 +20,12 @@ RESEND_AFTER_S = 0.1
 class Replies:
     """The topics on which a tick is answered."""
 
-    engine: str
-    load: str
+    torques: tuple[str, ...]
+    """What the driveline integrates, in the order in which it takes them."""
     clutch: str
+    """Which of these has rows of 11 torques: what is transmitted, or kinetic and static capacity;
+    each of the others has one number."""
     recorder: str
-
-    @property
-    def torques(self) -> tuple[str, str, str]:
-        """What the driveline integrates."""
-        return self.engine, self.load, self.clutch
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,8 @@ class TickBarrier:
     def __init__(self) -> None:
         self._topics: tuple[str, ...] = ()
         self._stamp_ns = stamp_of_step(0)
-        self._replies: dict[str, Any] = {}
+        self.replies: dict[str, Any] = {}
+        """What has come so far."""
         self.ignored = 0
         """Replies to another tick, and repeated ones."""
         self.late = 0
@@ -82,24 +81,24 @@ class TickBarrier:
         """Forget the replies of the last tick and wait for those of `topics` to `step`."""
         self._topics = tuple(topics)
         self._stamp_ns = stamp_of_step(step)
-        self._replies = {}
+        self.replies = {}
 
     def offer(self, topic: str, stamp_ns: int, reply: Any) -> bool:
         """Take a reply; return whether it was the one that completed the tick."""
-        if stamp_ns != self._stamp_ns or topic not in self._topics or topic in self._replies:
+        if stamp_ns != self._stamp_ns or topic not in self._topics or topic in self.replies:
             self.ignored += 1
             self.late += stamp_ns < self._stamp_ns
             return False
-        self._replies[topic] = reply
-        return len(self._replies) == len(self._topics)
+        self.replies[topic] = reply
+        return len(self.replies) == len(self._topics)
 
     def get(self, topic: str) -> Any:
         """Return the reply on `topic`, or None while it is missing."""
-        return self._replies.get(topic)
+        return self.replies.get(topic)
 
     def missing(self) -> list[str]:
         """Return the topics that have not answered, in the order they were given."""
-        return [topic for topic in self._topics if topic not in self._replies]
+        return [topic for topic in self._topics if topic not in self.replies]
 
 
 class TickOwner(ABC):
@@ -111,7 +110,7 @@ class TickOwner(ABC):
 
     def __init__(
         self,
-        driveline: Driveline,
+        driveline: Driveline | StickSlipDriveline,
         plan: TickPlan,
         publish: Callable[[int], None],
         finish: Callable[[DdctError | None], None],
@@ -169,8 +168,12 @@ class TickOwner(ABC):
         self._opened_at = self._sent_at = self._clock()
         self._publish(step)
 
-    def _integrate(self, engine: float, load: float, clutch: list[float]) -> None:
-        self._driveline.step(engine, load, clutch)
+    def _integrate(self, replies: Mapping[str, Any]) -> None:
+        torques: list[Any] = []
+        for topic in self._plan.replies.torques:
+            reply = replies[topic]
+            torques += reply if topic == self._plan.replies.clutch else (reply,)
+        self._driveline.step(*torques)
         self._open(self.step + 1)
 
 
@@ -181,4 +184,4 @@ class LockstepOwner(TickOwner):
         if self.step == self._plan.steps:
             self._finish(None)
         else:
-            self._integrate(*map(self.barrier.get, self._plan.replies.torques))
+            self._integrate(self.barrier.replies)

@@ -22,7 +22,13 @@ def test_signals_are_numbers_then_text_then_what_only_some_runs_have():
         'actuator_torque',
         'clutch_torque',
         'status',
+        'clutch_phase',
+        'friction_work',
+        'holding_torque',
         'engine_torque_request',
+        'clutch_static_torque',
+        'clutch_temperature',
+        'phase_events',
     ]
 
 

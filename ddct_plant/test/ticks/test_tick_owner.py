@@ -7,7 +7,9 @@ from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.ticks.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan
 
-REPLIES = Replies('engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack')
+REPLIES = Replies(
+    ('engine/torque', 'load/torque', 'clutch/torque'), 'clutch/torque', 'recorder/ack'
+)
 ENGINE, LOAD, CLUTCH = REPLIES.torques
 RECORDER = REPLIES.recorder
 POINTS = [float(i) for i in range(11)]
@@ -38,7 +40,7 @@ class Harness:
         )
 
     def answer(self, step, engine=1.0, topics=(ENGINE, LOAD, CLUTCH)):
-        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: POINTS, RECORDER: None}
+        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: [POINTS], RECORDER: None}
         for topic in topics:
             self.owner.offer(topic, stamp_of_step(step), replies[topic])
 

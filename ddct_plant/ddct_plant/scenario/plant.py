@@ -1,0 +1,44 @@
+"""The models of a run, as its settings choose them; nodes and the headless loop take them here."""
+
+from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.clutch_heat import ClutchHeat
+from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.friction_clutch import FrictionClutch
+from ddct_plant.models.holding import HoldingTorque, air_and_slope
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.stick_slip_clutch import StickSlipClutch
+from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
+from ddct_plant.scenario.settings import RunSettings
+
+
+def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
+    """Return the driveline in its initial state; `step` takes what the clutch of the run gives."""
+    model = StickSlipDriveline if settings.stick_slip else Driveline
+    return model(settings.scenario.driveline, settings.scenario.vehicle, initial)
+
+
+def linear_clutch(settings: RunSettings) -> LinearClutch:
+    """Return the thesis's clutch."""
+    return LinearClutch(settings.wear_gain)
+
+
+def stick_slip_clutch(settings: RunSettings) -> StickSlipClutch:
+    """Return the clutch that sticks, at its first temperatures."""
+    scenario = settings.scenario
+    return StickSlipClutch(
+        FrictionClutch(scenario.friction, settings.wear_gain), ClutchHeat(scenario.heat)
+    )
+
+
+def make_load(settings: RunSettings) -> RoadLoad:
+    """Return the load at the wheel, in stick-slip runs that of air and slope alone."""
+    scenario = settings.scenario
+    if settings.stick_slip:
+        return air_and_slope(scenario.load, scenario.vehicle)
+    return RoadLoad(scenario.load, scenario.vehicle)
+
+
+def holding_torque(settings: RunSettings) -> HoldingTorque:
+    """Return the friction at the wheel of a stick-slip run: rolling resistance and brake."""
+    scenario = settings.scenario
+    return HoldingTorque(scenario.load, scenario.vehicle, scenario.brake)
