@@ -3,10 +3,10 @@
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import Driveline
-from ddct_plant.models.engine import Engine
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_engine
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -18,16 +18,18 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     Until then feedback is off and only the static controller C_fOL acts, so no controller enters:
     the values are those of any controller's detailed run at wear gain 1, to the last bit.
     """
-    initial = initial_state(RunSettings(scenario, architecture='detailed'))
+    settings = RunSettings(scenario, architecture='detailed')
+    initial = initial_state(settings)
     driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
-    engine, load = Engine(scenario.engine), RoadLoad(scenario.load, scenario.vehicle)
+    engine, load = make_engine(settings), RoadLoad(scenario.load, scenario.vehicle)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     actuator, clutch = Actuator(initial.torque_request), LinearClutch()
     now = driveline.outputs()
     slips = [now.slip_speed]
     for step in range(scenario.control_start_step):
-        engine_torque, load_torque = engine.torque(step), load.torque(now.vehicle_speed)
         engine_speed, shaft_speed = now.joint_speed[:2]
+        engine_torque = engine.torque(step, speed=engine_speed)
+        load_torque = load.torque(now.vehicle_speed)
         request = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
         transmitted = clutch.transmit(actuator.update(request))
         driveline.step(engine_torque, load_torque, transmitted)

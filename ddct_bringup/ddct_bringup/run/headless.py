@@ -18,12 +18,13 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.driveline import DrivelineOutputs
-from ddct_plant.models.engine import Engine
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.plant import (
+    end_cause,
     holding_torque,
     linear_clutch,
     make_driveline,
+    make_engine,
     make_load,
     stick_slip_clutch,
 )
@@ -85,10 +86,11 @@ class ClosedLoop:
 
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
-        scenario = settings.scenario
+        self._scenario = settings.scenario
+        self._two_input = controller.commands_engine
         initial = initial_state(settings)
         self._driveline = make_driveline(settings, initial)
-        self._engine = Engine(scenario.engine, scenario.engine_authority)
+        self._engine = make_engine(settings)
         self._load = make_load(settings)
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
@@ -101,16 +103,17 @@ class ClosedLoop:
         """Return every signal of step k by its name in `Trajectory`; advances all but time."""
         now = self._driveline.outputs()
         demand = self._engine.demand(step)
-        # A controller that commands the engine is told the demand, any other what is delivered;
-        # both are the same number until there is a request.
+        engine_speed = now.joint_speed[0]
+        # A controller that commands the engine is told the demand, any other what is delivered.
+        told = demand if self._two_input else self._engine.torque(step, speed=engine_speed)
         speeds, rates = self._reference.update(step, now.slip_speed)
         measurement = Measurement(
             step=step,
-            engine_speed=now.joint_speed[0],
+            engine_speed=engine_speed,
             shaft_speed=now.joint_speed[1],
             wheel_speed=now.joint_speed[2],
             vehicle_speed=now.vehicle_speed,
-            engine_torque=demand,
+            engine_torque=told,
             slip_reference=speeds,
             slip_reference_rate=rates,
         )
@@ -118,7 +121,9 @@ class ClosedLoop:
         request = self._architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         actuator_torque = self._actuator.update(request.torque)
-        engine_torque = self._engine.torque(step, request.engine_torque)
+        engine_torque = told
+        if self._two_input:
+            engine_torque = self._engine.torque(step, request.engine_torque, engine_speed)
         return {
             'joint_position': now.joint_position,
             'joint_speed': now.joint_speed,
@@ -137,6 +142,11 @@ class ClosedLoop:
             'engine_torque_request': request.engine_torque,
             **self._friction.reply(step, actuator_torque, now),
         }
+
+    @property
+    def over(self) -> bool:
+        """Whether the engine's speed ends the run with the present state."""
+        return bool(end_cause(self._scenario, self._driveline.engine_speed))
 
     def advance(self, reply: dict[str, Any]) -> None:
         """Integrate the driveline over the period that `reply` answered."""
@@ -171,7 +181,9 @@ def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> T
         loop.advance(rows[-1])
         rows.append(loop.reply(step))
         timing.update_times_us.append(loop.update_time_us)
-    timing.steps = steps
+        if loop.over:
+            break
+    timing.steps = len(rows) - 1
     timing.wall_time_s = time.perf_counter() - started
     present = [name for name, first in rows[0].items() if first is not None]
     return Trajectory.of_columns({name: [row[name] for row in rows] for name in present})

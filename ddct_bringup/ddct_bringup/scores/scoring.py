@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.bag.end_cause import recorded_end_cause
 from ddct_bringup.bag.file.records import mcap_of, salvage_records
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
@@ -90,10 +91,11 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
 
 
 def why_invalid(recording: Recording) -> str:
-    """Return why a run does not count; empty if it does."""
+    """Return why a run does not count; empty if it does, also where its engine ended it early."""
     trajectory, facts = recording.trajectory, recording.facts
     reasons = [] if facts.lockstep else why_not_real_time(recording)
-    if trajectory.steps < facts.steps:
+    early = trajectory.steps < facts.steps
+    if early and not recorded_end_cause(trajectory, recording.custom_data):
         reasons.insert(0, _why_early(recording))
     for name, values in trajectory.signals.items():
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():

@@ -25,30 +25,33 @@ class GuardedEngine:
         self._held_request: float | None = None
         self._next_step = 0
         self._torque = 0.0
+        self._speed = 0.0
 
     @property
     def on_demand(self) -> bool:
         """Whether the demand has taken over because requests stopped."""
         return self._watch.stopped
 
-    def request(self, step: int, torque: float) -> float | None:
+    def request(self, step: int, torque: float, speed: float = 0.0) -> float | None:
         """
-        Return C_m in N m over the period of `step`, for a request in N m.
+        Return C_m in N m over the period of `step`, for a request in N m, at w_m in rad/s.
 
         None where the request is not obeyed: it is late, or the demand has taken over.
         """
         self._watch.request(step)
+        self._speed = speed
         if self.on_demand or step < self._next_step:
             return None
         self._make_up(step)
         self._held_request = torque
         return self._advance(step)
 
-    def tick(self, step: int) -> float | None:
+    def tick(self, step: int, speed: float = 0.0) -> float | None:
         """Return the same at a tick, None as long as requests are waited for or obeyed."""
         if not (self._watch.tick(step) if self._watch.heard else self._watch.too_long(0, step)):
             return None
         if step >= self._next_step:
+            self._speed = speed
             self._make_up(step)
             self._held_request = None
             self._advance(step)
@@ -68,4 +71,4 @@ class GuardedEngine:
     def _deliver(self, step: int) -> float:
         demand = self._engine.demand(step)
         request = demand if self._held_request is None else self._held_request
-        return self._engine.torque(step, request)
+        return self._engine.torque(step, request, self._speed)

@@ -133,6 +133,11 @@ class Driveline:
         )
         self._torques = (initial.engine_torque, initial.clutch_torque, initial.load_torque)
 
+    @property
+    def engine_speed(self) -> float:
+        """w_m in rad/s at the present stamp."""
+        return float(self._state_and_inputs[0])
+
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present stamp."""
         state = self._state_and_inputs[:7].tolist()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.models.engine_limits import EngineLimits, LimitedEngine
 
 MOST_AUTHORITY = 1e6
 """Largest deviation in N m and largest rate in N m/s that an engine's authority may have."""
@@ -139,9 +140,19 @@ class Engine:
     inputs may ask for another torque (Section 4.3), within the engine's authority.
     """
 
-    def __init__(self, profile: TorqueProfile, authority: EngineAuthority | None = None) -> None:
-        """Start on the demand; without `authority` it follows any request at once."""
+    def __init__(
+        self,
+        profile: TorqueProfile,
+        authority: EngineAuthority | None = None,
+        limits: EngineLimits | None = None,
+    ) -> None:
+        """
+        Start on the demand.
+
+        Without `authority` it follows any request at once, without `limits` at any speed.
+        """
         self._profile = profile
+        self._limited = LimitedEngine(limits) if limits else None
         self._response = EngineResponse(authority or EngineAuthority())
 
     def demand(self, step: int) -> float:
@@ -156,15 +167,17 @@ class Engine:
                 return torques[index - 1] + share * (torques[index] - torques[index - 1])
         return torques[-1]
 
-    def torque(self, step: int, request: float | None = None) -> float:
+    def torque(self, step: int, request: float | None = None, speed: float = 0.0) -> float:
         """
         Return the torque C_m in N m delivered over the period of step `step`.
 
-        It is the demand, or what comes about of `request` in N m; with requests it is called once
-        per step, in order.
+        It is the demand, or what comes about of `request` in N m, within what the engine's limits
+        allow at w_m = `speed` in rad/s. With requests or limits it is called once per step, in
+        order.
         """
         demand = self.demand(step)
-        return demand if request is None else self._response.deliver(demand, request)
+        asked = demand if request is None else self._response.deliver(demand, request)
+        return asked if self._limited is None else self._limited.deliver(asked, speed)
 
 
 def _limited(value: float, limit: float) -> float:

@@ -44,13 +44,13 @@ class EngineLimits:
     idle_most_n_m: float = 60.0
     """Highest torque that idle control asks for; assumed."""
     stall_rad_s: float = 52.36
-    """Speed below which the engine stops, 500 rpm; assumed."""
+    """Speed at and below which the engine stops, 500 rpm; assumed."""
     cut_rad_s: float = 680.68
     """Speed from which the rev limiter cuts the fuel, 6500 rpm; assumed."""
     resume_rad_s: float = 670.21
     """Speed below which fuel comes back, 6400 rpm; assumed."""
     over_rev_rad_s: float = 785.4
-    """Speed above which the run ends, 7500 rpm; assumed."""
+    """Speed from which the run ends, 7500 rpm; assumed."""
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
@@ -69,6 +69,12 @@ class EngineLimits:
             require_number(f'engine_limits.{name}', getattr(self, name), above=0.0, at_most=2e3)
         self._require_order()
         self._require_cover()
+
+    def end_cause(self, speed: float) -> str | None:
+        """Return why a run ends with the engine at w_m in rad/s, None where it goes on."""
+        if speed <= self.stall_rad_s:
+            return STALLED
+        return OVER_REVVED if speed >= self.over_rev_rad_s else None
 
     def _require_order(self) -> None:
         for lower, higher in zip(_RISING_SPEEDS, _RISING_SPEEDS[1:], strict=False):
@@ -111,7 +117,7 @@ class LimitedEngine:
         """Return C_m in N m over the coming period, of `asked` in N m at w_m in rad/s."""
         limits = self._limits
         if self.end_cause is None:
-            self.end_cause = self._cause(speed)
+            self.end_cause = limits.end_cause(speed)
         if self.end_cause == STALLED:
             return 0.0
         friction = float(np.interp(speed, limits.speed_rad_s, limits.friction_n_m))
@@ -121,11 +127,6 @@ class LimitedEngine:
         self._cut = False
         most = float(np.interp(speed, limits.speed_rad_s, limits.full_load_n_m))
         return min(max(asked, self._idle(speed), -friction), most)
-
-    def _cause(self, speed: float) -> str | None:
-        if speed < self._limits.stall_rad_s:
-            return STALLED
-        return OVER_REVVED if speed > self._limits.over_rev_rad_s else None
 
     def _idle(self, speed: float) -> float:
         """Return the torque that idle control asks for, and integrate."""

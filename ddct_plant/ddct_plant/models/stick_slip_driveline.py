@@ -82,6 +82,11 @@ class StickSlipDriveline:
             0.0,
         )
 
+    @property
+    def engine_speed(self) -> float:
+        """w_m in rad/s at the present stamp."""
+        return float(self._state[0])
+
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present stamp; the wheel's effort has its friction in it."""
         engine_torque, load_torque = self._torques

@@ -31,7 +31,7 @@ from ddct_plant.graph.topics import (
     Topic,
 )
 from ddct_plant.scenario.initial import initial_state
-from ddct_plant.scenario.plant import make_driveline
+from ddct_plant.scenario.plant import end_cause, make_driveline
 from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
@@ -62,7 +62,7 @@ class DrivelineNode(GraphNode):
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self.plan = self._declare_plan()
         self.driveline = make_driveline(self.settings, initial_state(self.settings))
-        self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.plan.steps))
+        self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
         self.refusals = Refusals(self)
         self._create_publishers()
@@ -122,16 +122,24 @@ class DrivelineNode(GraphNode):
     def _make_owner(self) -> LockstepOwner | RealtimeOwner:
         if self.settings.lockstep:
             return LockstepOwner(
-                self.driveline, self.plan, self._publish_tick, self._sole_publishers.finish
+                self.driveline,
+                self.plan,
+                self._publish_tick,
+                self._sole_publishers.finish,
+                over=self._over_early,
             )
         owner = RealtimeOwner(
             self.driveline,
             self.plan,
             self._publish_tick,
             self._sole_publishers.finish,
+            over=self._over_early,
             on_started=lambda: self._start_ticks(owner),
         )
         return owner
+
+    def _over_early(self) -> bool:
+        return bool(end_cause(self.settings.scenario, self.driveline.engine_speed))
 
     def _start_ticks(self, owner: RealtimeOwner) -> None:
         self.every(PERIOD_S, owner.tick)
@@ -176,7 +184,7 @@ class DrivelineNode(GraphNode):
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.tell(step, stamp, why)
-        if step % STEPS_PER_S == 0 or step == self.plan.steps:
+        if step % STEPS_PER_S == 0 or step == self.owner.last_step:
             self._diagnostics.fill(stamp, self._counts(), name=TICKS_STATUS).publish()
 
     def _counts(self) -> list[tuple[str, str]]:

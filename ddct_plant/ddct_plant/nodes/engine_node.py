@@ -13,7 +13,7 @@ from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_request_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES, TORQUE_DEMAND
-from ddct_plant.models.engine import Engine
+from ddct_plant.scenario.plant import make_engine
 
 REQUEST = ENGINE_REQUEST.name
 
@@ -38,32 +38,37 @@ class EngineNode(FollowerNode):
             'two_input',
             Option(False, 'wait for engine/torque_request of a two-input controller'),
         )
-        scenario = self.settings.scenario
-        self._engine = Engine(scenario.engine, scenario.engine_authority)
+        self._engine = make_engine(self.settings)
         timeout_s = declare_request_timeout(self, "the driver's demand takes over")
         self._commanded = GuardedEngine(self._engine, timeout_s)
         self._demand = Output(self, TORQUE_DEMAND)
         self._torque = Output(self, ENGINE_TORQUE)
         self.publish_run_info(engine_info(self._two_input, timeout_s))
-        only_the_stamp = {JOINT_STATES: lambda _message: None}
+        readers = {JOINT_STATES: self._speed}
         if self._two_input:
             self.listen(JOINT_STATES, self._publish_demand)
-            self.follow(JOINT_STATES, ENGINE_REQUEST, readers=only_the_stamp)
+            self.follow(JOINT_STATES, ENGINE_REQUEST, readers=readers)
         else:
             self.listen(ENGINE_REQUEST, self._refuse_request)
-            self.follow(JOINT_STATES, readers=only_the_stamp)
+            self.follow(JOINT_STATES, readers=readers)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the torque over the period of step k, and the demand if it is not out yet."""
+        speed = inputs[JOINT_STATES.name]
         if self._two_input:
-            torque = self._commanded.request(step, inputs[REQUEST])
+            torque = self._commanded.request(step, inputs[REQUEST], speed)
             return () if torque is None else (self._torque.fill(stamp_ns, torque),)
         return (
-            self._torque.fill(stamp_ns, self._engine.torque(step)),
+            self._torque.fill(stamp_ns, self._engine.torque(step, speed=speed)),
             self._demand.fill(stamp_ns, self._engine.demand(step)),
         )
+
+    def _speed(self, message: Any) -> float:
+        """Return w_m in rad/s where an engine with limits needs it, else 0 and spare the time."""
+        limited = self.settings.scenario.engine_limits is not None
+        return JOINT_STATES.read(message)[0] if limited else 0.0
 
     def _publish_demand(self, message: Any) -> None:
         stamp = stamp_ns(message)
@@ -72,10 +77,15 @@ class EngineNode(FollowerNode):
         step = step_of_stamp(stamp)
         self._demand.fill(stamp, self._engine.demand(step)).publish()
         if not self.settings.lockstep:
-            self._answer_alone(step, stamp)
+            try:
+                speed = self._speed(message)
+            except DdctError as error:
+                self.refusals.bad_values(stamp, error)
+                return
+            self._answer_alone(step, stamp, speed)
 
-    def _answer_alone(self, step: int, stamp: int) -> None:
-        torque = self._commanded.tick(step)
+    def _answer_alone(self, step: int, stamp: int, speed: float) -> None:
+        torque = self._commanded.tick(step, speed)
         if self._commanded.on_demand:
             self._safe_state.tell(
                 step,

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import InitialState
-from ddct_plant.models.engine import Engine
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.plant import holding_torque, make_load, stick_slip_clutch
+from ddct_plant.scenario.plant import holding_torque, make_engine, make_load, stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -19,16 +18,15 @@ def initial_state(settings: RunSettings) -> InitialState:
     load_torque = RoadLoad(scenario.load, scenario.vehicle).torque(
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
-    engine_torque = Engine(scenario.engine).torque(0)
+    engine_speed = scenario.initial.engine_speed_rad_s
+    engine_torque = make_engine(settings).torque(0, speed=engine_speed)
     static = StaticTorque(driveline, scenario.equilibrium)
     shaft_speed = scenario.initial.shaft_speed_rad_s
-    static_torque = static.torque(
-        engine_torque, load_torque, scenario.initial.engine_speed_rad_s, shaft_speed
-    )
+    static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
     torque_request = max(static_torque, 0.0) if settings.detailed else 0.0
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     initial = InitialState(
-        engine_speed=scenario.initial.engine_speed_rad_s,
+        engine_speed=engine_speed,
         shaft_speed=shaft_speed,
         wheel_speed=wheel_speed,
         twist=static.twist(clutch_torque, load_torque, shaft_speed),

@@ -3,11 +3,13 @@
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
 from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.engine import Engine
 from ddct_plant.models.friction_clutch import FrictionClutch
 from ddct_plant.models.holding import HoldingTorque, air_and_slope
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.stick_slip_clutch import StickSlipClutch
 from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -15,6 +17,18 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
     """Return the driveline in its initial state; `step` takes what the clutch of the run gives."""
     model = StickSlipDriveline if settings.stick_slip else Driveline
     return model(settings.scenario.driveline, settings.scenario.vehicle, initial)
+
+
+def make_engine(settings: RunSettings) -> Engine:
+    """Return the engine of the scenario, within its authority and limits."""
+    scenario = settings.scenario
+    return Engine(scenario.engine, scenario.engine_authority, scenario.engine_limits)
+
+
+def end_cause(scenario: Scenario, engine_speed: float) -> str | None:
+    """Return why a run ends early with the engine at w_m in rad/s, None where it goes on."""
+    limits = scenario.engine_limits
+    return limits.end_cause(engine_speed) if limits else None
 
 
 def linear_clutch(settings: RunSettings) -> LinearClutch:

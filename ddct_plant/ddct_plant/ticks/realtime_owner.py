@@ -46,7 +46,7 @@ class RealtimeOwner(TickOwner):
         """Take every step that is due by the wall clock."""
         if self._started_at is None:
             return
-        while self.step < self._plan.steps:
+        while self.step < self.last_step:
             due = self._started_at + (self.step + 1) * PERIOD_S
             now = self._clock()
             if now < due:
@@ -56,7 +56,7 @@ class RealtimeOwner(TickOwner):
 
     def watch(self) -> None:
         """Guard the first and the last tick; the ones between never wait."""
-        if self._started_at is not None and self.step < self._plan.steps:
+        if self._started_at is not None and self.step < self.last_step:
             return
         waited = self._clock() - self._opened_at
         last = self._started_at is not None
@@ -70,13 +70,13 @@ class RealtimeOwner(TickOwner):
             super().watch()
 
     def _awaited(self, step: int) -> tuple[str, ...]:
-        if step not in (0, self._plan.steps):
+        if step not in (0, self.last_step):
             return self._replies.torques
         awaited = self._plan.topics
         return tuple(each for each in awaited if each != self._replies.clutch or not self.safe)
 
     def _on_complete(self) -> None:
-        if self.step == self._plan.steps:
+        if self.step == self.last_step:
             self._finish(None)
         elif self._started_at is None:
             self._started_at = self._clock()

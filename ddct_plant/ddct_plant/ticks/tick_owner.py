@@ -115,8 +115,11 @@ class TickOwner(ABC):
         publish: Callable[[int], None],
         finish: Callable[[DdctError | None], None],
         clock: Callable[[], float] = time.monotonic,
+        over: Callable[[], bool] = lambda: False,
     ) -> None:
         self.step = 0
+        self.last_step = plan.steps
+        """N, less where `over()` says that the run ends with the present state."""
         self.resends = 0
         self.missed_steps = 0
         self.barrier = TickBarrier()
@@ -125,6 +128,7 @@ class TickOwner(ABC):
         self._publish = publish
         self._finish = finish
         self._clock = clock
+        self._over = over
         self._opened_at = 0.0
         self._sent_at = 0.0
 
@@ -174,6 +178,8 @@ class TickOwner(ABC):
             reply = replies[topic]
             torques += reply if topic == self._plan.replies.clutch else (reply,)
         self._driveline.step(*torques)
+        if self._over():
+            self.last_step = self.step + 1
         self._open(self.step + 1)
 
 
@@ -181,7 +187,7 @@ class LockstepOwner(TickOwner):
     """Wait for every reply stamped exactly t_k, then step; never go on with old data."""
 
     def _on_complete(self) -> None:
-        if self.step == self._plan.steps:
+        if self.step == self.last_step:
             self._finish(None)
         else:
             self._integrate(self.barrier.replies)
