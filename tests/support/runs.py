@@ -22,11 +22,13 @@ def plan(
     duration_s: float = SHORT_S,
     wear_gain: float = 1.0,
     mode: str = 'lockstep',
+    clutch: str = 'linear',
     changes: tuple[str, ...] = (),
 ) -> RunPlan:
     """Return a short run of the thesis's scenario."""
     scenario = load_scenario('thesis', [f'duration_s={duration_s}', *changes])
-    return RunPlan(RunSettings(scenario, wear_gain=wear_gain, mode=mode), controller, layout)
+    settings = RunSettings(scenario, clutch=clutch, wear_gain=wear_gain, mode=mode)
+    return RunPlan(settings, controller, layout)
 
 
 def record(run: RunPlan, folder: Path) -> Recording:

@@ -12,6 +12,9 @@ REPLIES = Replies(
 )
 ENGINE, LOAD, CLUTCH = REPLIES.torques
 RECORDER = REPLIES.recorder
+HOLDING = 'load/holding_torque'
+STICK_SLIP = Replies((*REPLIES.torques, HOLDING), CLUTCH, RECORDER)
+"""Of a run whose clutch sticks: it has two capacities, and the wheels are held."""
 POINTS = [float(i) for i in range(11)]
 
 
@@ -19,28 +22,39 @@ class FakeDriveline:
     def __init__(self):
         self.steps = []
 
-    def step(self, engine, load, clutch):
-        self.steps.append((engine, load, list(clutch)))
+    def step(self, engine, load, *clutch_and_holding):
+        clutch = [list(row) if isinstance(row, list) else row for row in clutch_and_holding]
+        self.steps.append((engine, load, *clutch))
 
 
 class Harness:
     """An owner with a hand-driven clock; records what it publishes and how it ends."""
 
-    def __init__(self, owner_type, steps=3, require_recorder=False):
+    def __init__(
+        self,
+        owner_type,
+        steps=3,
+        require_recorder=False,
+        replies=REPLIES,
+        clutch=(POINTS,),
+        over=lambda: False,
+    ):
         self.now = 0.0
         self.published: list[int] = []
         self.ends: list[DdctError | None] = []
+        self.clutch = clutch
         self.driveline = FakeDriveline()
         self.owner = owner_type(
             self.driveline,
-            TickPlan(REPLIES, steps, require_recorder, answer_timeout_s=1.0),
+            TickPlan(replies, steps, require_recorder, answer_timeout_s=1.0),
             self.published.append,
             self.ends.append,
             clock=lambda: self.now,
+            over=over,
         )
 
     def answer(self, step, engine=1.0, topics=(ENGINE, LOAD, CLUTCH)):
-        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: [POINTS], RECORDER: None}
+        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: self.clutch, HOLDING: 60.0, RECORDER: None}
         for topic in topics:
             self.owner.offer(topic, stamp_of_step(step), replies[topic])
 
@@ -190,10 +204,10 @@ def test_realtime_gives_up_on_a_topic_that_stays_silent():
 class Run(Harness):
     """A long real-time run whose replies a test gives or leaves out, step by step."""
 
-    def __init__(self, steps=1000, **options):
+    def __init__(self, steps=1000, topics=(ENGINE, LOAD, CLUTCH), **options):
         super().__init__(RealtimeOwner, steps=steps, **options)
         self.owner.start()
-        self.answer(0)
+        self.answer(0, topics=topics)
 
     def go_to(self, last, topics=(ENGINE, LOAD, CLUTCH)):
         """Step until t_last is out; `topics` answer each tick on the way, and it."""
@@ -249,3 +263,62 @@ def test_the_last_tick_waits_for_no_clutch_torque_in_the_safe_state():
     run.go_to(20)
     run.go_to(40, topics=(ENGINE, LOAD))
     assert run.ends == [None]
+
+
+def test_a_stick_slip_run_waits_for_the_holding_torque_and_steps_on_both_capacities():
+    clutch = (POINTS, [2.0 * each for each in POINTS])
+    harness = Harness(LockstepOwner, replies=STICK_SLIP, clutch=clutch)
+    harness.owner.start()
+    harness.answer(0)
+    assert harness.owner.barrier.missing() == [HOLDING]
+    harness.answer(0, topics=(HOLDING,))
+    assert harness.driveline.steps == [(1.0, 2.0, *clutch, 60.0)]
+
+
+def capacities_of(run):
+    """Return the kinetic and the static capacities of each step."""
+    return zip(*[(kinetic, static) for _, _, kinetic, static, _ in run.driveline.steps], strict=True)
+
+
+def test_capacities_that_stay_away_run_to_zero_together_and_never_below():
+    """The static one stays in proportion: it never falls below the kinetic one, or below zero."""
+    clutch = ([23.0] * 11, [1.3 * 23.0] * 11)
+    run = Run(replies=STICK_SLIP, clutch=clutch, topics=(ENGINE, LOAD, CLUTCH, HOLDING))
+    run.go_to(20, topics=(ENGINE, LOAD, CLUTCH, HOLDING))
+    run.go_to(60, topics=(ENGINE, LOAD, HOLDING))
+    kinetic, static = capacities_of(run)
+    assert kinetic[30] == [23.0] * 11
+    assert [row[-1] for row in kinetic[31:35]] == pytest.approx([13.0, 3.0, 0.0, 0.0])
+    assert [row[-1] for row in static[31:35]] == pytest.approx([16.9, 3.9, 0.0, 0.0])
+    for low, high in zip(kinetic, static, strict=True):
+        assert all(0.0 <= k <= s for k, s in zip(low, high, strict=True))
+
+
+def test_a_missing_holding_torque_holds_the_last_and_is_counted():
+    clutch = (POINTS, POINTS)
+    run = Run(replies=STICK_SLIP, clutch=clutch, topics=(ENGINE, LOAD, CLUTCH, HOLDING))
+    run.go_to(20, topics=(ENGINE, LOAD, CLUTCH))
+    assert {step[-1] for step in run.driveline.steps} == {60.0}
+    assert run.owner.missed_replies[HOLDING] == 19
+    assert not run.owner.safe
+
+
+@pytest.mark.parametrize('owner_type', [LockstepOwner, RealtimeOwner])
+def test_the_first_state_that_is_over_is_the_last_tick_recorder_and_all(owner_type):
+    harness = Harness(
+        owner_type,
+        steps=9,
+        require_recorder=True,
+        over=lambda: len(harness.driveline.steps) == 2,
+    )
+    harness.owner.start()
+    everything = (ENGINE, LOAD, CLUTCH, RECORDER)
+    harness.answer(0, topics=everything)
+    for step in (1, 2):
+        harness.now = 0.01 * step + 0.0001
+        if owner_type is RealtimeOwner:
+            harness.owner.tick()
+        assert harness.ends == []
+        harness.answer(step, topics=everything)
+    assert harness.published == [0, 1, 2]
+    assert harness.ends == [None]

@@ -1,0 +1,97 @@
+"""Phases, capacities and temperature on the wire: what goes in comes out, the rest is refused."""
+
+import pytest
+
+pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
+
+from ddct_plant.base.errors import DdctError  # noqa: E402
+from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
+from ddct_plant.graph.topics import (  # noqa: E402
+    CLUTCH_PHASE,
+    CLUTCH_TEMPERATURE,
+    CLUTCH_TORQUE,
+    HOLDING_TORQUE,
+    RunKind,
+)
+
+STAMP, LATER = stamp_of_step(123), stamp_of_step(124)
+LOW, HIGH = [10.0 + i / 3.0 for i in range(11)], [12.0 + i / 3.0 for i in range(11)]
+
+
+def test_phase_work_and_events_come_back_to_the_last_bit():
+    write = CLUTCH_PHASE.writer()
+    events = ((1.2345678901234567, 'release'), (0.1 + 1.13, 'lock'))
+    for values in ((1.0, 1.0 / 3.0, events), (2.0, 0.0, ()), (0.0, 1e-17, events[:1])):
+        message = write(STAMP, *values)
+        assert CLUTCH_PHASE.values(message) == values
+        assert CLUTCH_PHASE.read(message) == values[1]
+
+
+def test_the_phase_stands_in_words():
+    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, ((0.5, 'lock'),))
+    pairs = [(pair.key, pair.value) for pair in message.status[0].values]
+    assert pairs == [('phase', 'slipping'), ('friction_work_j', '0.25'), ('lock', '0.5')]
+
+
+@pytest.mark.parametrize(
+    ('place', 'key', 'value', 'complaint'),
+    [
+        (0, 'phase', 'melted', 'its status holds'),
+        (1, 'friction_work_j', 'much', 'its status holds'),
+        (1, 'friction_work_j', '-1.0', 'is -1: it must be at least 0'),
+        (1, 'friction_work_j', 'nan', 'finite'),
+        (1, 'work', '1.0', 'its status holds'),
+        (2, 'lock', 'soon', 'its status holds'),
+        (2, 'reverse', '0.5', 'its status holds'),
+    ],
+)
+def test_a_report_that_is_none_is_refused(place, key, value, complaint):
+    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, ((0.5, 'lock'),))
+    pair = message.status[0].values[place]
+    pair.key, pair.value = key, value
+    with pytest.raises(DdctError, match=complaint):
+        CLUTCH_PHASE.read(message)
+
+
+def test_the_two_capacities_are_two_joints():
+    message = CLUTCH_TORQUE.message(STAMP, LOW, HIGH)
+    assert list(message.joint_names) == ['clutch', 'clutch_static']
+    assert [list(point.effort) for point in message.points] == [
+        [low, high] for low, high in zip(LOW, HIGH, strict=True)
+    ]
+    assert CLUTCH_TORQUE.values(message) == (LOW, HIGH)
+    assert CLUTCH_TORQUE.read(message, joints=2) == [LOW, HIGH]
+
+
+def test_a_clutch_of_another_kind_of_run_is_refused():
+    linear, stick_slip = CLUTCH_TORQUE.message(STAMP, LOW), CLUTCH_TORQUE.message(STAMP, LOW, HIGH)
+    with pytest.raises(DdctError, match='has the joints clutch: this run needs clutch, clutch_st'):
+        CLUTCH_TORQUE.read(linear, joints=2)
+    with pytest.raises(DdctError, match='clutch, clutch_static: this run needs clutch; start ev'):
+        CLUTCH_TORQUE.read(stick_slip)
+
+
+@pytest.mark.parametrize(
+    ('low', 'high', 'complaint'),
+    [(LOW, LOW[::-1], 'below the kinetic'), ([-1.0] * 11, HIGH, 'not be negative')],
+)
+def test_capacities_that_cannot_be_are_refused(low, high, complaint):
+    with pytest.raises(DdctError, match=f'^clutch/torque: .*{complaint}'):
+        CLUTCH_TORQUE.read(CLUTCH_TORQUE.message(STAMP, low, high), joints=2)
+
+
+def test_a_negative_holding_torque_is_refused():
+    with pytest.raises(DdctError, match='load/holding_torque is -1: it must be at least 0'):
+        HOLDING_TORQUE.read(HOLDING_TORQUE.message(STAMP, -1.0))
+
+
+def test_the_temperature_stands_in_its_field():
+    assert CLUTCH_TEMPERATURE.message(LATER, 123.25).temperature == 123.25
+
+
+def test_only_stick_slip_runs_have_a_static_capacity():
+    names = [
+        [signal.name for signal in CLUTCH_TORQUE.signals_in(RunKind(clutch=clutch))]
+        for clutch in ('linear', 'stick_slip')
+    ]
+    assert names == [['clutch_torque'], ['clutch_torque', 'clutch_static_torque']]
