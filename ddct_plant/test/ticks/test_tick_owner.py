@@ -277,7 +277,9 @@ def test_a_stick_slip_run_waits_for_the_holding_torque_and_steps_on_both_capacit
 
 def capacities_of(run):
     """Return the kinetic and the static capacities of each step."""
-    return zip(*[(kinetic, static) for _, _, kinetic, static, _ in run.driveline.steps], strict=True)
+    return zip(
+        *[(kinetic, static) for _, _, kinetic, static, _ in run.driveline.steps], strict=True
+    )
 
 
 def test_capacities_that_stay_away_run_to_zero_together_and_never_below():
