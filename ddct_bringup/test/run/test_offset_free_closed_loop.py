@@ -19,6 +19,7 @@ from ddct_controllers.mpc.estimate.wear_model import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.driveline import Driveline
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
@@ -181,6 +182,7 @@ class ExactLoop(ClosedLoop):
         super().advance(reply)
         inputs = reply['torque_request'], reply['engine_torque'], reply['load_torque']
         self._state = self._exact.a @ self._state + self._exact.b @ inputs
+        assert isinstance(self._driveline, Driveline)
         self._driveline._state_and_inputs[:4] = self._state[:4]
 
 

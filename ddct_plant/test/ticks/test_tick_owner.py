@@ -307,7 +307,7 @@ def test_a_missing_holding_torque_holds_the_last_and_is_counted():
 
 @pytest.mark.parametrize('owner_type', [LockstepOwner, RealtimeOwner])
 def test_the_first_state_that_is_over_is_the_last_tick_recorder_and_all(owner_type):
-    harness = Harness(
+    harness: Harness = Harness(
         owner_type,
         steps=9,
         require_recorder=True,
