@@ -70,7 +70,13 @@ class TanhDescent(_TimedDescent):
 
 
 class PolynomialDescent(_TimedDescent):
-    """The cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends; not of the thesis."""
+    """
+    The cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends; not of the thesis.
+
+    It is the polynomial of least degree with f(0) = 1, f(1) = 0, f'(0) = f'(1) = 0. The end
+    without slope is the no-lurch condition of Glielmo and Vasca: with dw_d/dt = 0 where w_d
+    becomes 0 both plates accelerate alike when the clutch locks.
+    """
 
     def _shape(self, x: float) -> tuple[float, float]:
         return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)

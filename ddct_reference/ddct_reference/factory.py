@@ -1,8 +1,10 @@
 """The slip reference that a run's scenario and architecture ask for."""
 
 from ddct_plant.base.timebase import PERIOD_S, steps_in
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET
 from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.descent import CrfRamp, Descent, PolynomialDescent, TanhDescent
+from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.nominal_slip import nominal_slip
 from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference
 
@@ -11,10 +13,17 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
     """
     Build the reference of a run, which looks `preview_steps` periods ahead.
 
-    `detailed` follows the slip speed until control starts. The other architectures have a stored
-    function of time, that of the nominal detailed run.
+    `detailed` follows the slip speed until control starts, and starts from the one measured then.
+    The other architectures have a stored function of time, that of the nominal detailed run.
     """
     scenario = settings.scenario
+    if settings.reference_shape == ENGINE_SPEED_TARGET:
+        return EngineSpeedTarget(
+            scenario.engine_speed_reference,
+            scenario.reference.slope_rad_s2,
+            scenario.control_start_step,
+            preview_steps,
+        )
     descent = _make_descent(settings)
     if settings.detailed:
         return FollowingReference(descent, scenario.control_start_step, preview_steps)

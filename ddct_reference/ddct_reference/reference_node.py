@@ -1,5 +1,6 @@
 """Node `reference`: the slip speed that the controller shall follow, with its preview."""
 
+import math
 from typing import Any, ClassVar
 
 from ddct_plant.base.options import Option
@@ -7,12 +8,16 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import SLIP, SLIP_REFERENCE
+from ddct_plant.graph.topics import JOINT_STATES, SLIP, SLIP_REFERENCE
 from ddct_reference.factory import make_reference
 
 
 class ReferenceNode(FollowerNode):
-    """Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead."""
+    """
+    Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead.
+
+    With the shape `engine_speed_target` it also takes `driveline/joint_states`.
+    """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)
 
@@ -27,11 +32,12 @@ class ReferenceNode(FollowerNode):
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info({'preview_steps': str(preview_steps)})
-        self.follow(SLIP)
+        self.follow(SLIP, *((JOINT_STATES,) if self._reference.follows_shaft else ()))
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
-        speeds, rates = self._reference.update(step, inputs[SLIP.name])
+        shaft_speed = inputs[JOINT_STATES.name][1] if self._reference.follows_shaft else math.nan
+        speeds, rates = self._reference.update(step, inputs[SLIP.name], shaft_speed)
         return (self._output.fill(stamp_ns, speeds, rates),)
 
 

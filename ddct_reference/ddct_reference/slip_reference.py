@@ -1,5 +1,6 @@
 """Slip-speed references with preview: one that follows the slip first, one stored over time."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
@@ -10,18 +11,34 @@ from ddct_reference.descent import Descent
 class SlipReference(ABC):
     """The slip speed that the controller shall follow, step by step, and what comes next."""
 
+    follows_shaft = False
+    """Whether `update` needs the shaft's speed."""
+
+    @abstractmethod
+    def update(
+        self, step: int, slip_speed: float, shaft_speed: float = math.nan
+    ) -> tuple[list[float], list[float]]:
+        """
+        Return the reference in rad/s and its rate in rad/s^2 at steps k, k + 1, ..., k + P.
+
+        `slip_speed` is w_d in rad/s at step k, `shaft_speed` w_p, which only a reference that
+        `follows_shaft` looks at. The rate is that of the coming period.
+        """
+
+
+class DescendingReference(SlipReference):
+    """A reference that runs to zero as a `Descent` does."""
+
     def __init__(self, descent: Descent, control_start_step: int, preview_steps: int) -> None:
         """Take how it runs to zero from `control_start_step` on, and the steps to look ahead."""
         self._descent = descent
         self._start_step = control_start_step
         self._preview_steps = preview_steps
 
-    def update(self, step: int, slip_speed: float) -> tuple[list[float], list[float]]:
-        """
-        Return the reference in rad/s and its rate in rad/s^2 at steps k, k + 1, ..., k + P.
-
-        `slip_speed` is w_d in rad/s at step k. The rate is that of the coming period.
-        """
+    def update(
+        self, step: int, slip_speed: float, shaft_speed: float = math.nan
+    ) -> tuple[list[float], list[float]]:
+        """Return the reference and its rate at steps k, k + 1, ..., k + P."""
         start_value = self._start_value(step, slip_speed)
         points = [
             self._point(step + ahead, start_value) for ahead in range(self._preview_steps + 1)
@@ -44,7 +61,7 @@ class SlipReference(ABC):
         """Return the value and its rate at a step before control starts."""
 
 
-class FollowingReference(SlipReference):
+class FollowingReference(DescendingReference):
     """
     CRF's reference generator, that of the detailed architecture (Section 1.4.1).
 
@@ -66,7 +83,7 @@ class FollowingReference(SlipReference):
         return start_value, 0.0
 
 
-class StoredReference(SlipReference):
+class StoredReference(DescendingReference):
     """
     A function of time: stored values until control starts, then the descent (Section 1.6).
 

@@ -56,3 +56,8 @@ def test_the_tanh_ends_with_three_percent_of_its_mean_slope():
 def test_the_polynomial_ends_without_any_slope():
     for time_s in (0.0, math.nextafter(0.8, 0.0)):
         assert DESCENTS['polynomial'].at(40.0, time_s)[1] == pytest.approx(0.0, abs=1e-10)
+
+
+def test_only_the_polynomial_lets_both_plates_accelerate_alike_when_the_clutch_locks():
+    at_lock = {name: abs(each.at(40.0, 0.8 - 1e-9)[1]) for name, each in DESCENTS.items()}
+    assert at_lock['polynomial'] < 1e-5 < 1.0 < min(at_lock['ramp'], at_lock['tanh'])

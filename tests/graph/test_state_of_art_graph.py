@@ -1,4 +1,4 @@
-"""Two cited controllers in the graph: one commands the engine, one reads the pedal."""
+"""The graph follows what the scenario says of engine speed and pedal as the headless run."""
 
 from pathlib import Path
 
@@ -19,6 +19,14 @@ from support.runs import expected, plan, record
             ),
         ),
         ('pedal_mpc', ('pedal_position=1.0',)),
+        (
+            'mpc_preview',
+            (
+                'reference.shape=engine_speed_target',
+                'engine_speed_reference.time_s=[0.0]',
+                'engine_speed_reference.speed_rad_s=[210.0]',
+            ),
+        ),
     ],
 )
 def test_the_graph_leaves_the_headless_trajectory(
@@ -28,4 +36,4 @@ def test_the_graph_leaves_the_headless_trajectory(
     trajectory = record(run, tmp_path / 'run').trajectory
     assert trajectory.sha256() == expected(run).sha256()
     moved = np.ptp(trajectory.engine_torque - trajectory.torque_demand) > 10.0
-    assert moved == (controller != 'pedal_mpc')
+    assert moved == (controller in ('decoupled_pid', 'torque_estimator'))

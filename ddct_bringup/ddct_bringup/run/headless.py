@@ -106,7 +106,7 @@ class ClosedLoop:
         engine_speed = now.joint_speed[0]
         # A controller that commands the engine is told the demand, any other what is delivered.
         told = demand if self._two_input else self._engine.torque(step, speed=engine_speed)
-        speeds, rates = self._reference.update(step, now.slip_speed)
+        speeds, rates = self._reference.update(step, now.slip_speed, now.joint_speed[1])
         measurement = Measurement(
             step=step,
             engine_speed=engine_speed,

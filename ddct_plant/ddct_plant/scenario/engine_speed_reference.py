@@ -1,4 +1,4 @@
-"""Engine speed that controllers with two inputs shall follow, as the scenario gives it."""
+"""Engine speed that controllers and the slip reference follow, as the scenario gives it."""
 
 from dataclasses import dataclass
 
@@ -21,8 +21,9 @@ class EngineSpeedReference(OptionGroup, prefix='engine_speed_reference.'):
     )
     speed_rad_s: tuple[float, ...] = option(
         (),
-        'engine speed w_m that `decoupled_pid` and `torque_estimator` follow, linear between its '
-        'points; without points they derive it from the demand and the slip reference',
+        'engine speed w_m that `decoupled_pid`, `torque_estimator` and the reference '
+        '`engine_speed_target` follow, linear between its points; without points the two derive '
+        'it from the demand and the slip reference',
         'rad/s',
         many=True,
         at_least=0.0,

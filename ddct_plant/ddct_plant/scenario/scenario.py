@@ -21,7 +21,9 @@ from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 LONGEST_S = 3600.0
 """Of every time in a scenario."""
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
-"""How a slip reference can run to zero once control starts."""
+"""How a slip reference can run to zero once control starts, as a function of time."""
+ENGINE_SPEED_TARGET = 'engine_speed_target'
+"""Shape of a slip reference that follows from a wanted engine speed."""
 
 
 @dataclass(frozen=True)
@@ -46,14 +48,21 @@ class ReferenceParameters(OptionGroup, prefix='reference.'):
     """Shape of the slip-speed reference once control starts (Section 1.4.1)."""
 
     slope_rad_s2: float = option(
-        90.0, 'slope of the CRF ramp', 'rad/s²', source=ASSUMED, above=0.0, at_most=1e4
+        90.0,
+        'slope of the CRF ramp; also how fast `engine_speed_target` leads the engine to the '
+        'wanted speed',
+        'rad/s²',
+        source=ASSUMED,
+        above=0.0,
+        at_most=1e4,
     )
     shape: str = option(
         'ramp',
         'how the reference runs to zero; the architecture `feedforward_tanh` makes the ramp a '
-        'tanh',
+        'tanh; `engine_speed_target`, in `detailed` only, is `engine_speed_reference` less the '
+        'measured shaft speed',
         source='Section 1.4.1',
-        choices=REFERENCE_SHAPES,
+        choices=(*REFERENCE_SHAPES, ENGINE_SPEED_TARGET),
     )
     reference_end_s: float = option(
         1.6,

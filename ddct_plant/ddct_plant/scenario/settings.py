@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
-from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Control architectures: those of Section 1.6, and CRF's detailed model (Section 1.4)."""
@@ -60,6 +60,9 @@ class RunSettings(OptionGroup):
     def _require_reference(self) -> None:
         start_s, end_s = self.scenario.control_start_s, self.scenario.reference.reference_end_s
         shape = self.scenario.reference.shape
+        if shape == ENGINE_SPEED_TARGET:
+            self._require_engine_speed_target()
+            return
         if shape not in ('ramp', self.reference_shape):
             raise ParameterError(
                 f'reference.shape is {shape!r}, but the architecture {self.architecture} has a '
@@ -69,4 +72,17 @@ class RunSettings(OptionGroup):
             raise ParameterError(
                 f'reference.reference_end_s is {end_s:g} s: it must be after control_start_s, '
                 f'{start_s:g} s'
+            )
+
+    def _require_engine_speed_target(self) -> None:
+        if not self.detailed:
+            raise ParameterError(
+                f'reference.shape is {ENGINE_SPEED_TARGET!r}, which starts from the measured slip '
+                f'speed, but the architecture {self.architecture} has a stored reference: choose '
+                'the architecture detailed'
+            )
+        if not self.scenario.engine_speed_reference.given:
+            raise ParameterError(
+                f'reference.shape is {ENGINE_SPEED_TARGET!r}: give the wanted engine speed, '
+                'engine_speed_reference.time_s and engine_speed_reference.speed_rad_s'
             )
