@@ -18,6 +18,7 @@ from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
 from ddct_controllers.registry import controller_label, controller_names
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.scenario.settings import RunSettings
@@ -104,6 +105,8 @@ def _report(entries: list[Entry], settings: RunSettings, options: argparse.Names
     if options.json:
         write_json(options.json, scores_document(entries))
     stream = sys.stderr if options.json == STDOUT else sys.stdout
+    for line in settings.scenario.adjusted:
+        print(printable(line), file=stream)
     print_comparison(entries, settings, options.overrides, stream)
 
 

@@ -92,6 +92,8 @@ def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> E
             complain(PROGRAM, repair)
     recording = read_bag(bag)
     name = bag_name(bag, folder)
+    for line in recording.custom_data.get('adjusted', '').splitlines():
+        complain(PROGRAM, f'{name}: {line}')
     if options.signals_csv is not None:
         _write_signals(options.signals_csv, name, signals_csv(recording))
     return score_recording(recording, name)

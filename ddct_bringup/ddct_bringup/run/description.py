@@ -34,6 +34,7 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
     return {
         **facts.to_custom_data(),
         'scenario_yaml': scenario_to_yaml(scenario),
+        'adjusted': '\n'.join(scenario.adjusted),
         'version': package_version(),
         'commit': source_commit(),
     }

@@ -9,8 +9,8 @@ from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.program.table import Table, print_table
-from ddct_plant.scenario.file import load_scenario, scenario_names
-from ddct_plant.scenario.options import add_option, add_scenario_options
+from ddct_plant.scenario.file import scenario_names
+from ddct_plant.scenario.options import add_option, add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 
@@ -47,7 +47,7 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
     overrides = list(options.overrides)
     if options.duration is not None:
         overrides.append(f'duration_s={options.duration!r}')
-    scenario = load_scenario(options.scenario, overrides)
+    scenario = scenario_of(options, overrides)
     known = {*controller_names(), *labels}
     unknown = sorted(scenario.controllers.keys() - known)
     if unknown:

@@ -8,8 +8,7 @@ from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.table import Table, print_table, text_or_dash
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 _DESCRIPTION = """\
@@ -56,9 +55,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the table, write the JSON, and return the exit code."""
-    settings = RunSettings(
-        load_scenario(options.scenario, options.overrides), wear_gain=options.wear_gain
-    )
+    settings = RunSettings(scenario_of(options, options.overrides), wear_gain=options.wear_gain)
     every = options.controller == 'all'
     names = controller_names() if every else [options.controller]
     evidence = frequency_evidence(names, settings)

@@ -6,8 +6,7 @@ from typing import Any
 
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 _DESCRIPTION = """\
@@ -42,7 +41,7 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write the C, print the names of its files, and return the exit code."""
     settings = RunSettings(
-        load_scenario(options.scenario, options.overrides), architecture=options.architecture
+        scenario_of(options, options.overrides), architecture=options.architecture
     )
     controller = make_controller(options.controller, settings)
     for path in export_controller(

@@ -20,6 +20,8 @@ _FAIL_SAFE = options_of(FailSafeSettings)
 def declare_settings(node: Node) -> RunSettings:
     """Declare the shared parameters on `node`; raise ParameterError for a value out of range."""
     scenario = load_scenario(declare(node, 'scenario', _SCENARIO))
+    for line in scenario.adjusted:
+        node.get_logger().info(line)
     settings = {name: declare(node, name, each) for name, each in options_of(RunSettings).items()}
     return RunSettings(scenario, **settings)
 

@@ -12,8 +12,10 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Group, OptionGroup, close_name
+from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.scenario import Scenario
 
 
@@ -29,6 +31,7 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     """
     Return the scenario that a name or a YAML file describes, changed by `KEY=VALUE` overrides.
 
+    Values that belong together are kept so, as `consistency` tells.
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
     cannot be read.
     """
@@ -40,10 +43,12 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     if not isinstance(content, dict):
         raise DdctError(f'scenario {name_or_file}: the file must be a mapping of keys to values')
     content.setdefault('name', default_name)
-    for override in overrides:
-        _apply(content, override)
+    start_before = content.get('control_start_s')
+    set_keys = [key for override in overrides for key in _apply(content, override)]
     try:
-        return scenario_from_mapping(content)
+        scenario = scenario_from_mapping(content)
+        origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
+        return consistent(scenario, origins, _number(start_before))
     except ParameterError as error:
         raise ParameterError(f'scenario {name_or_file}: {error}') from error
 
@@ -57,12 +62,17 @@ def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
 
 def scenario_to_yaml(scenario: Scenario) -> str:
     """Return the YAML text that `load_scenario` reads back to an equal scenario."""
-    return dump_yaml(_plain(dataclasses.asdict(scenario)))
+    return dump_yaml(_content(scenario))
 
 
 def scenario_digest(scenario: Scenario) -> str:
-    """Return a short hash over every value of the scenario, to tell two of one name apart."""
-    text = json.dumps(_plain(dataclasses.asdict(scenario)), sort_keys=True)
+    """
+    Return a short hash over every value of the scenario, to tell two of one name apart.
+
+    What a file may leave out counts only where it is given, so the hash of a scenario stays when
+    a key is added that it does not have.
+    """
+    text = json.dumps(_content(scenario), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -90,7 +100,8 @@ def _read(name_or_file: str) -> tuple[str, str]:
         raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
 
 
-def _apply(content: dict[str, Any], override: str) -> None:
+def _apply(content: dict[str, Any], override: str) -> list[str]:
+    """Change one value, or a group of them; return the keys of what was given."""
     key, equals, text = override.partition('=')
     if not equals or not key:
         raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
@@ -105,6 +116,23 @@ def _apply(content: dict[str, Any], override: str) -> None:
         if not isinstance(target, dict):
             raise ParameterError(f'--set {override}: {folder} holds a value, not keys')
     target[leaf] = value
+    return _leaves(value, key)
+
+
+def _leaves(content: Any, key: str = '') -> list[str]:
+    """Return the dotted keys of every value within `content`, which stands at `key`."""
+    if not isinstance(content, Mapping):
+        return [key]
+    prefix = f'{key}.' if key else ''
+    return [leaf for name, value in content.items() for leaf in _leaves(value, f'{prefix}{name}')]
+
+
+def _number(value: Any) -> float | None:
+    """Return a value that an override has replaced, None if it was none in the first place."""
+    try:
+        return time_of_step(steps_in('', value))
+    except (ParameterError, TypeError, ValueError, OverflowError):
+        return None
 
 
 def _build(group: type[Group], content: Any) -> Group:
@@ -141,6 +169,17 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
     ):
         raise ParameterError('controllers: give gains by controller name, {pi: {...}}')
     return {str(name): dict(gains) for name, gains in content.items()}
+
+
+def _content(group: OptionGroup) -> dict[str, Any]:
+    """Return what a file says of the group; what it may leave out is left out."""
+    content: dict[str, Any] = {}
+    for field in dataclasses.fields(group):
+        value = getattr(group, field.name)
+        if value is None or (field.metadata.get('left_out') and value == field.default):
+            continue
+        content[field.name] = _content(value) if isinstance(value, OptionGroup) else _plain(value)
+    return content
 
 
 def _plain(value: Any) -> Any:

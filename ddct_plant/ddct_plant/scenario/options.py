@@ -1,9 +1,13 @@
 """Options of programs that say which scenario is meant, what in it is changed, how it is run."""
 
 import argparse
+import sys
+from collections.abc import Sequence
 
 from ddct_plant.base.options import Option
-from ddct_plant.scenario.file import scenario_names
+from ddct_plant.base.printable import printable
+from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.scenario import Scenario
 
 _METAVARS = {float: 'X', int: 'N', str: 'NAME'}
 SET_EXAMPLE = 'load.slope_rad=0.05'
@@ -27,6 +31,14 @@ def add_scenario_options(
         dest='overrides',
         help=f'change a scenario key, such as {set_example}; may be repeated',
     )
+
+
+def scenario_of(options: argparse.Namespace, overrides: Sequence[str]) -> Scenario:
+    """Return the scenario of --scenario with overrides; say on standard error what they moved."""
+    scenario = load_scenario(options.scenario, overrides)
+    for line in scenario.adjusted:
+        print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
+    return scenario
 
 
 def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:

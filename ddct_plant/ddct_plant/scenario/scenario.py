@@ -6,7 +6,7 @@ from typing import Any
 
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option
+from ddct_plant.base.options import ASSUMED, REQUIRED, Option, OptionGroup, option
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
@@ -24,6 +24,17 @@ REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """How a slip reference can run to zero once control starts, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
 """Shape of a slip reference that follows from a wanted engine speed."""
+
+GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
+"""Of the C635, from the first gear on."""
+FINAL_DRIVE = 4.118
+"""2.269 times this is the identified total ratio, to 0.03 %."""
+_ADJUSTED = Option(
+    (),
+    'what programs have moved to agree with what was given, in words; they write it',
+    kind=str,
+    many=True,
+)
 
 
 @dataclass(frozen=True)
@@ -141,6 +152,15 @@ class Scenario(OptionGroup):
     engine_limits: EngineLimits | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""
+    gear: int | None = option(
+        None,
+        'gear of the C635, whose total ratio `driveline.total_ratio` then is; its final drive of '
+        'second gear is assumed for all',
+        kind=int,
+        at_least=1,
+        at_most=len(GEAR_RATIOS),
+    )
+    adjusted: tuple[str, ...] = field(default=(), metadata={'option': _ADJUSTED, 'left_out': True})
 
     def __post_init__(self) -> None:
         """Check name, options and score window; raise ParameterError that names a bad one."""

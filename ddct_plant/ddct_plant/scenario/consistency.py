@@ -1,0 +1,154 @@
+"""
+Values of a scenario that belong together, kept so: one that is given moves the other.
+
+    J_v = m_v r_w^2        driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
+    total ratio of a gear  gear, driveline.total_ratio
+    the score window       control_start_s, score_window_s
+
+Where both halves are given and contradict each other the scenario is refused. The defaults agree
+to rounding, so a scenario that gives none of these is left as it is.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import reduce
+from typing import Any
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.scenario import FINAL_DRIVE, GEAR_RATIOS, Scenario
+
+DEFAULT, FILE, SET = 0, 1, 2
+"""Where a value comes from; a higher one moves a lower one."""
+SAME, AGREE = 1e-9, 1e-3
+"""Relative: what needs no move, and what two given values may differ by, as by few digits."""
+Origins = Mapping[str, int]
+"""FILE or SET by dotted key; a key that is not there has its default."""
+
+
+INERTIA, MASS = 'driveline.vehicle_inertia', 'vehicle.mass_kg'
+RADIUS, RATIO = 'vehicle.wheel_radius_m', 'driveline.total_ratio'
+
+
+def consistent(scenario: Scenario, origins: Origins, start_before: float | None) -> Scenario:
+    """
+    Return the scenario with what follows from given values moved, and said in `adjusted`.
+
+    `start_before` is `control_start_s` in s before it was set. Raise ParameterError where given
+    values contradict each other, or where the score window would be empty.
+    """
+    scenario = _with_gear(_with_mass(scenario, origins), origins)
+    if start_before is not None and _origin(origins, 'control_start_s') > _origin(
+        origins, 'score_window_s'
+    ):
+        scenario = _move_window(scenario, start_before)
+    return _with_control_in(scenario)
+
+
+def _with_control_in(scenario: Scenario) -> Scenario:
+    """Refuse a score window that ends before control starts; say if it begins before."""
+    first, last = scenario.score_window_s
+    start = scenario.control_start_s
+    if last < start:
+        window = [
+            time_of_step(_steps(start)),
+            time_of_step(_steps(start) + _steps(last) - _steps(first)),
+        ]
+        raise ParameterError(
+            f'score_window_s ends at {last:g} s, before control_start_s, {start:g} s, so nothing '
+            f'of the control is scored: give a later window, such as {window}'
+        )
+    if first >= start:
+        return scenario
+    return _saying(
+        scenario,
+        f'score_window_s stays at {[first, last]} s although control starts later, at {start:g} s',
+    )
+
+
+def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
+    """Hold J_v = m_v r_w^2: move J_v or the mass, whichever is given less; never the radius."""
+    inertia, mass = _value(scenario, INERTIA), _value(scenario, MASS)
+    radius = _value(scenario, RADIUS)
+    square = radius * radius
+    if not 0.0 < square < math.inf:
+        raise ParameterError(f'{RADIUS} is {radius:g} m: no vehicle has that')
+    if math.isclose(inertia, mass * square, rel_tol=SAME):
+        return scenario
+    of_inertia, of_mass = _origin(origins, INERTIA), _origin(origins, MASS)
+    formula = f'J_v = m_v r_w^2, with {RADIUS} {radius:g}'
+    if of_inertia > of_mass:
+        return _moved(scenario, MASS, inertia / square, f'{formula} and {INERTIA} {inertia:g}')
+    if of_inertia < of_mass or _origin(origins, RADIUS) > of_inertia:
+        return _moved(scenario, INERTIA, mass * square, f'{formula} and {MASS} {mass:g}')
+    if of_inertia and not math.isclose(inertia, mass * square, rel_tol=AGREE):
+        raise ParameterError(
+            f'{MASS} is {mass:g} and {INERTIA} is {inertia:g}, but {formula}: give {INERTIA} '
+            f'{mass * square:g} or {MASS} {inertia / square:g}, or one of them only'
+        )
+    return scenario
+
+
+def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
+    """Hold gear and total ratio together: a gear moves the ratio, a ratio names the gear."""
+    gear, total = scenario.gear, scenario.driveline.total_ratio
+    ratios = [ratio * FINAL_DRIVE for ratio in GEAR_RATIOS]
+    fits = [g for g, r in enumerate(ratios, 1) if math.isclose(r, total, rel_tol=AGREE)]
+    if gear in fits or (gear is None and total == DrivelineParameters().total_ratio):
+        return scenario
+    of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO)
+    if gear is not None and of_gear > of_total:
+        return _moved(scenario, RATIO, ratios[gear - 1], f'gear {gear} of the C635')
+    if gear is not None and of_gear == of_total:
+        raise ParameterError(
+            f'gear is {gear} and {RATIO} is {total:g}, but that gear has {ratios[gear - 1]:g}: '
+            f'give {RATIO} {ratios[gear - 1]:g}, or one of them only'
+        )
+    name = fits[0] if fits else None
+    about = f'gear is now {name or "none"}, as {RATIO} is {total:g}'
+    return _saying(replace(scenario, gear=name), about)
+
+
+def _moved(scenario: Scenario, key: str, value: float, why: str) -> Scenario:
+    group, _, leaf = key.partition('.')
+    changed = replace(getattr(scenario, group), **{leaf: value})
+    about = f'{key} moved from {_value(scenario, key):g} to {value:g}: {why}'
+    return _saying(replace(scenario, **{group: changed}), about)
+
+
+def _move_window(scenario: Scenario, start_before: float) -> Scenario:
+    """Move the score window as far as control start has moved."""
+    shift = _steps(scenario.control_start_s) - _steps(start_before)
+    if not shift:
+        return scenario
+    before = scenario.score_window_s
+    first, last = (time_of_step(_steps(time) + shift) for time in before)
+    change = f'control_start_s from {start_before:g} to {scenario.control_start_s:g} s'
+    if last > scenario.duration_s:
+        raise ParameterError(
+            f'{change} would move score_window_s to {[first, last]}, beyond duration_s, '
+            f'{scenario.duration_s:g} s: give score_window_s too, or a longer duration_s'
+        )
+    about = f'score_window_s moved from {list(before)} to {[first, last]} s with {change}'
+    return _saying(replace(scenario, score_window_s=(first, last)), about)
+
+
+def _saying(scenario: Scenario, line: str) -> Scenario:
+    """Return the scenario with a line in `adjusted`, once."""
+    if line in scenario.adjusted:
+        return scenario
+    return replace(scenario, adjusted=(*scenario.adjusted, line))
+
+
+def _value(scenario: Scenario, key: str) -> Any:
+    return reduce(getattr, key.split('.'), scenario)
+
+
+def _origin(origins: Origins, key: str) -> int:
+    return origins.get(key, DEFAULT)
+
+
+def _steps(time_s: float) -> int:
+    return steps_in('control_start_s', time_s)

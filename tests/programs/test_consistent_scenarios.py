@@ -1,0 +1,64 @@
+"""Programs, bags and nodes say what a scenario moved so that its values agree."""
+
+from pathlib import Path
+
+import pytest
+from support.processes import Programs
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.programs import bringup, compare, score
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+
+MOVED = 'driveline.vehicle_inertia moved from 154.691 to 185.629'
+HEAVY = ['--set', 'vehicle.mass_kg=1800', '--duration', '1.8', '--headless']
+
+
+def test_bringup_says_it_the_bag_keeps_it_and_score_repeats_it(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    out = tmp_path / 'runs'
+    assert bringup.main([*HEAVY, '--out', str(out)]) == 0
+    assert f'scenario thesis: {MOVED}' in capfd.readouterr().err
+    custom = read_bag(out / 'pi').custom_data
+    assert custom['adjusted'].startswith(MOVED)
+    assert 'vehicle_inertia: 185.62926' in custom['scenario_yaml']
+    assert score.main([str(out)]) == 0
+    assert f'score: pi: {MOVED}' in capfd.readouterr().err
+
+
+def test_compare_has_it_above_its_table(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert compare.main([*HEAVY, '--controllers', 'pi', '--out', str(tmp_path / 'runs')]) == 0
+    table = capfd.readouterr().out
+    assert table.startswith(MOVED)
+    assert 'thesis row' not in table
+
+
+def test_a_contradiction_is_one_line_and_leaves_nothing(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    arguments = ['--set', 'driveline.vehicle_inertia=154.69', '--out', str(tmp_path / 'runs')]
+    assert bringup.main([*HEAVY, *arguments]) == 1
+    (line,) = capfd.readouterr().err.splitlines()
+    assert 'give driveline.vehicle_inertia 185.629' in line
+    assert not (tmp_path / 'runs').exists()
+
+
+WHOLE = scenario_to_yaml(load_scenario('thesis', ['vehicle.mass_kg=1800']))
+"""As `bringup` writes it for its nodes."""
+HALF = """\
+duration_s: 1.0
+control_start_s: 0.6
+score_window_s: [0.6, 1.0]
+engine: {time_s: [0.0], torque_n_m: [100.0]}
+vehicle: {mass_kg: 1800.0}
+"""
+
+
+@pytest.mark.parametrize('text', [WHOLE, HALF], ids=['whole', 'half'])
+def test_a_node_logs_it(programs: Programs, tmp_path: Path, text: str) -> None:
+    path = tmp_path / 'heavy.yaml'
+    path.write_text(text, encoding='utf-8')
+    arguments = ('--help', '--ros-args', '-p', f'scenario:={path}')
+    node = programs.start_module('ddct_plant.nodes.load_node', *arguments)
+    assert node.wait() == 0
+    assert MOVED in node.errors()
