@@ -11,7 +11,7 @@ from pathlib import Path
 from ddct_controllers.mpc.costs import BASIS, thesis_settings
 from ddct_controllers.mpc.options import program_options
 from ddct_controllers.registry import controller_spec
-from ddct_plant.base.options import OPTION_HEADERS, OptionGroup, Options, option_rows, options_of
+from ddct_plant.base.options import OPTION_HEADERS, Options, group_of, option_rows, options_of
 from ddct_plant.program.page_tables import fill_tables, marked_tables
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.scenario import Scenario
@@ -29,8 +29,8 @@ def filled(page: str) -> str:
 def _scenario() -> Table:
     rows = []
     for field in dataclasses.fields(Scenario):
-        if isinstance(field.type, type) and issubclass(field.type, OptionGroup):
-            rows += option_rows(options_of(field.type), field.type.prefix)
+        if group := group_of(field):
+            rows += option_rows(options_of(group), group.prefix)
         elif 'option' in field.metadata:
             rows += option_rows({field.name: field.metadata['option']})
     return Table('', OPTION_HEADERS, [_code(row) for row in rows])

@@ -59,31 +59,6 @@ def require_rising(name: str, times: Sequence[float]) -> None:
             raise ParameterError(f'{name} goes from {earlier:g} to {later:g}: it must rise')
 
 
-def require_curve(
-    x_name: str,
-    xs: Sequence[float],
-    y_name: str,
-    ys: Sequence[float],
-    *,
-    y_at_least: float | None = None,
-    y_at_most: float | None = None,
-) -> None:
-    """
-    Check the points of a piecewise linear curve, which may have none; raise ParameterError.
-
-    Each x has a y within its bounds, and the x rise strictly.
-    """
-    for index, x in enumerate(xs):
-        require_number(f'{x_name}[{index}]', x)
-    require_rising(x_name, xs)
-    for index, y in enumerate(ys):
-        require_number(f'{y_name}[{index}]', y, at_least=y_at_least, at_most=y_at_most)
-    if len(xs) != len(ys):
-        raise ParameterError(
-            f'{y_name} has {len(ys)} values for the {len(xs)} of {x_name}: give one for each'
-        )
-
-
 def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
     """Raise ParameterError that names the choices when `value` is none of them."""
     if value not in choices:

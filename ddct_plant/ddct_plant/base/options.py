@@ -7,6 +7,7 @@ An `Option` describes one value. Frozen dataclasses carry it in their fields (`o
 
 import dataclasses
 import difflib
+import typing
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
@@ -133,6 +134,14 @@ def option(default: Any, meaning: str, unit: str = '', **description: Any) -> An
     return option_field(Option(default, meaning, unit, **description))
 
 
+def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
+    """Return the group of options that a field of a dataclass holds, always or as an option."""
+    for kind in (field.type, *typing.get_args(field.type)):
+        if isinstance(kind, type) and issubclass(kind, OptionGroup):
+            return kind
+    return None
+
+
 def option_field(described: Option) -> Any:
     """Return the field of a dataclass for an option."""
     return dataclasses.field(default=described.default, metadata={'option': described})
@@ -161,6 +170,15 @@ class OptionGroup:
             value = getattr(self, name)
             if value is not None or described.default is not None:
                 described.checked(f'{self.prefix}{name}', value)
+
+    def require_pairs(self, xs_name: str, ys_name: str) -> None:
+        """Raise ParameterError unless the list called `ys_name` has a value for each of the xs."""
+        xs, ys = getattr(self, xs_name), getattr(self, ys_name)
+        if len(xs) != len(ys):
+            raise ParameterError(
+                f'{self.prefix}{ys_name} has {len(ys)} values for the {len(xs)} of '
+                f'{self.prefix}{xs_name}: give one for each'
+            )
 
     @property
     def options(self) -> Options:

@@ -36,8 +36,16 @@ _FLOAT = re.compile(
 
 
 def parse_yaml(text: str) -> Any:
+    """Return the value of `parse_yaml_with_lines`."""
+    return parse_yaml_with_lines(text)[0]
+
+
+def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
     """
-    Return the numbers, texts, booleans, nulls, lists and dicts that one YAML document holds.
+    Return what one YAML document holds, and where.
+
+    The value is made of numbers, texts, booleans, nulls, lists and dicts. The lines are those of
+    the keys and of the items of lists, by their path: `engine.time_s`, `engine.time_s[2]`.
 
     Raise ParameterError that names the line for invalid YAML, a key given twice, aliases and tags,
     and beyond the limits above.
@@ -46,7 +54,8 @@ def parse_yaml(text: str) -> Any:
         raise ParameterError(f'not valid YAML: longer than {MOST_CHARACTERS} characters')
     try:
         text.encode('utf-8')
-        return _Document(yaml.parse(text, Loader=_PARSER)).value()
+        document = _Document(yaml.parse(text, Loader=_PARSER))
+        return document.value(), document.lines
     except UnicodeEncodeError as error:
         raise ParameterError('not valid YAML: it is not UTF-8 text') from error
     except yaml.MarkedYAMLError as error:
@@ -81,6 +90,8 @@ class _Document:
     def __init__(self, events: Iterator[yaml.Event]) -> None:
         self._events = events
         self._values = 0
+        self.lines: dict[str, int] = {}
+        """Of what was read, from 1, by path."""
 
     def value(self) -> Any:
         """Return the value of the only document; None for empty text."""
@@ -88,14 +99,14 @@ class _Document:
         event = next(self._events)
         if isinstance(event, yaml.StreamEndEvent):
             return None
-        value = self._value(next(self._events), 0)
+        value = self._value(next(self._events), 0, '')
         next(self._events)
         after = next(self._events)
         if not isinstance(after, yaml.StreamEndEvent):
             raise _refused(after, 'a second document begins: give one')
         return value
 
-    def _value(self, event: yaml.Event, depth: int) -> Any:
+    def _value(self, event: yaml.Event, depth: int, path: str) -> Any:
         self._values += 1
         if self._values > MOST_VALUES:
             raise _refused(event, f'more than {MOST_VALUES} values')
@@ -108,21 +119,30 @@ class _Document:
         if depth == MOST_DEPTH:
             raise _refused(event, f'nested more than {MOST_DEPTH} deep')
         if isinstance(event, yaml.SequenceStartEvent):
-            return [self._value(item, depth + 1) for item in self._until(yaml.SequenceEndEvent)]
-        return self._mapping(depth)
+            return self._sequence(depth, path)
+        return self._mapping(depth, path)
 
-    def _mapping(self, depth: int) -> dict[Any, Any]:
+    def _sequence(self, depth: int, path: str) -> list[Any]:
+        content: list[Any] = []
+        for event in self._until(yaml.SequenceEndEvent):
+            item_path = f'{path}[{len(content)}]'
+            self.lines[item_path] = _line(event)
+            content.append(self._value(event, depth + 1, item_path))
+        return content
+
+    def _mapping(self, depth: int, path: str) -> dict[Any, Any]:
         content: dict[Any, Any] = {}
         lines: dict[Any, int] = {}
         for event in self._until(yaml.MappingEndEvent):
             if not isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent)):
                 raise _refused(event, 'a list or mapping is used as a key: give text')
-            key = self._value(event, depth)
+            key = self._value(event, depth, '')
             if key in lines:
                 first = lines[key]
                 raise _refused(event, f'the key {key!r} is given twice, first in line {first}')
-            lines[key] = event.start_mark.line + 1
-            content[key] = self._value(next(self._events), depth + 1)
+            key_path = f'{path}.{key}' if path else str(key)
+            lines[key] = self.lines[key_path] = _line(event)
+            content[key] = self._value(next(self._events), depth + 1, key_path)
         return content
 
     def _until(self, end: type[yaml.Event]) -> Iterator[yaml.Event]:
@@ -149,4 +169,9 @@ def _scalar(event: yaml.ScalarEvent) -> Any:
 
 
 def _refused(event: yaml.Event, what: str) -> ParameterError:
-    return ParameterError(f'not valid YAML: line {event.start_mark.line + 1}: {what}')
+    return ParameterError(f'not valid YAML: line {_line(event)}: {what}')
+
+
+def _line(event: yaml.Event) -> int:
+    line: int = event.start_mark.line
+    return line + 1

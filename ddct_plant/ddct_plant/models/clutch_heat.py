@@ -1,68 +1,63 @@
 """Heat of the clutch: three lumped masses that the friction work of each period warms."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
 
+def _capacity(default: float, meaning: str, source: str = ASSUMED) -> Any:
+    return option(default, meaning, 'J/K', source=source, above=0.0, at_most=1e7)
+
+
+def _conductance(default: float, meaning: str) -> Any:
+    return option(default, meaning, 'W/K', source=ASSUMED, at_least=0.0, at_most=1e6)
+
+
+def _temperature(meaning: str) -> Any:
+    return option(20.0, meaning, '°C', source=ASSUMED, at_least=-60.0, at_most=1500.0)
+
+
 @dataclass(frozen=True)
-class HeatParameters:
+class HeatParameters(OptionGroup, prefix='heat.'):
     """
-    Masses, paths and start temperatures of the clutch, section `heat` of a scenario.
+    Masses, paths and start temperatures of the clutch.
 
     No figure for the C635 is public. Plate and facing together are chosen so that a hard launch
     of 40 kJ warms them by 30 to 40 K, as published simulations have it.
+    The share of the facings is e_f / (e_f + e_p) of the thermal effusivities
+    sqrt(conductivity x density x specific heat): 716 of a new lining (0.652 W/(m K) and
+    8.3e-7 m^2/s, Appl. Sci. 2019, 9, 4287, table A2), 13400 J/(m^2 K s^0.5) of cast iron
+    (50 W/(m K), 7200 kg/m^3, 500 J/(kg K), assumed).
     """
 
-    plate_j_k: float = 1000.0
-    """Heat capacity of the pressure plate and its counterpart in J/K; assumed."""
-    facing_j_k: float = 163.0
-    """
-    Heat capacity of the facings in J/K: 542 J/(kg K) times 0.3 kg.
-
-    The specific heat is that of a new lining (Appl. Sci. 2019, 9, 4287, table A2), the mass
-    assumed.
-    """
-    housing_j_k: float = 10000.0
-    """Heat capacity of the bell housing in J/K; assumed."""
-    facing_share: float = 0.05
-    """
-    Share of the friction work that enters the facings, the rest the plate.
-
-    e_f / (e_f + e_p) of the thermal effusivities sqrt(conductivity x density x specific heat):
-    716 of a new lining (0.652 W/(m K) and 8.3e-7 m^2/s, table A2 as above), 13400 J/(m^2 K s^0.5)
-    of cast iron (50 W/(m K), 7200 kg/m^3, 500 J/(kg K), assumed).
-    """
-    facing_to_plate_w_k: float = 200.0
-    """Conductance between facings and plate in W/K; assumed."""
-    plate_to_housing_w_k: float = 8.0
-    """Conductance between plate and housing in W/K, air and shaft; assumed."""
-    housing_to_ambient_w_k: float = 20.0
-    """Conductance between housing and ambient in W/K; assumed."""
-    ambient_c: float = 20.0
-    """Temperature around the housing in degrees Celsius; assumed."""
-    plate_c: float = 20.0
-    """Plate at t = 0 in degrees Celsius; assumed."""
-    facing_c: float = 20.0
-    """Facings at t = 0 in degrees Celsius; assumed."""
-    housing_c: float = 20.0
-    """Housing at t = 0 in degrees Celsius; assumed."""
-
-    def __post_init__(self) -> None:
-        """Check every value; raise ParameterError that names a bad one."""
-        for field in fields(self):
-            name, value = f'heat.{field.name}', getattr(self, field.name)
-            if field.name.endswith('_j_k'):
-                require_number(name, value, above=0.0, at_most=1e7)
-            elif field.name.endswith('_w_k'):
-                require_number(name, value, at_least=0.0, at_most=1e6)
-            elif field.name.endswith('_c'):
-                require_number(name, value, at_least=-60.0, at_most=1500.0)
-        require_number('heat.facing_share', self.facing_share, at_least=0.0, at_most=1.0)
+    plate_j_k: float = _capacity(1000.0, 'heat capacity of pressure plate and counterpart')
+    facing_j_k: float = _capacity(
+        163.0,
+        'heat capacity of the facings: 542 J/(kg K) times 0.3 kg',
+        'Appl. Sci. 2019, 9, 4287, table A2; 0.3 kg assumed',
+    )
+    housing_j_k: float = _capacity(10000.0, 'heat capacity of the bell housing')
+    facing_share: float = option(
+        0.05,
+        'share of the friction work that enters the facings, the rest the plate',
+        source='thermal effusivities: table A2 as above, cast iron assumed',
+        at_least=0.0,
+        at_most=1.0,
+    )
+    facing_to_plate_w_k: float = _conductance(200.0, 'conductance between facings and plate')
+    plate_to_housing_w_k: float = _conductance(
+        8.0, 'conductance between plate and housing, by air and shaft'
+    )
+    housing_to_ambient_w_k: float = _conductance(20.0, 'conductance between housing and ambient')
+    ambient_c: float = _temperature('temperature around the housing')
+    plate_c: float = _temperature('plate at t = 0')
+    facing_c: float = _temperature('facings at t = 0')
+    housing_c: float = _temperature('housing at t = 0')
 
 
 class ClutchHeat:

@@ -1,11 +1,12 @@
 """An engine with limits: torque over speed, idle control, rev limiter, stall and over-speed."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ddct_plant.base.checks import require_curve, require_number
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S
 
 STALLED, OVER_REVVED = 'stalled', 'over_revved'
@@ -13,60 +14,63 @@ STALLED, OVER_REVVED = 'stalled', 'over_revved'
 _RISING_SPEEDS = ('stall_rad_s', 'idle_rad_s', 'resume_rad_s', 'cut_rad_s', 'over_rev_rad_s')
 
 
+def _idle(default: float, meaning: str, unit: str) -> Any:
+    return option(default, meaning, unit, source=ASSUMED, at_least=0.0, at_most=1e4)
+
+
+def _speed(default: float, meaning: str) -> Any:
+    return option(default, meaning, 'rad/s', source=ASSUMED, above=0.0, at_most=2e3)
+
+
+def _torques(default: tuple[float, ...], meaning: str, source: str) -> Any:
+    return option(default, meaning, 'N m', source=source, many=True, at_least=0.0, at_most=1e4)
+
+
 @dataclass(frozen=True)
-class EngineLimits:
+class EngineLimits(OptionGroup, prefix='engine_limits.'):
     """
-    Section `engine_limits` of a scenario: a 1.4-litre turbocharged petrol engine by default.
+    What an engine can do: a 1.4-litre turbocharged petrol engine by default.
 
     250 N m at 2500 rpm and 170 hp (125 kW, so 217 N m) at 5500 rpm are those of the Fiat 1.4
     MultiAir in the Alfa Romeo MiTo with the C635 gearbox (types-cars.com, 2010; 250 N m also
-    easier.com, 2010). The rest of the curve is assumed.
+    easier.com, 2010). The rest of the curve is assumed. Friction is (0.97 + 0.15 n + 0.05 n^2) bar
+    with n in 1000 rpm, the mean effective pressure of friction and gas exchange after Heywood
+    (Internal Combustion Engine Fundamentals, 1988, eq. 13.6), times 1.368 l / 4 pi.
     """
 
-    speed_rad_s: tuple[float, ...] = (0.0, 104.72, 157.08, 209.44, 261.8, 575.96, 680.68, 837.76)
-    """Engine speeds in rad/s of both curves, rising: 0, 1000, 1500, 2000, 2500, ..., 8000 rpm."""
-    full_load_n_m: tuple[float, ...] = (0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 0.0)
-    """Highest torque at the crankshaft; 250 and 217 N m as above, the others assumed."""
-    friction_n_m: tuple[float, ...] = (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5)
-    """
-    Torque that the engine takes with the fuel cut.
-
-    (0.97 + 0.15 n + 0.05 n^2) bar with n in 1000 rpm, the mean effective pressure of friction and
-    gas exchange after Heywood (Internal Combustion Engine Fundamentals, 1988, eq. 13.6), times
-    1.368 l / 4 pi.
-    """
-    idle_rad_s: float = 94.25
-    """Speed that idle control keeps, 900 rpm; assumed."""
-    idle_gain_n_m_s: float = 3.0
-    """Its proportional gain in N m s/rad; assumed."""
-    idle_integral_n_m: float = 6.0
-    """Its integral gain in N m/rad; assumed."""
-    idle_most_n_m: float = 60.0
-    """Highest torque that idle control asks for; assumed."""
-    stall_rad_s: float = 52.36
-    """Speed at and below which the engine stops, 500 rpm; assumed."""
-    cut_rad_s: float = 680.68
-    """Speed from which the rev limiter cuts the fuel, 6500 rpm; assumed."""
-    resume_rad_s: float = 670.21
-    """Speed below which fuel comes back, 6400 rpm; assumed."""
-    over_rev_rad_s: float = 785.4
-    """Speed from which the run ends, 7500 rpm; assumed."""
+    speed_rad_s: tuple[float, ...] = option(
+        (0.0, 104.72, 157.08, 209.44, 261.8, 575.96, 680.68, 837.76),
+        'engine speeds of both curves, from the stall speed or below to the over-rev speed or '
+        'above: 0, 1000, 1500, 2000, 2500, 5500, 6500, 8000 rpm',
+        'rad/s',
+        source=ASSUMED,
+        many=True,
+        rising=True,
+    )
+    full_load_n_m: tuple[float, ...] = _torques(
+        (0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 0.0),
+        'highest torque at the crankshaft',
+        '250 and 217 N m: Fiat 1.4 MultiAir 170 hp (types-cars.com, 2010); the others assumed',
+    )
+    friction_n_m: tuple[float, ...] = _torques(
+        (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5),
+        'torque that the engine takes with the fuel cut',
+        'Heywood 1988, eq. 13.6, times 1.368 l / 4 pi',
+    )
+    idle_rad_s: float = _speed(94.25, 'speed that idle control keeps, 900 rpm')
+    idle_gain_n_m_s: float = _idle(3.0, 'proportional gain of idle control', 'N m s/rad')
+    idle_integral_n_m: float = _idle(6.0, 'integral gain of idle control', 'N m/rad')
+    idle_most_n_m: float = _idle(60.0, 'highest torque that idle control asks for', 'N m')
+    stall_rad_s: float = _speed(52.36, 'speed at and below which the engine stops, 500 rpm')
+    cut_rad_s: float = _speed(680.68, 'speed from which the rev limiter cuts the fuel, 6500 rpm')
+    resume_rad_s: float = _speed(670.21, 'speed below which fuel comes back, 6400 rpm')
+    over_rev_rad_s: float = _speed(785.4, 'speed from which the run ends, 7500 rpm')
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        for curve in ('full_load_n_m', 'friction_n_m'):
-            require_curve(
-                'engine_limits.speed_rad_s',
-                self.speed_rad_s,
-                f'engine_limits.{curve}',
-                getattr(self, curve),
-                y_at_least=0.0,
-                y_at_most=1e4,
-            )
-        for name in ('idle_gain_n_m_s', 'idle_integral_n_m', 'idle_most_n_m'):
-            require_number(f'engine_limits.{name}', getattr(self, name), at_least=0.0, at_most=1e4)
-        for name in _RISING_SPEEDS:
-            require_number(f'engine_limits.{name}', getattr(self, name), above=0.0, at_most=2e3)
+        super().__post_init__()
+        self.require_pairs('speed_rad_s', 'full_load_n_m')
+        self.require_pairs('speed_rad_s', 'friction_n_m')
         self._require_order()
         self._require_cover()
 

@@ -5,65 +5,82 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.base.checks import require_curve, require_number
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.options import ASSUMED, OptionGroup, option
 
 AMBIENT_C = 20.0
 """Temperature at which the actuator's map from position to torque holds."""
 
 
 @dataclass(frozen=True)
-class FrictionParameters:
-    """Friction between the plates, section `friction` of a scenario; none is measured here."""
+class FrictionParameters(OptionGroup, prefix='friction.'):
+    """
+    Friction between the plates; no figure for this facing is public.
 
-    static_over_kinetic: float = 1.0
-    """Static over kinetic capacity, at least 1; assumed: no figure for this facing is public."""
-    temperature_c: tuple[float, ...] = (250.0, 300.0, 400.0)
+    It declines sharply above 250 to 300 degrees, where the phenol resin decomposes ("Simulation of
+    engagement control in automotive dry-clutch and temperature field analysis", abstract).
+    Published work disagrees on the slip speed: little or no dependence (Myklebust and Eriksson
+    2012), or friction that falls with it (Gkinis et al.).
     """
-    Facing temperatures in degrees Celsius of `temperature_share`, rising.
 
-    Friction declines sharply above 250 to 300 degrees, where the phenol resin decomposes
-    ("Simulation of engagement control in automotive dry-clutch and temperature field analysis",
-    abstract); 400 is assumed.
-    """
-    temperature_share: tuple[float, ...] = (1.0, 0.8, 0.4)
-    """Friction there over that of a cold facing, linear between, constant outside; assumed."""
-    slip_rad_s: tuple[float, ...] = ()
-    """
-    Sizes of the slip speed in rad/s of `slip_share`, rising; none: friction does not depend on it.
-
-    Published work disagrees: little or no dependence (Myklebust and Eriksson 2012), or friction
-    that falls with slip speed (Gkinis et al.).
-    """
-    slip_share: tuple[float, ...] = ()
-    """Friction there over that at rest, linear between, constant outside; assumed where given."""
-    kiss_torque_n_m: float = 0.0
-    """Actuator torque in N m below which the cold plates do not touch; 0 assumed: a true map."""
-    kiss_drift_n_m_k: float = 0.0
-    """
-    Fall of the kiss point in N m of actuator torque per K that the facing is above 20 degrees.
-
-    Positive: the facings expand, so a hot clutch carries more at one actuator position (up to
-    900 N m in a truck clutch, Myklebust and Eriksson 2012). 0 assumed.
-    """
+    static_over_kinetic: float = option(
+        1.0, 'static over kinetic capacity', source=ASSUMED, at_least=1.0, at_most=3.0
+    )
+    temperature_c: tuple[float, ...] = option(
+        (250.0, 300.0, 400.0),
+        'facing temperatures of `temperature_share`',
+        '°C',
+        source='decline from 250 to 300 °C: resin decomposes; 400 assumed',
+        many=True,
+        rising=True,
+    )
+    temperature_share: tuple[float, ...] = option(
+        (1.0, 0.8, 0.4),
+        'friction there over that of a cold facing, linear between, constant outside',
+        source=ASSUMED,
+        many=True,
+        at_least=0.0,
+        at_most=3.0,
+    )
+    slip_rad_s: tuple[float, ...] = option(
+        (),
+        'sizes of the slip speed of `slip_share`; none: friction does not depend on it',
+        'rad/s',
+        source='Myklebust and Eriksson 2012',
+        many=True,
+        rising=True,
+    )
+    slip_share: tuple[float, ...] = option(
+        (),
+        'friction there over that at rest, linear between, constant outside',
+        many=True,
+        at_least=0.0,
+        at_most=3.0,
+    )
+    kiss_torque_n_m: float = option(
+        0.0,
+        'actuator torque below which the cold plates do not touch; 0: a true map',
+        'N m',
+        source=ASSUMED,
+        at_least=0.0,
+        at_most=1e3,
+    )
+    kiss_drift_n_m_k: float = option(
+        0.0,
+        'fall of the kiss point per K that the facing is above 20 °C; positive: the facings '
+        'expand, so a hot clutch carries more (a truck clutch up to 900 N m, Myklebust and '
+        'Eriksson 2012)',
+        'N m/K',
+        source=ASSUMED,
+        at_least=-10.0,
+        at_most=10.0,
+    )
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
-        require_number(
-            'friction.static_over_kinetic', self.static_over_kinetic, at_least=1.0, at_most=3.0
-        )
-        for x, y in (('temperature_c', 'temperature_share'), ('slip_rad_s', 'slip_share')):
-            require_curve(
-                f'friction.{x}',
-                getattr(self, x),
-                f'friction.{y}',
-                getattr(self, y),
-                y_at_least=0.0,
-                y_at_most=3.0,
-            )
-        require_number('friction.kiss_torque_n_m', self.kiss_torque_n_m, at_least=0.0, at_most=1e3)
-        require_number(
-            'friction.kiss_drift_n_m_k', self.kiss_drift_n_m_k, at_least=-10.0, at_most=10.0
-        )
+        super().__post_init__()
+        self.require_pairs('temperature_c', 'temperature_share')
+        self.require_pairs('slip_rad_s', 'slip_share')
 
 
 @dataclass(frozen=True, slots=True)

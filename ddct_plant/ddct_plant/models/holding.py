@@ -5,30 +5,35 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddct_plant.base.checks import require_curve
+from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.models.load import LoadParameters, RoadLoad
 from ddct_plant.models.parameters import VehicleParameters
 
 
 @dataclass(frozen=True)
-class BrakeProfile:
-    """The brake over scenario time, section `brake` of a scenario: linear between its points."""
+class BrakeProfile(OptionGroup, prefix='brake.'):
+    """The brake over scenario time, linear between its points; the ends hold outside."""
 
-    time_s: tuple[float, ...] = ()
-    """Scenario times in s, strictly increasing; none: the brake is never applied."""
-    torque_n_m: tuple[float, ...] = ()
-    """Torque in N m that the brakes can hold, at the wheels, from 0 to 100 kN m."""
+    time_s: tuple[float, ...] = option(
+        (),
+        'scenario times of the points; none: the brake is never applied',
+        's',
+        many=True,
+        rising=True,
+    )
+    torque_n_m: tuple[float, ...] = option(
+        (),
+        'torque that the brakes can hold then, at the wheels, linear between the points',
+        'N m',
+        many=True,
+        at_least=0.0,
+        at_most=1e5,
+    )
 
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
-        require_curve(
-            'brake.time_s',
-            self.time_s,
-            'brake.torque_n_m',
-            self.torque_n_m,
-            y_at_least=0.0,
-            y_at_most=1e5,
-        )
+        super().__post_init__()
+        self.require_pairs('time_s', 'torque_n_m')
 
     def torque(self, time_s: float) -> float:
         """Return the capacity in N m at a scenario time; the ends hold before and after."""

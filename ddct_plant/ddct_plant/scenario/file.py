@@ -4,19 +4,22 @@ import dataclasses
 import hashlib
 import importlib.resources
 import json
-import typing
+import re
 from collections.abc import Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Group, OptionGroup, close_name
+from ddct_plant.base.options import Group, OptionGroup, close_name, group_of
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.scenario import Scenario
+
+_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
+_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
 def scenario_names() -> list[str]:
@@ -37,7 +40,7 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     """
     text, default_name = _read(name_or_file)
     try:
-        content = parse_yaml(text)
+        content, lines = parse_yaml_with_lines(text)
     except ParameterError as error:
         raise ParameterError(f'scenario {name_or_file}: {error}') from error
     if not isinstance(content, dict):
@@ -50,7 +53,9 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
         origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
         return consistent(scenario, origins, _number(start_before))
     except ParameterError as error:
-        raise ParameterError(f'scenario {name_or_file}: {error}') from error
+        line = _line_of(str(error), _in_file(lines, set_keys))
+        where = f'scenario {name_or_file}: line {line}' if line else f'scenario {name_or_file}'
+        raise ParameterError(f'{where}: {error}') from error
 
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
@@ -135,6 +140,28 @@ def _number(value: Any) -> float | None:
         return None
 
 
+def _in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int]:
+    """Return the lines with 0 for what `--set` gave, which is in no line of the file."""
+    given = tuple(set_keys)
+    within = tuple(f'{key}{mark}' for key in given for mark in '.[')
+    kept = {key: line for key, line in lines.items() if not key.startswith(within)}
+    return kept | dict.fromkeys(given, 0)
+
+
+def _line_of(complaint: str, lines: Mapping[str, int]) -> int:
+    """
+    Return the line of the first key that a complaint names, or else of what the key is in.
+
+    Complaints name first what must be changed. 0 where no line holds it.
+    """
+    for word in _PATH.findall(complaint):
+        while word and word not in lines:
+            word = _PARENT.sub('', word) if _PARENT.search(word) else ''
+        if word:
+            return lines[word]
+    return 0
+
+
 def _build(group: type[Group], content: Any) -> Group:
     prefix = group.prefix
     if not isinstance(content, Mapping):
@@ -154,11 +181,9 @@ def _build(group: type[Group], content: Any) -> Group:
 
 def _value(field: dataclasses.Field[Any], value: Any) -> Any:
     """Return what the dataclass takes for what YAML has: a group of options, or a tuple."""
-    if isinstance(field.type, type) and issubclass(field.type, OptionGroup):
-        return _build(field.type, value)
-    typed = next(iter(typing.get_args(field.type)), field.type)
-    if isinstance(typed, type) and dataclasses.is_dataclass(typed):
-        return typed(**{k: tuple(v) if isinstance(v, list) else v for k, v in value.items()})
+    group = group_of(field)
+    if group and (value is not None or field.default is not None):
+        return _build(group, value)
     described = field.metadata.get('option')
     return tuple(value) if described and described.many and isinstance(value, list) else value
 

@@ -9,6 +9,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import ASSUMED, REQUIRED, Option, OptionGroup, option
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.clutch_heat import HeatParameters
+from ddct_plant.models.driveline import LOCKED, PHASES, SLIPPING
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.engine_limits import EngineLimits
 from ddct_plant.models.friction_clutch import FrictionParameters
@@ -24,7 +25,6 @@ REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """How a slip reference can run to zero once control starts, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
 """Shape of a slip reference that follows from a wanted engine speed."""
-
 GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
 """Of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
@@ -37,9 +37,14 @@ _ADJUSTED = Option(
 )
 
 
+def _section(default: OptionGroup) -> Any:
+    """Return the field of a section that files and digests leave out while it is the default."""
+    return field(default=default, metadata={'left_out': True})
+
+
 @dataclass(frozen=True)
 class InitialSpeeds(OptionGroup, prefix='initial.'):
-    """Speeds of the two clutch plates at t = 0; the wheel turns with the primary shaft."""
+    """The two clutch plates at t = 0; the wheel turns with the primary shaft."""
 
     engine_speed_rad_s: float = option(
         160.0, 'w_m(0)', 'rad/s', source=ASSUMED, at_least=0.0, at_most=1000.0
@@ -52,6 +57,29 @@ class InitialSpeeds(OptionGroup, prefix='initial.'):
         at_least=0.0,
         at_most=1000.0,
     )
+    clutch_phase: str | None = option(
+        None,
+        'phase of the clutch at t = 0, which must fit the speeds; `open`: nothing was asked of it '
+        'before',
+        otherwise='follows from the speeds',
+        kind=str,
+        choices=PHASES,
+    )
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        super().__post_init__()
+        slip = self.engine_speed_rad_s - self.shaft_speed_rad_s
+        if self.clutch_phase == LOCKED and slip:
+            raise ParameterError(
+                f"initial.clutch_phase is 'locked', but the slip speed is {slip:g} rad/s: make "
+                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s equal'
+            )
+        if self.clutch_phase == SLIPPING and not slip:
+            raise ParameterError(
+                "initial.clutch_phase is 'slipping', but both plates have one speed: make "
+                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s differ'
+            )
 
 
 @dataclass(frozen=True)
@@ -146,9 +174,9 @@ class Scenario(OptionGroup):
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
-    friction: FrictionParameters = FrictionParameters()
-    heat: HeatParameters = HeatParameters()
-    brake: BrakeProfile = BrakeProfile()
+    friction: FrictionParameters = _section(FrictionParameters())
+    heat: HeatParameters = _section(HeatParameters())
+    brake: BrakeProfile = _section(BrakeProfile())
     engine_limits: EngineLimits | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""

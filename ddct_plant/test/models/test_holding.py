@@ -42,7 +42,7 @@ def test_the_brake_is_linear_between_its_points_and_holds_its_ends():
     [
         ((0.0, 0.0), (1.0, 1.0), 'brake.time_s goes from 0 to 0: it must rise'),
         ((1.0, 0.5), (1.0, 1.0), 'brake.time_s goes from 1 to 0.5'),
-        ((0.0,), (-1.0,), r'brake.torque_n_m\[0\] is -1: it must be at least 0'),
+        ((0.0,), (-1.0,), r'brake.torque_n_m\[0\] is -1 N m: it must be at least 0'),
         ((0.0,), (), 'brake.torque_n_m has 0 values for the 1 of brake.time_s'),
         (('now',), (1.0,), r"brake.time_s\[0\] is 'now'"),
     ],

@@ -1,0 +1,123 @@
+"""Sections of stick-slip runs are read whole, or refused with file, line and key."""
+
+import pytest
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
+
+BASE = """\
+duration_s: 1.0
+control_start_s: 0.6
+score_window_s: [0.6, 1.0]
+engine: {time_s: [0.0], torque_n_m: [100.0]}
+"""
+SECTIONS = """\
+initial: {engine_speed_rad_s: 100.0, shaft_speed_rad_s: 100.0, clutch_phase: locked}
+friction: {static_over_kinetic: 1.1, slip_rad_s: [0.0, 50.0], slip_share: [1.0, 0.9]}
+heat: {plate_c: 200.0, facing_c: 200.0}
+brake: {time_s: [0.0, 1.0], torque_n_m: [800.0, 0.0]}
+engine_limits: {stall_rad_s: 60.0}
+"""
+DIGEST_OF_THESIS = '91dd4f58e1510697'
+"""Of the values that the file had before there were sections: kept predictions hold it."""
+
+
+@pytest.fixture
+def scenario_file(tmp_path):
+    def write(text):
+        path = tmp_path / 'mine.yaml'
+        path.write_text(text, encoding='utf-8')
+        return str(path)
+
+    return write
+
+
+def test_sections_survive_their_yaml_and_change_the_digest(scenario_file):
+    scenario = load_scenario(scenario_file(BASE + SECTIONS))
+    assert scenario.friction.slip_share == (1.0, 0.9)
+    assert (scenario.heat.facing_c, scenario.heat.housing_c) == (200.0, 20.0)
+    assert scenario.brake.torque(0.5) == 400.0
+    assert scenario.engine_limits.stall_rad_s == 60.0
+    assert scenario.initial.clutch_phase == 'locked'
+    again = load_scenario(scenario_file(scenario_to_yaml(scenario)))
+    assert again == scenario
+    bare = load_scenario(scenario_file(BASE))
+    digests = {scenario_digest(scenario), scenario_digest(bare)}
+    for section in SECTIONS.splitlines()[1:]:
+        digests.add(scenario_digest(load_scenario(scenario_file(f'{BASE}{section}\n'))))
+    assert len(digests) == 6, 'each section counts'
+
+
+def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
+    scenario = load_scenario('thesis')
+    assert scenario_digest(scenario) == DIGEST_OF_THESIS
+    assert scenario.engine_limits is None
+    text = scenario_to_yaml(scenario)
+    for name in ('friction', 'heat', 'brake', 'engine_limits', 'clutch_phase'):
+        assert f'{name}:' not in text
+
+
+def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
+    path = scenario_file(BASE + 'engine_limits: {}')
+    assert load_scenario(path).engine_limits.idle_rad_s == 94.25
+    assert load_scenario(path, ['engine_limits=null']).engine_limits is None
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        ('friction: {static_over_kinetic: 0.9}', 'line 5: friction.static_over_kinetic is 0.9'),
+        ('friction:\n  slip_rad_s: [0]\n', 'line 5: friction.slip_share has 0 values for the 1'),
+        ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'line 7: heat.facing_j_k is -163 J/K'),
+        (
+            'brake:\n  torque_n_m: [1.0, 0.0]\n  time_s: [1.0, 1.0]',
+            'line 7: brake.time_s goes from 1 to 1: it must rise',
+        ),
+        (
+            'brake:\n  time_s: [0.0, 1.0]\n  torque_n_m:\n  - 5.0\n  - -5.0',
+            'line 9: brake.torque_n_m[1] is -5 N m: it must be at least 0',
+        ),
+        (
+            'engine_limits:\n  full_load_n_m: [9.0, 9.0]\n  friction_n_m: [9.0, 9.0]\n'
+            '  speed_rad_s: [0.0, 600.0]',
+            'line 8: engine_limits.speed_rad_s goes from 0 to 600 rad/s: the torque curves must '
+            'cover the speeds from stall_rad_s, 52.36, to over_rev_rad_s, 785.4',
+        ),
+        (
+            'initial:\n  engine_speed_rad_s: 100.0\n  clutch_phase: locked',
+            "line 7: initial.clutch_phase is 'locked', but the slip speed is -60 rad/s",
+        ),
+        (
+            'initial:\n  clutch_phase: slipping',
+            "line 6: initial.clutch_phase is 'slipping', but both plates have one speed",
+        ),
+        ('initial: {clutch_phase: wet}', "line 5: unknown initial.clutch_phase 'wet': choose"),
+        ('load:\n  slope_deg: 1.0', 'line 6: unknown key load.slope_deg: did you mean load.slope'),
+        ('load:\n  slope_rad: .nan', 'line 6: load.slope_rad is nan'),
+        ('engine_authority:\n  minimum_torque_n_m: 2000.0', 'line 6: engine_authority.minimum'),
+        ('reference: 3', 'line 5: reference: give keys and values'),
+    ],
+)
+def test_a_bad_value_is_refused_with_its_line(scenario_file, text, complaint):
+    path = scenario_file(BASE + text)
+    with pytest.raises(ParameterError) as caught:
+        load_scenario(path)
+    message = str(caught.value)
+    assert message.startswith(f'scenario {path}: {complaint}')
+    assert '\n' not in message
+
+
+@pytest.mark.parametrize(
+    'override', ['engine.torque_n_m=[-1.0]', 'engine={time_s: [0.0], torque_n_m: [-1.0]}']
+)
+def test_a_bad_value_that_was_set_has_no_line_of_the_file(scenario_file, override):
+    path = scenario_file(BASE)
+    with pytest.raises(ParameterError) as caught:
+        load_scenario(path, [override])
+    assert str(caught.value).startswith(f'scenario {path}: engine.torque_n_m[0] is -1 N m')
+
+
+def test_a_missing_key_of_a_section_has_the_line_of_the_section(scenario_file):
+    path = scenario_file(BASE.replace('{time_s: [0.0], torque_n_m: [100.0]}', '{time_s: [0.0]}'))
+    with pytest.raises(ParameterError, match=r'line 4: key engine\.torque_n_m is missing'):
+        load_scenario(path)
