@@ -78,7 +78,7 @@ def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
 
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
-    return LinearController(synthesised_controller(name))
+    return LinearController(synthesised_controller(name, context.settings.scenario.driveline))
 
 
 def _linear(name: str, model: FactoredTransferFunction | StateSpace) -> ControllerSpec[Controller]:

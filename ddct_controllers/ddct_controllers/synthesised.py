@@ -3,25 +3,40 @@
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
 
 if TYPE_CHECKING:
     from ddct_controllers.design.h_infinity.design import HinfDesign
 
 SYNTHESISED = {'hinf_thesis': 'thesis', 'hinf_fitted': 'fitted', 'hinf_sampled': 'sampled'}
 """Recipe of the weights by registry name; all for 8 % overshoot and 0.3 s of Section 3.2."""
+IDENTIFIED = DrivelineParameters()
 
 
-@lru_cache(maxsize=len(SYNTHESISED))
-def synthesised_design(name: str) -> 'HinfDesign':
-    """Return the design behind a registry name; the same numbers in every process."""
+@lru_cache(maxsize=8 * len(SYNTHESISED))
+def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -> 'HinfDesign':
+    """
+    Return the design behind a registry name for a driveline; the same numbers in every process.
+
+    Raise DdctError where the driveline has no such controller.
+    """
     # Only here: who runs another controller need not wait for the imports of the synthesis.
     from ddct_controllers.design.h_infinity.design import design_h_infinity
     from ddct_controllers.design.h_infinity.recipes import make_weights
 
-    return design_h_infinity(make_weights(SYNTHESISED[name]))
+    try:
+        return design_h_infinity(make_weights(SYNTHESISED[name]), driveline)
+    except DdctError as error:
+        if driveline == IDENTIFIED:
+            raise
+        raise DdctError(
+            f"controller {name!r} cannot be computed for the scenario's driveline: {error}; "
+            'or choose another controller'
+        ) from error
 
 
-def synthesised_controller(name: str) -> StateSpace:
+def synthesised_controller(name: str, driveline: DrivelineParameters) -> StateSpace:
     """Return G_c(z) behind a registry name, from slip error in rpm to torque in N m."""
-    return synthesised_design(name).sampled
+    return synthesised_design(name, driveline).sampled
