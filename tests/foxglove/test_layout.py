@@ -20,6 +20,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.topics import RUN_INFO, TOPICS
+from ddct_plant.models.driveline import PHASES
 
 Record = Callable[[RunPlan], Messages]
 
@@ -27,7 +28,9 @@ FACTS = custom_data(plan('pi').settings, 'made-up', 70)
 SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!slip', 'slip w_d'): lambda run: run.slip_speed,
     ('Plot!slip', 'reference'): lambda run: run.slip_reference[:, 0],
-    ('Plot!clutch_torque', 'clutch C_f'): lambda run: run.clutch_torque[:, 0],
+    ('Plot!clutch_torque', 'clutch C_f, or capacity'): lambda run: run.clutch_torque[:, 0],
+    ('Plot!clutch_torque', 'transmitted'): lambda run: run.joint_effort[:, 1],
+    ('Plot!clutch_torque', 'temperature (stick-slip)'): lambda run: run.clutch_temperature,
     ('Plot!clutch_torque', 'actuator'): lambda run: run.actuator_torque[:, 0],
     ('Plot!clutch_torque', 'request'): lambda run: run.torque_request,
     ('Plot!clutch_torque', 'open-loop part'): lambda run: _told(run, 'open_loop_torque_n_m'),
@@ -36,6 +39,7 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!engine_torque', 'demand'): lambda run: run.torque_demand,
     ('Plot!engine_torque', 'request (two-input)'): lambda run: run.engine_torque_request,
     ('Plot!engine_torque', 'load C_load'): lambda run: run.load_torque,
+    ('Plot!engine_torque', 'holding (stick-slip)'): lambda run: run.holding_torque,
     ('Plot!speeds', 'engine w_m'): lambda run: run.joint_speed[:, 0],
     ('Plot!speeds', 'primary w_p'): lambda run: run.joint_speed[:, 1],
     ('Plot!speeds', 'wheel w_r'): lambda run: run.joint_speed[:, 2],
@@ -45,6 +49,7 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!vehicle', 'speed V_x'): lambda run: run.vehicle_speed,
     ('StateTransitions!controller', 'feedback'): lambda run: _told(run, 'feedback'),
     ('StateTransitions!controller', 'request saturated'): lambda run: _told(run, 'saturated'),
+    ('StateTransitions!controller', 'clutch phase (stick-slip)'): lambda run: _phases(run),
 }
 """What each series shows, by the panel and label that its reader sees."""
 
@@ -54,21 +59,34 @@ def _told(run: Trajectory, key: str) -> np.ndarray:
     return np.array([dict(pairs)[key] for pairs in run.status])
 
 
+def _phases(run: Trajectory) -> np.ndarray:
+    """Return the phase at each step, (N+1,), in words."""
+    return np.array(PHASES)[run.clutch_phase.astype(int)]
+
+
 def _made_up_run() -> Trajectory:
-    """Return a run with another number in every place, of a controller with two inputs."""
-    run = expected(plan('pi', duration_s=0.7))
+    """Return a stick-slip run with another number in every place, of two inputs."""
+    run = expected(plan('pi', duration_s=0.7, clutch='stick_slip'))
     random = np.random.default_rng(1)
     arrays = {
         name: random.normal(0.0, 100.0, np.shape(values))
         for name, values in run.signals.items()
-        if name != 'status'
+        if name not in ('status', 'phase_events')
     }
+    arrays['clutch_phase'] = random.integers(0, len(PHASES), run.steps + 1).astype(float)
     status = tuple(
         tuple((key, str(1000.0 * place + step)) for place, (key, _) in enumerate(pairs))
         for step, pairs in enumerate(run.status)
     )
     torques = random.normal(0.0, 100.0, run.steps + 1)
-    return Trajectory({**arrays, 'status': status, 'engine_torque_request': torques})
+    return Trajectory(
+        {
+            **arrays,
+            'status': status,
+            'engine_torque_request': torques,
+            'phase_events': run.phase_events,
+        }
+    )
 
 
 def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
@@ -76,7 +94,8 @@ def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     run = _made_up_run()
-    write_trajectory(run, tmp_path, 'made-up', FACTS, {'controller': [('two_input', 'true')]})
+    facts = {**FACTS, 'clutch': 'stick_slip'}
+    write_trajectory(run, tmp_path, 'made-up', facts, {'controller': [('two_input', 'true')]})
     bag = read_messages(tmp_path)
     drawn = {
         (panel, series['label']): series['value']
@@ -94,6 +113,12 @@ def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize('controller', ['pi', 'hinf1'])
 def test_no_panel_is_empty_in_a_lock_step_bag(record: Record, controller: str) -> None:
     assert problems(read_layout(), record(plan(controller, 'headless'))) == []
+
+
+def test_no_panel_is_empty_in_the_bag_of_a_clutch_that_sticks(record: Record) -> None:
+    bag = record(plan('pi', 'headless', clutch='stick_slip'))
+    assert '/clutch/phase' in bag
+    assert problems(read_layout(), bag) == []
 
 
 def test_no_panel_is_empty_in_a_real_time_bag(record: Record) -> None:
