@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from ddct_bringup.run.headless import run_headless
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
@@ -168,3 +170,21 @@ def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached
     assert 0 < found.steps < scenario.steps
     assert (np.sign(speeds[:-1]) == np.sign(speeds[0])).all()
     assert np.sign(speeds[-1]) != np.sign(speeds[0])
+
+
+@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
+    weak = f'engine_limits.full_load_n_m={[100.0] * 8}'
+    scenario = load_scenario('thesis', [weak, 'duration_s=1.0'])
+    found = run_headless(RunSettings(scenario, clutch=clutch), 'pi')
+    assert found.engine_torque.max() == 100.0 < found.torque_demand.max()
+    road = RoadLoad(scenario.load, scenario.vehicle)
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    expected = [
+        static.torque(torque, road.torque(speed), *joints[:2])
+        for torque, speed, joints in zip(
+            found.engine_torque, found.vehicle_speed, found.joint_speed, strict=True
+        )
+    ]
+    told = [float(dict(pairs)['open_loop_torque_n_m']) for pairs in found.status]
+    assert told == pytest.approx(expected)
