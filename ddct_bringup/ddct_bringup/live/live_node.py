@@ -54,7 +54,8 @@ class LiveNode(GraphNode):
         self._say = say
         self._stamp_ns = self._told_ns = START_NS
         self._run_info: dict[str, bytes] = {}
-        tick_topics = {topic for topic in recorded_topics(RunKind()) if topic.every_tick}
+        run = RunKind(clutch=self.settings.clutch)
+        tick_topics = {topic for topic in recorded_topics(run) if topic.every_tick}
         self._unheard = tick_topics - {RECORDER_ACK}
         # Counted in a thread of the server's; what each beat has already done is beside it.
         self._views = self._views_timed = self._views_greeted = 0

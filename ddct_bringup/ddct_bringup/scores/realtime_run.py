@@ -4,7 +4,7 @@ import math
 
 from ddct_bringup.bag.reader import Recording
 from ddct_plant.base.timebase import START_NS
-from ddct_plant.graph.topics import CLUTCH_TORQUE, ENGINE_TORQUE, LOAD_TORQUE
+from ddct_plant.graph.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE, LOAD_TORQUE
 
 MISS_TOLERANCE = 0.01
 """
@@ -20,7 +20,7 @@ def missed_steps(recording: Recording) -> int:
     The driveline counts them; replies that only the bag lacks count too, since its signals hold
     the last value there.
     """
-    torques = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE)
+    torques = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
     held = (recording.missed.get(topic.name, 0) for topic in torques)
     return max(recording.realtime.missed_steps, *held)
 
