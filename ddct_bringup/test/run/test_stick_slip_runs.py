@@ -132,6 +132,14 @@ def test_plates_of_two_speeds_start_slipping_and_carry_the_kinetic_capacity(engi
     assert run(*changes).clutch_phase[0] == 1.0
 
 
+@pytest.mark.parametrize('engine', [160.0, 180.0])
+def test_a_clutch_that_is_called_open_starts_without_torque(engine):
+    changes = ('initial.clutch_phase=open', f'initial.engine_speed_rad_s={engine}')
+    start = initial_state(settings(*changes))
+    assert (start.torque_request, start.clutch_torque) == (0.0, 0.0)
+    assert run(*changes).clutch_phase[0] == 0.0
+
+
 @pytest.mark.parametrize('slope', [0.0, 0.12, -0.12])
 def test_a_car_at_rest_is_held_by_its_brake(slope):
     brake = ('brake.time_s=[0.0]', 'brake.torque_n_m=[2000.0]')

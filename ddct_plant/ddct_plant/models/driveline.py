@@ -36,11 +36,16 @@ class InitialState:
     load_torque: float
     """C_load(0) in N m."""
     torque_request: float
-    """What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere."""
+    """
+    What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere and where the
+    scenario calls the clutch open.
+    """
     clutch_torque: float
     """What it transmits then, in N m."""
     wheel_torque: float = 0.0
     """Friction of rolling and brake at the wheel, in N m; 0 where C_load has the rolling in it."""
+    clutch_open: bool = False
+    """Whether it can transmit nothing then, though both plates may have one speed."""
 
 
 PHASES = OPEN, SLIPPING, LOCKED = ('open', 'slipping', 'locked')

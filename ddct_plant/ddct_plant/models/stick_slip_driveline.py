@@ -75,7 +75,7 @@ class StickSlipDriveline:
         self._friction = [initial.clutch_torque, initial.wheel_torque]
         self._steps = 0
         self.period = FrictionPeriod(
-            _phase(self._signs[CLUTCH], initial.clutch_torque),
+            OPEN if initial.clutch_open else _phase(self._signs[CLUTCH], initial.clutch_torque),
             _phase(self._signs[WHEEL], initial.wheel_torque),
             [],
             0.0,

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import InitialState
+from ddct_plant.models.driveline import OPEN, InitialState
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.plant import holding_torque, make_engine, make_load, stick_slip_clutch
@@ -23,7 +23,8 @@ def initial_state(settings: RunSettings) -> InitialState:
     static = StaticTorque(driveline, scenario.equilibrium)
     shaft_speed = scenario.initial.shaft_speed_rad_s
     static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
-    torque_request = max(static_torque, 0.0) if settings.detailed else 0.0
+    asked = settings.detailed and scenario.initial.clutch_phase != OPEN
+    torque_request = max(static_torque, 0.0) if asked else 0.0
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     initial = InitialState(
         engine_speed=engine_speed,
@@ -73,6 +74,7 @@ def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
         load_torque=load_torque,
         clutch_torque=clutch_torque,
         wheel_torque=wheel_torque,
+        clutch_open=not static_capacity,
     )
 
 
