@@ -13,6 +13,7 @@ setup(
     package_data={
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.thesis': ['admissible_scenarios/*'],
+        f'{PACKAGE}.verdict': ['*.yaml'],
         f'{PACKAGE}.reproduction.numbers': ['chapters/*.yaml'],
     },
     data_files=[

@@ -10,7 +10,7 @@ import yaml
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files import yaml_text
-from ddct_plant.files.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml
+from ddct_plant.files.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml, parse_yaml_with_lines
 
 MOST_VALUES = 1000
 """Less than the limit itself, for which the parser in Python takes five seconds."""
@@ -140,3 +140,10 @@ def test_refusing_takes_no_memory_either():
         env={'PYTHONPATH': ':'.join(filter(None, sys.path)), 'OPENBLAS_NUM_THREADS': '1'},
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_each_key_and_item_has_the_line_in_which_it_begins():
+    content, lines = parse_yaml_with_lines('a:\n  b: 1\n\n  c:\n  - 2\n  - {d: 3,\n     e: 4}\n')
+    assert content == {'a': {'b': 1, 'c': [2, {'d': 3, 'e': 4}]}}
+    places = ['a', 'a.b', 'a.c', 'a.c[0]', 'a.c[1]', 'a.c[1].e']
+    assert [lines[place] for place in places] == [1, 2, 4, 5, 6, 7]

@@ -1,0 +1,223 @@
+"""The criteria of an engagement: one table of what is computed of every run, and in which unit."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.lock import Locking
+from ddct_bringup.verdict.vibration import judder, mean_jerk, shuffle, torque_dip
+from ddct_plant.base.units import rpm_from_rad_s
+
+AXIS_FACTOR = 1.4
+"""Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
+_DRIVESHAFT = 3
+"""Its place among the joints."""
+
+
+@dataclass(frozen=True)
+class JudgedRun:
+    """What the criteria are computed from."""
+
+    trajectory: Trajectory
+    control_start: int
+    """Step at which feedback starts."""
+    metrics: Mapping[str, float | int | None]
+    """Those of `scores.json`, by name."""
+    engagements_a_day: float
+
+    @cached_property
+    def locking(self) -> Locking:
+        """When the plates come together."""
+        return Locking(self.trajectory, self.control_start, self.metrics['engagement_time_s'])
+
+    @cached_property
+    def torsion_speed_rpm(self) -> np.ndarray:
+        """(N+1,) w_sr in rpm."""
+        return rpm_from_rad_s(self.trajectory.joint_speed[:, _DRIVESHAFT])
+
+    @cached_property
+    def shuffle(self) -> tuple[float | None, float | None]:
+        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
+        together = self.locking.together_from
+        return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
+
+    def after_control_start(self, name: str) -> np.ndarray:
+        """Return a signal from control start on."""
+        return getattr(self.trajectory, name)[self.control_start :]
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """One quantity that an engagement is judged by."""
+
+    name: str
+    unit: str
+    value: Callable[[JudgedRun], float | int | None]
+    """None where it is not defined."""
+    meaning: str
+    undefined: str
+    """When it has no value."""
+
+
+def _daily_dose(run: JudgedRun) -> float | None:
+    dose = run.metrics['vdv_m_s1_75']
+    return None if dose is None else AXIS_FACTOR * dose * run.engagements_a_day**0.25
+
+
+def _peak_temperature(run: JudgedRun) -> float | None:
+    temperature = getattr(run.trajectory, 'clutch_temperature', None)
+    return None if temperature is None else np.max(temperature)
+
+
+def _peak_acceleration(run: JudgedRun) -> float:
+    return np.max(np.abs(run.after_control_start('vehicle_accel')), initial=-math.inf)
+
+
+def _metric(name: str) -> Callable[[JudgedRun], float | int | None]:
+    return lambda run: run.metrics[name]
+
+
+_NO_STICK_SLIP = 'linear clutch, or never locked after control start'
+_NO_WINDOW = 'ends before the score window does'
+_NOT_TOGETHER = 'the plates never came together after control start'
+_NOTHING = 'ends before control start'
+
+CRITERIA = (
+    Criterion(
+        'time_to_lock',
+        's',
+        lambda run: run.locking.time_to_lock_s,
+        'control start to the first lock',
+        f'{_NO_STICK_SLIP}, or locked there already',
+    ),
+    Criterion(
+        'engagement_time',
+        's',
+        _metric('engagement_time_s'),
+        't_a, control start to the first change of sign of w_d',
+        'w_d never changes its sign after control start, or is zero there',
+    ),
+    Criterion(
+        'peak_jerk',
+        'm/s^3',
+        _metric('peak_jerk_m_s3'),
+        'largest jerk in the score window, A_x through a 20 Hz low-pass without delay',
+        _NO_WINDOW,
+    ),
+    Criterion(
+        'mean_jerk',
+        'm/s^3',
+        lambda run: mean_jerk(run.after_control_start('vehicle_accel')),
+        "largest of the jerk's means over 1 s after control start",
+        'ends less than 1 s after control start',
+    ),
+    Criterion(
+        'peak_acceleration',
+        'm/s^2',
+        _peak_acceleration,
+        'largest magnitude of A_x after control start',
+        _NOTHING,
+    ),
+    Criterion(
+        'weighted_acceleration',
+        'm/s^2',
+        _metric('weighted_acceleration_m_s2'),
+        'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
+        _NO_WINDOW,
+    ),
+    Criterion(
+        'daily_vibration_dose',
+        'm/s^1.75',
+        _daily_dose,
+        "1.4 times the run's vibration dose, for all engagements of a day",
+        _NO_WINDOW,
+    ),
+    Criterion(
+        'friction_energy',
+        'J',
+        _metric('friction_energy_j'),
+        'friction work of the clutch, whole run',
+        'a value is not finite',
+    ),
+    Criterion(
+        'peak_temperature',
+        'degC',
+        _peak_temperature,
+        'highest temperature of the pressure plate',
+        'linear clutch',
+    ),
+    Criterion(
+        'slip_acceleration_at_lock',
+        'rad/s^2',
+        _metric('lockup_slip_acceleration_rad_s2'),
+        'slope of w_d where the plates first come together',
+        'w_d never reaches zero after control start',
+    ),
+    Criterion(
+        'releases_after_lock',
+        '1',
+        lambda run: run.locking.releases,
+        'how often the plates part again',
+        _NO_STICK_SLIP,
+    ),
+    Criterion(
+        'judder',
+        'rpm',
+        lambda run: judder(run.torsion_speed_rpm[run.locking.slipping]),
+        'r.m.s. of w_sr from 2 to 20 Hz over the longest stretch of slipping',
+        'slips for less than 1 s',
+    ),
+    Criterion(
+        'shuffle_amplitude',
+        'rpm',
+        lambda run: run.shuffle[0],
+        'largest magnitude of w_sr once the plates are together',
+        _NOT_TOGETHER,
+    ),
+    Criterion(
+        'shuffle_decay',
+        's',
+        lambda run: run.shuffle[1],
+        'from there until w_sr stays below 1/e of it',
+        f'{_NOT_TOGETHER}, or w_sr has not decayed when the run ends',
+    ),
+    Criterion(
+        'torque_dip',
+        'N m',
+        lambda run: torque_dip(run.after_control_start('joint_effort')[:, _DRIVESHAFT]),
+        "largest fall of the driveshaft's torque after control start",
+        _NOTHING,
+    ),
+    Criterion(
+        'request_variation',
+        'N m',
+        _metric('torque_total_variation_n_m'),
+        'sum of all changes of the torque request, whole run',
+        'a value is not finite',
+    ),
+    Criterion(
+        'deadline_misses',
+        '1',
+        _metric('missed_steps'),
+        'steps that went on without a reply',
+        'no timing.json',
+    ),
+)
+
+CRITERION_UNITS = {criterion.name: criterion.unit for criterion in CRITERIA}
+
+
+def criterion_values(run: JudgedRun) -> dict[str, float | int | None]:
+    """Return the value of every criterion by name, None where it is not defined."""
+    with np.errstate(all='ignore'):  # what is not finite becomes None
+        return {criterion.name: _finite(criterion.value(run)) for criterion in CRITERIA}
+
+
+def _finite(value: float | int | None) -> float | int | None:
+    if value is None or not math.isfinite(value):
+        return None
+    return value if isinstance(value, int) else float(value)

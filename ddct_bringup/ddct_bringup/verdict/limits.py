@@ -1,0 +1,63 @@
+"""What a run is judged by: the rules of the states, and the limits of the criteria."""
+
+from dataclasses import dataclass, field
+
+
+def _rule(unit: str) -> float:
+    return field(metadata={'unit': unit})
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Thresholds of the states, and what the criteria assume; their reasons stand in the file."""
+
+    engaged_slip: float = _rule('rpm')
+    """Magnitude of w_d below which the plates count as one."""
+    settled_time: float = _rule('s')
+    """How long the slip has to keep below it at the end of the run."""
+    oscillation_turns: float = _rule('1')
+    """Turns of the slip after control start from which a run that has not settled oscillates."""
+    runaway_slip: float = _rule('rpm')
+    """Magnitude of w_d beyond which the plates have been driven apart."""
+    runaway_growth: float = _rule('rpm/s')
+    """Growth of the magnitude of w_d at the end from which they are being driven apart."""
+    engagements_a_day: float = _rule('1')
+    """For the daily vibration dose."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Highest magnitude of one criterion, in its unit."""
+
+    criterion: str
+    value: float
+    unit: str
+    applies_to: tuple[str, ...] | None
+    """Names of scenarios; None for all."""
+    source: str
+    """Where it is published and in which clause, or that it is a convention."""
+
+    def holds_for(self, scenario: str) -> bool:
+        """Say whether it applies to runs of a scenario."""
+        return self.applies_to is None or scenario in self.applies_to
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Content of a limits file."""
+
+    rules: Rules
+    limits: tuple[Limit, ...]
+
+    def of(self, criterion: str, scenario: str) -> Limit | None:
+        """Return the strictest limit of a criterion for a scenario, None without one."""
+        found = [
+            limit
+            for limit in self.limits
+            if limit.criterion == criterion and limit.holds_for(scenario)
+        ]
+        return min(found, key=_value, default=None)
+
+
+def _value(limit: Limit) -> float:
+    return limit.value

@@ -1,0 +1,110 @@
+"""A limits file is read whole, or refused in one line that names file, line and key."""
+
+import re
+from importlib.resources import files
+
+import pytest
+
+from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.verdict.limits_file import limits_of_text, load_limits, packaged_limits
+from ddct_plant.base.errors import DdctError
+
+TEXT = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+OF_SLIP = """\
+  - criterion: judder
+    value: 3.0
+    unit: rpm
+    applies_to: [launch, tip_in]
+"""
+
+
+def line_of(text, part):
+    return next(n for n, line in enumerate(text.splitlines(), start=1) if part in line)
+
+
+def test_the_packaged_file_is_read_and_every_limit_cites_a_clause():
+    limits = packaged_limits()
+    assert limits.rules.engaged_slip == 50.0
+    assert {limit.criterion for limit in limits.limits} <= set(CRITERION_UNITS)
+    assert all(', ' in limit.source and limit.source != 'convention' for limit in limits.limits)
+
+
+def test_a_limit_of_some_scenarios_holds_for_no_other():
+    limits = packaged_limits()
+    assert limits.of('mean_jerk', 'launch_gentle').value == 5.0
+    assert limits.of('mean_jerk', 'launch') is None
+    assert limits.of('judder', 'launch_gentle') is None
+    assert limits.of('weighted_acceleration', 'anything').value == 0.315
+
+
+def test_the_strictest_of_several_limits_holds():
+    convention = f'{OF_SLIP}    convention: true\n'
+    limits = limits_of_text(TEXT + convention + convention.replace('3.0', '2.0'), 'mine.yaml')
+    assert limits.of('judder', 'launch').value == 2.0
+    assert limits.of('judder', 'launch').source == 'convention'
+    assert limits.of('judder', 'thesis') is None
+
+
+def test_a_file_without_a_version_is_of_the_present_one():
+    assert limits_of_text(TEXT.replace('schema_version: 1\n', ''), 'x') == packaged_limits()
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'at', 'complaint'),
+    [
+        ('schema_version: 1', 'schema_version: 2', 'schema_version', 'schema_version is 2, this'),
+        ('schema_version: 1', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
+        ('criterion: mean_jerk', 'criterion: jerkiness', 'jerkiness', 'limits.4.criterion: '),
+        ('unit: m/s^3', 'unit: g/s', 'unit: g/s', "limits.4.unit: it is 'g/s': give .* 'm/s\\^3'"),
+        ('unit: rpm\n', 'unit: rad/s\n', 'unit: rad/s', "rules.engaged_slip.unit: it is 'rad/s'"),
+        ('value: 0.315', 'value: low', 'value: low', "limits.0.value: it is 'low': give a number"),
+        ('value: 9.1', 'value: -9.1', 'value: -9.1', 'limits.1.value: .*above 0'),
+        ('value: 9.1', 'value: .nan', 'value: .nan', 'limits.1.value: .*finite'),
+        ('applies_to: all', 'applies_to: few', 'applies_to: few', 'limits.0.applies_to: give'),
+        ('  settled_time:', '  settling:', '  settling:', 'rules.settling: unknown key'),
+        ('rules:', 'rule:', 'rule:', 'rule: unknown key: known are rules, limits'),
+        ('    source: Directive 2002/44/EC\n', '', 'daily_vib', 'limits.1: source is missing: c'),
+        ('    clause: C.2', '    page: C.2', 'page: C.2', 'limits.0.page: unknown key'),
+        ('    source: Directive 2002/44/EC', "    source: ''", "source: ''", 'limits.1.source: '),
+        ('    unit: degC\n', '', 'peak_temperature', 'limits.2: the key unit is missing'),
+        ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'more: unknown key'),
+    ],
+)
+def test_what_is_wrong_is_named_with_file_line_and_key(old, new, at, complaint):
+    assert old in TEXT
+    text = TEXT.replace(old, new, 1)
+    with pytest.raises(DdctError) as caught:
+        limits_of_text(text, 'mine.yaml')
+    message = str(caught.value)
+    assert message.startswith(f'limits mine.yaml: line {line_of(text, at)}: ')
+    assert re.search(complaint, message), message
+    assert '\n' not in message
+
+
+def test_a_missing_rule_is_named():
+    text = re.sub(r'  runaway_slip:\n(    .*\n)+', '', TEXT)
+    with pytest.raises(DdctError, match='line 4: rules: the key runaway_slip is missing'):
+        limits_of_text(text, 'mine.yaml')
+
+
+@pytest.mark.parametrize('text', ['', '[]', 'a', 'limits: []', '{rules: 1, limits: []}'])
+def test_a_file_of_something_else_is_refused(text):
+    with pytest.raises(DdctError, match=r'limits mine.yaml: line 1: '):
+        limits_of_text(text, 'mine.yaml')
+
+
+@pytest.mark.parametrize('word', ['true', 'yes', '1'])
+def test_only_the_word_true_makes_a_limit_a_convention(word):
+    text = f'{TEXT}{OF_SLIP}    convention: {word}\n'
+    if word == 'true':
+        assert limits_of_text(text, 'x').of('judder', 'tip_in').source == 'convention'
+        return
+    with pytest.raises(DdctError, match='convention: give true or false'):
+        limits_of_text(text, 'x')
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(DdctError, match=r'limits .*none.yaml: cannot be read \(No such file'):
+        load_limits(tmp_path / 'none.yaml')
+    (tmp_path / 'mine.yaml').write_text(TEXT, encoding='utf-8')
+    assert load_limits(tmp_path / 'mine.yaml') == packaged_limits() == load_limits(None)

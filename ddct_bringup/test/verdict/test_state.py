@@ -1,0 +1,139 @@
+"""The state of a run is what a control engineer would call it by eye."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
+
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.state import engine_end, slip_state, turns_of
+
+T = times()
+ENGINE = SimpleNamespace(stall_rad_s=50.0, over_rev_rad_s=780.0)
+
+
+def state(slip_rpm, **signals):
+    return slip_state(made_run(slip_rpm, **signals), CONTROL_START, packaged_limits().rules)
+
+
+def falling(rate_rpm_s, peak_rpm=600.0, lowest_rpm=0.0):
+    """Return a slip that rises until control start at 0.6 s, then falls as a ramp."""
+    rise = peak_rpm * np.minimum(T / 0.6, 1.0)
+    return np.maximum(rise - rate_rpm_s * np.maximum(T - 0.6, 0.0), lowest_rpm)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_a_slip_that_crosses_zero_once_and_stays_small_is_engaged(sign):
+    assert state(sign * falling(700.0, lowest_rpm=-12.0)) == 'engaged'
+
+
+def test_a_slip_that_stays_at_zero_once_there_is_engaged():
+    assert state(falling(700.0)) == 'engaged'
+
+
+def test_a_slip_that_overshoots_and_comes_back_is_engaged():
+    slip = falling(1000.0) - 200.0 * np.exp(-(((T - 1.5) / 0.15) ** 2))
+    assert state(slip) == 'engaged'
+
+
+def test_plates_that_never_part_are_engaged():
+    assert state(np.zeros(301)) == 'engaged'
+
+
+def test_a_slow_slip_that_has_not_arrived_is_not_engaged():
+    assert state(falling(150.0)) == 'not_engaged'
+
+
+def test_a_slip_that_only_passes_through_zero_at_the_end_is_not_engaged():
+    assert state(falling(260.0, lowest_rpm=-1e4)) == 'not_engaged'
+
+
+def test_a_slip_that_stays_away_from_zero_is_not_engaged():
+    assert state(falling(700.0, lowest_rpm=120.0)) == 'not_engaged'
+
+
+def test_a_slip_beyond_zero_that_stays_there_is_not_engaged():
+    assert state(falling(700.0, lowest_rpm=-120.0)) == 'not_engaged'
+
+
+def test_a_run_that_ends_while_its_reference_still_falls_is_not_engaged():
+    early = T <= 1.0
+    reference = np.full((early.sum(), 1), 300.0 * RAD_S_PER_RPM)
+    rising = (300.0 + 400.0 * T)[early]
+    assert state(rising, slip_reference=reference) == 'not_engaged'
+    assert state(rising) == 'runaway'
+
+
+def test_a_run_that_ends_before_control_start_is_not_engaged():
+    assert state(np.zeros(40)) == 'not_engaged'
+
+
+@pytest.mark.parametrize('offset', [0.0, 400.0])
+@pytest.mark.parametrize('period_s', [0.2, 0.7, 1.1])
+def test_a_limit_cycle_of_270_rpm_is_oscillating_wherever_the_run_ends(offset, period_s):
+    for end in range(250, 301, 5):
+        t = T[: end + 1]
+        cycle = offset + 270.0 * np.sin(2 * np.pi * (t - 0.6) / period_s)
+        assert state(cycle) == 'oscillating', end
+
+
+def test_plates_that_stick_and_break_loose_again_and_again_oscillate():
+    cycle = 200.0 * np.maximum(np.sin(2 * np.pi * (T - 0.6) / 0.5), 0.0)
+    assert state(cycle) == 'oscillating'
+
+
+def test_an_oscillation_that_has_died_down_is_engaged():
+    assert state(600.0 * np.exp(-4.0 * np.maximum(T - 0.6, 0)) * np.cos(20 * T)) == 'engaged'
+
+
+def test_a_ripple_within_the_band_is_engaged():
+    assert state(falling(700.0) + 40.0 * np.sin(2 * np.pi * 5.0 * T)) == 'engaged'
+
+
+def test_a_ripple_on_a_slow_slip_is_no_oscillation():
+    assert state(falling(150.0) + 40.0 * np.sin(2 * np.pi * 5.0 * T)) == 'not_engaged'
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_a_slip_that_grows_until_26_000_rpm_is_a_runaway(sign):
+    assert state(sign * 26e3 * (T / 3.0) ** 2) == 'runaway'
+
+
+def test_a_slip_that_once_was_beyond_any_engine_is_a_runaway():
+    assert state(falling(2e4, peak_rpm=9e3)) == 'runaway'
+
+
+def test_a_slip_that_grows_at_the_end_is_a_runaway():
+    assert state(300.0 + 120.0 * T) == 'runaway'
+    assert state(300.0 + 60.0 * T) == 'not_engaged'
+
+
+def test_a_slip_that_crosses_zero_and_runs_away_beyond_is_a_runaway():
+    assert state(falling(700.0, lowest_rpm=-1e4)) == 'runaway'
+
+
+def test_an_oscillation_that_grows_beyond_all_before_is_a_runaway():
+    t = times(2.95)
+    grows = 20.0 * np.exp(2.0 * t) * np.sin(2 * np.pi * (t - 0.6))
+    assert state(grows[:283]) == 'runaway'
+
+
+def test_a_stalled_engine_is_told_from_its_last_speed():
+    for speed, cause in [
+        (49.9, 'stalled'),
+        (50.0, 'stalled'),
+        (50.1, None),
+        (780.0, 'over_revved'),
+    ]:
+        speeds = np.full((301, 4), 100.0)
+        speeds[-1, 0] = speed
+        run = made_run(np.zeros(301), joint_speed=speeds)
+        assert engine_end(run, ENGINE) == cause
+        assert engine_end(run, None) is None
+
+
+def test_turns_are_extremes_from_which_the_values_move_back():
+    assert turns_of(np.array([0.0, 5.0, 1.0, 4.0, -3.0, 9.0]), 3.5) == [1, 4]
+    assert turns_of(np.array([5.0, 4.0, 0.0]), 3.0) == []
+    assert turns_of(np.array([0.0, 3.0, 1.0, 3.0]), 2.0) == [1, 2]
