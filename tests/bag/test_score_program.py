@@ -28,8 +28,10 @@ ENTRY_KEYS = [
     'valid',
     'reason',
     'metrics',
+    'verdict',
     'fallbacks',
     'safe_state',
+    'before_schema',
 ]
 
 

@@ -18,6 +18,7 @@ from support.tampering import Tamperer, tampered_remap
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.run_timing import read_timing
 from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
@@ -73,7 +74,7 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     torque = recording.trajectory.clutch_torque[:, 0]
     assert torque[FROM_STEP - 1] > 50.0
     assert torque[-1] < 1.0
-    entry = score_recording(recording, 'bag')
+    entry = score_recording(recording, 'bag', packaged_limits())
     assert not entry['valid']
     assert f'actuator at {opened / 100:g} s' in entry['safe_state']
     assert entry['safe_state'] in entry['reason']

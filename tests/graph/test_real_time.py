@@ -14,6 +14,7 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.verdict.limits_file import packaged_limits
 
 NEAR = 0.1
 """How near the slip speed stays to that of lock-step if a few steps are missed, of its peak."""
@@ -47,7 +48,7 @@ def test_real_time_without_a_miss_is_lock_step_to_the_last_bit(
     assert recording.missed == {}
     assert recording.realtime.missed_steps == 0
     assert recording.trajectory.sha256() == expected(run).sha256()
-    entry = score_recording(recording, 'bag')
+    entry = score_recording(recording, 'bag', packaged_limits())
     assert (entry['valid'], entry['safe_state']) == (True, '')
 
 

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
+from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.topics import (
     DIAGNOSTICS,
@@ -26,6 +29,8 @@ from ddct_plant.graph.topics import (
     all_topics,
     recorded_topics,
 )
+from ddct_plant.scenario.file import scenario_from_mapping
+from ddct_plant.scenario.settings import RunSettings
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,35 @@ class Recording:
     """Per reply topic, at how many stamps the last reply had to be held; real time only."""
     realtime: RealtimeFacts
     """What `/diagnostics` says; empty in lock-step."""
+
+    @cached_property
+    def settings(self) -> RunSettings | None:
+        """What was simulated; None where the bag does not tell, or it cannot be built here."""
+        facts = self.facts
+        try:
+            return RunSettings(
+                scenario_from_mapping(self._scenario),
+                facts.architecture,
+                facts.clutch,
+                facts.wear_gain,
+                facts.mode,
+                facts.seed,
+            )
+        except (DdctError, TypeError, ValueError):
+            return None
+
+    @property
+    def before_schema(self) -> bool:
+        """Whether the bag is older than the version numbers of scenarios."""
+        return not isinstance(self._scenario, dict) or SCHEMA_KEY not in self._scenario
+
+    @cached_property
+    def _scenario(self) -> Any:
+        """Content of the recorded scenario, None without a readable one."""
+        try:
+            return parse_yaml(self.custom_data.get('scenario_yaml', ''))
+        except DdctError:
+            return None
 
 
 def read_bag(path: Path) -> Recording:

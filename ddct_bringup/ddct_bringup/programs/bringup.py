@@ -13,7 +13,9 @@ from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import realtime_summary
-from ddct_bringup.scores.scoring import why_invalid
+from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
@@ -46,6 +48,7 @@ def _bringup(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
+    limits = load_limits(options.limits)
     settings = settings_of(options, [controller_label(options.controller)])
     plan = RunPlan(settings, options.controller, options.layout)
     if options.live is not None and plan.layout != 'processes':
@@ -53,21 +56,24 @@ def _bringup(argv: list[str]) -> int:
     with held(options.out, shared=True):
         mark_folder(options.out)
         with held(options.out / plan.name):
-            _run(plan, options)
+            _run(plan, options, limits)
     return 0
 
 
-def _run(plan: RunPlan, options: argparse.Namespace) -> None:
+def _run(plan: RunPlan, options: argparse.Namespace, limits: Limits) -> None:
     folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
     with nullcontext() if options.live is None else live_view(options.live) as live:
         run_with_progress(plan, folder.path, live=live)
     recording = read_bag(folder.path)
-    if reason := why_invalid(recording):
+    entry = score_recording(recording, plan.name, limits)
+    if not entry['valid']:
         _tell(recording, folder.path)
-        raise DdctError(f'{folder.path}: not valid: {reason}')
+        raise DdctError(f'{folder.path}: not valid: {entry["reason"]}')
     folder.commit()
     print(folder.final, flush=True)
     _tell(recording, folder.final)
+    verdict = entry['verdict']
+    print(f'{PROGRAM}: state {verdict["state"]}, limits {verdict["limits"]}', file=sys.stderr)
 
 
 def _tell(recording: Recording, folder: Path) -> None:
@@ -100,6 +106,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar='PORT',
         help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
     )
+    add_limits_option(parser)
     add_run_options(parser)
     return parser
 

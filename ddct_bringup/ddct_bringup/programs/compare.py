@@ -15,6 +15,8 @@ from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, controller_names
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -53,18 +55,21 @@ def _compare(argv: list[str]) -> int:
     require_chart_library()
     if options.json:
         require_place('--json', options.json)
+    limits = load_limits(options.limits)
     names = _controllers(options.controllers)
     settings = settings_of(options, [controller_label(name) for name in names])
     plans = [RunPlan(settings, name, options.layout) for name in names]
     with held(options.out):
-        _run_all(plans, settings, options)
+        _run_all(plans, settings, options, limits)
     return 0
 
 
-def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace) -> None:
+def _run_all(
+    plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace, limits: Limits
+) -> None:
     folder = StagedFolder(options.out, overwrite=options.overwrite)
     runs = [
-        _run(plan, folder.path, f'{index} of {len(plans)}, ')
+        _run(plan, folder.path, f'{index} of {len(plans)}, ', limits)
         for index, plan in enumerate(plans, start=1)
     ]
     entries = [run.entry for run in runs]
@@ -86,13 +91,13 @@ def _run_all(plans: list[RunPlan], settings: RunSettings, options: argparse.Name
     )
 
 
-def _run(plan: RunPlan, out: Path, label: str) -> ReportRun:
+def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
     """Carry out, read and score one run; without a bag the entry is invalid and says why."""
     bag = out / plan.name
     try:
         mark_folder(bag)
         run_with_progress(plan, bag, label)
-        run = read_run(bag, out)
+        run = read_run(bag, out, limits)
     except DdctError as error:
         run = ReportRun(unreadable_entry(bag, error, relative_to=out))
     if run.recording is not None:
@@ -137,6 +142,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('--out', type=Path, metavar='DIR', help='folder for all of it')
     parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
+    add_limits_option(parser)
     add_run_options(parser)
     return parser
 

@@ -17,6 +17,7 @@ from ddct_bringup.report.runs import (
 )
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bags_in, with_progress
+from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
@@ -48,7 +49,7 @@ def _report(argv: list[str]) -> int:
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with held(*filter(is_ours, places)):
         bags = with_progress(bags_in(options.runs), 'reading')
-        runs = in_order([read_run(*bag) for bag in bags])
+        runs = in_order([read_run(*bag, packaged_limits()) for bag in bags])
         write_report(runs, options.out)
     for run in runs:
         if not run.entry['valid']:

@@ -19,6 +19,8 @@ from ddct_bringup.scores.scoring import (
     unreadable_entry,
 )
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
@@ -32,11 +34,13 @@ examples:
   score runs/demo --json scores.json     also as JSON; '-' is standard output
   score runs/demo --csv - | column -ts,  as CSV on standard output, table on standard error
   score runs/demo --signals-csv signals  also every signal, one file per bag
+  score runs/demo --limits mine.yaml     judged by other limits than the packaged ones
   score --repair runs/broken/pi          rescue an interrupted recording, then score it
 
 The exit code is 0 only if every bag was scored and valid: whole, of the length that the
 run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
-steps without a reply, and no node in its safe state.
+steps without a reply, and no node in its safe state. A run that a stalled or over-revved
+engine ended is valid: that is its state.
 peak_jerk_m_s3: 20 Hz low-pass without delay.
 vdv_m_s1_75 is weighted by
 {VDV_WEIGHTING}.
@@ -52,9 +56,10 @@ def _score(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
+    limits = load_limits(options.limits)
     bags = bags_in(options.bags)
     with held(*_run_folders(options, [bag for bag, _ in bags])):
-        runs = _scored(bags, options)
+        runs = _scored(bags, options, limits)
         if options.json:
             write_json(options.json, scores_document(runs))
         if options.csv:
@@ -74,18 +79,22 @@ def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path
     return [*filter(is_ours, folders), *repaired]
 
 
-def _scored(bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace) -> list[Entry]:
+def _scored(
+    bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace, limits: Limits
+) -> list[Entry]:
     runs = []
     for bag, folder in with_progress(bags, 'scoring'):
         try:
-            runs.append(_score_one(bag, folder, options))
+            runs.append(_score_one(bag, folder, options, limits))
         except DdctError as error:
             complain(PROGRAM, error)
             runs.append(unreadable_entry(bag, error, relative_to=folder))
     return runs
 
 
-def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> Entry:
+def _score_one(
+    bag: Path, folder: Path | None, options: argparse.Namespace, limits: Limits
+) -> Entry:
     if options.repair:
         repair = repair_bag(bag)
         if repair.original is not None:
@@ -96,7 +105,7 @@ def _score_one(bag: Path, folder: Path | None, options: argparse.Namespace) -> E
         complain(PROGRAM, f'{name}: {line}')
     if options.signals_csv is not None:
         _write_signals(options.signals_csv, name, signals_csv(recording))
-    return score_recording(recording, name)
+    return score_recording(recording, name, limits)
 
 
 def _write_signals(folder: Path, name: str, text: str) -> None:
@@ -112,7 +121,7 @@ def _write_signals(folder: Path, name: str, text: str) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = ProgramParser(
         prog=PROGRAM,
-        description='Compute the metrics of recorded runs from their bags.',
+        description='Compute the metrics of recorded runs from their bags, and judge them.',
         epilog=_EPILOG,
     )
     parser.add_argument(
@@ -123,6 +132,7 @@ def _parser() -> argparse.ArgumentParser:
         help='a bag folder, an .mcap file, or a folder that is searched for bags',
     )
     parser.add_argument('--json', metavar='FILE', help="write scores.json to FILE; '-': stdout")
+    add_limits_option(parser)
     parser.add_argument('--csv', metavar='FILE', help="write a CSV table to FILE; '-': stdout")
     parser.add_argument(
         '--signals-csv',

@@ -62,7 +62,18 @@ FURTHER = (
         f'Vibration dose over the score window, weighted by {VDV_WEIGHTING}',
     ),
     FigureColumn(
-        'friction_energy_j', 'friction energy', 'J', '.0f', 'Integral of |C_f w_d|, whole run'
+        'weighted_acceleration_m_s2',
+        'weighted A_x',
+        'm/s²',
+        '.3f',
+        'Root of the mean square over the score window, weighted as VDV',
+    ),
+    FigureColumn(
+        'friction_energy_j',
+        'friction energy',
+        'J',
+        '.0f',
+        'Friction work of the clutch, whole run',
     ),
     FigureColumn(
         'lockup_slip_acceleration_rad_s2',

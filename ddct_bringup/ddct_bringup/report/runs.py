@@ -13,10 +13,10 @@ from ddct_bringup.scores.scoring import (
     score_recording,
     unreadable_entry,
 )
+from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.scenario.file import scenario_digest, scenario_from_mapping
+from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -31,7 +31,7 @@ class ReportRun:
     timing: RunTiming | None = None
     """None without a `timing.json` beside the bag."""
     settings: RunSettings | None = None
-    """What was simulated; None where the bag does not tell, or this version cannot build it."""
+    """As `Recording.settings`."""
 
     @property
     def controller(self) -> str | None:
@@ -51,14 +51,13 @@ class ReportRun:
         return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
 
 
-def read_run(bag: Path, folder: Path | None) -> ReportRun:
-    """Read and score a bag, which is named relative to the folder; never raises DdctError."""
+def read_run(bag: Path, folder: Path | None, limits: Limits) -> ReportRun:
+    """Read and judge a bag, which is named relative to the folder; never raises DdctError."""
     try:
         recording = read_bag(bag)
-        entry = score_recording(recording, bag_name(bag, folder))
-        return ReportRun(
-            entry, recording, read_timing(recording.path.parent), settings_of(recording)
-        )
+        entry = score_recording(recording, bag_name(bag, folder), limits)
+        timing = read_timing(recording.path.parent)
+        return ReportRun(entry, recording, timing, recording.settings)
     except DdctError as error:
         return ReportRun(unreadable_entry(bag, error, relative_to=folder))
 
@@ -67,23 +66,6 @@ def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
     """Return the runs in the order in which the registry lists their controllers."""
     places = {name: place for place, name in enumerate(controller_names())}
     return sorted(runs, key=lambda run: places.get(run.entry['controller'], len(places)))
-
-
-def settings_of(recording: Recording) -> RunSettings | None:
-    """Return the settings that a bag tells; None where it does not, or they are unknown here."""
-    facts = recording.facts
-    try:
-        content = parse_yaml(recording.custom_data.get('scenario_yaml', ''))
-        return RunSettings(
-            scenario_from_mapping(content),
-            facts.architecture,
-            facts.clutch,
-            facts.wear_gain,
-            facts.mode,
-            facts.seed,
-        )
-    except (DdctError, TypeError, ValueError):
-        return None
 
 
 def require_one_scenario(runs: Sequence[ReportRun]) -> None:

@@ -33,7 +33,7 @@ _NOTE = (
     'over the admissible scenarios,\n'
     f'below the print hit (within {100 * PREDICTION_TOLERANCE:.0f} % of it) or miss.'
 )
-_NO_CROSSING = "t_a '-': after control start w_d never changed its sign."
+_NO_ROW = 'Table 5.1 has no row of this controller'
 
 
 def print_comparison(
@@ -55,13 +55,11 @@ def print_comparison(
                 for ours, unit, name in zip(columns[1:], _UNITS, FIGURES, strict=True)
                 for column in (_with_range(ours, name), _thesis(unit, name))
             ),
-            Column('thesis row', _use, number=False),
+            Column('thesis row', _use, number=False, undefined=_NO_ROW),
         ]
     print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
     if compared and any(thesis_row(run['controller']) for run in runs):
         print(_NOTE, file=stream)
-    if any(run['valid'] and run['metrics']['engagement_time_s'] is None for run in runs):
-        print(_NO_CROSSING, file=stream)
 
 
 _UNITS = ('s', 'rpm', 'm/s^2')

@@ -22,9 +22,9 @@ from ddct_plant.graph.topics import (
 
 
 def scores_csv(runs: Sequence[Entry]) -> str:
-    """Return one row per run, its metrics beside its facts."""
-    rows = [{**run, **run['metrics']} for run in runs]
-    columns = [key for key in rows[0] if key != 'metrics']
+    """Return one row per run, its metrics and its verdict beside its facts."""
+    rows = [{**run, **run['metrics'], **_verdict(run)} for run in runs]
+    columns = [key for key in rows[0] if key not in ('metrics', 'verdict')]
     return _csv(columns, ([_text(row[key]) for key in columns] for row in rows))
 
 
@@ -47,6 +47,10 @@ def signals_csv(recording: Recording) -> str:
     # Python's floats print with the digits that give them back to the last bit.
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return _csv(columns, rows)
+
+
+def _verdict(run: Entry) -> dict[str, str]:
+    return {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
 
 
 def _csv(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:

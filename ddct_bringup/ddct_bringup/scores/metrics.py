@@ -38,8 +38,11 @@ class Metrics:
     """Largest magnitude of the jerk in the score window; A_x low-passed at 20 Hz without delay."""
     vdv_m_s1_75: float | None
     """Vibration dose value over the score window, weighting `comfort.VDV_WEIGHTING`."""
+    weighted_acceleration_m_s2: float | None
+    """Root of the mean square of A_x over the score window, weighted as the dose."""
     friction_energy_j: float | None
-    """Integral of |C_f w_d| over the whole run, by trapezoids."""
+    """Friction work of the clutch over the whole run: exact where the run reports it, otherwise
+    the integral of |C_f w_d| by trapezoids."""
     lockup_slip_acceleration_rad_s2: float | None
     """Slope of w_d where it first changes its sign, between the samples around it. A clutch that
     sticks makes the latter exactly zero: then between the two samples before."""
@@ -69,6 +72,7 @@ _OF_WINDOW = (
     'slip_rmse_rpm',
     'peak_jerk_m_s3',
     'vdv_m_s1_75',
+    'weighted_acceleration_m_s2',
 )
 
 
@@ -85,12 +89,11 @@ def compute_metrics(
     slip = trajectory.slip_speed
     with np.errstate(all='ignore'):  # what is not finite becomes None
         engagement_time, lockup_slope = _first_sign_change(slip, start)
-        power = np.abs(trajectory.joint_effort[:, 1] * slip)
         values = {
             'engagement_time_s': engagement_time,
             'lockup_slip_acceleration_rad_s2': lockup_slope,
             'slip_final_rpm': rpm_from_rad_s(slip[-1]),
-            'friction_energy_j': trapezoid(power, dx=PERIOD_S),
+            'friction_energy_j': _friction_energy(trajectory),
             'torque_total_variation_n_m': np.sum(np.abs(np.diff(trajectory.torque_request))),
             **_window_metrics(trajectory, first, last),
             **_update_times(timing),
@@ -119,6 +122,14 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[float | None, floa
     return time, -step / PERIOD_S
 
 
+def _friction_energy(trajectory: Trajectory) -> float:
+    work = getattr(trajectory, 'friction_work', None)
+    if work is not None:
+        return np.sum(work)
+    power = np.abs(trajectory.joint_effort[:, 1] * trajectory.slip_speed)
+    return trapezoid(power, dx=PERIOD_S)
+
+
 def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, float | None]:
     """Return the metrics over the samples `first` to `last`, both included."""
     if trajectory.steps < last:
@@ -126,13 +137,15 @@ def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, 
     window = slice(first, last + 1)
     # Filters see no sample beyond the window, so that a longer run scores the same.
     acceleration = trajectory.vehicle_accel[: last + 1]
+    weighted = weighted_acceleration(acceleration)[window]
     error = (trajectory.slip_reference[:, 0] - trajectory.slip_speed)[window]
     values = (
         rpm_from_rad_s(np.std(trajectory.joint_speed[window, 3])),
         np.std(acceleration[window]),
         rpm_from_rad_s(np.sqrt(np.mean(error**2))),
         np.max(np.abs(jerk(acceleration)[first:]), initial=-math.inf),
-        vibration_dose(weighted_acceleration(acceleration)[window]),
+        vibration_dose(weighted),
+        np.sqrt(np.mean(weighted**2)),
     )
     return dict(zip(_OF_WINDOW, values, strict=True))
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.bag.end_cause import recorded_end_cause
 from ddct_bringup.bag.file.records import mcap_of, salvage_records
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
@@ -17,11 +16,19 @@ from ddct_bringup.run.run_timing import read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
+from ddct_bringup.verdict.criteria import JudgedRun, criterion_values
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.state import INVALID, slip_state
+from ddct_bringup.verdict.verdict import Verdict, verdict_of, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import time_of_step
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.scenario.plant import end_cause
 
 Entry = dict[str, Any]
-"""One run of `scores.json`: bag, ..., valid, reason, metrics, fallbacks, safe_state."""
+"""One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, before_schema."""
+
+SCHEMA_VERSION = 2
+"""Of `scores.json`; 1 had no verdict and did not say its version."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
 _COUNT = re.compile('[0-9]{1,9}')
@@ -36,28 +43,31 @@ _FACT_NAMES = (
 )
 
 
-def score_recording(recording: Recording, bag: str) -> Entry:
+def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
     """
-    Score a recording, with the `timing.json` beside it if there is one; `bag` names it.
+    Score and judge a recording, with its `timing.json` if there is one; `bag` names it.
 
     Raise DdctError for timing that cannot be used.
     """
     facts = recording.facts
-    metrics = compute_metrics(
+    computed = compute_metrics(
         recording.trajectory,
         control_start_s=facts.control_start_s,
         score_window_s=facts.score_window_s,
         timing=read_timing(recording.path.parent),
     )
+    metrics = computed.as_dict()
     reason = why_invalid(recording)
     return {
         'bag': bag,
         **{name: getattr(facts, name) for name in _FACT_NAMES},
         'valid': not reason,
         'reason': reason,
-        'metrics': metrics.as_dict(),
+        'metrics': metrics,
+        'verdict': _verdict(recording, metrics, limits, valid=not reason),
         'fallbacks': fallbacks_in(recording.trajectory),
         'safe_state': None if facts.lockstep else safe_state(recording),
+        'before_schema': recording.before_schema,
     }
 
 
@@ -75,8 +85,10 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
         'valid': False,
         'reason': str(error),
         'metrics': dict.fromkeys(METRIC_NAMES),
+        'verdict': verdict_of_unreadable(),
         'fallbacks': None,
         'safe_state': None,
+        'before_schema': None,
     }
 
 
@@ -94,8 +106,7 @@ def why_invalid(recording: Recording) -> str:
     """Return why a run does not count; empty if it does, also where its engine ended it early."""
     trajectory, facts = recording.trajectory, recording.facts
     reasons = [] if facts.lockstep else why_not_real_time(recording)
-    early = trajectory.steps < facts.steps
-    if early and not recorded_end_cause(trajectory, recording.custom_data):
+    if trajectory.steps < facts.steps and not _engine_end(recording):
         reasons.insert(0, _why_early(recording))
     for name, values in trajectory.signals.items():
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():
@@ -104,6 +115,27 @@ def why_invalid(recording: Recording) -> str:
         first = time_of_step(int(np.flatnonzero(~rows)[0]))
         reasons.append(f'non-finite value in {name} at {first:g} s')
     return '; '.join(reasons)
+
+
+def _verdict(
+    recording: Recording, metrics: dict[str, Any], limits: Limits, *, valid: bool
+) -> Verdict:
+    facts, trajectory = recording.facts, recording.trajectory
+    start = steps_in('control_start_s', facts.control_start_s)
+    if not valid:
+        state = INVALID
+    else:
+        state = _engine_end(recording) or slip_state(trajectory, start, limits.rules)
+    run = JudgedRun(trajectory, start, metrics, limits.rules.engagements_a_day)
+    return verdict_of(state, criterion_values(run), limits, facts.scenario)
+
+
+def _engine_end(recording: Recording) -> str | None:
+    """Return `stalled` or `over_revved` where the run's last state is a reason to end it."""
+    if recording.settings is None:
+        return None
+    speed = float(recording.trajectory.joint_speed[-1, 0])
+    return end_cause(recording.settings.scenario, speed)
 
 
 def _why_early(recording: Recording) -> str:
@@ -116,6 +148,6 @@ def _why_early(recording: Recording) -> str:
     return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
 
 
-def scores_document(runs: Sequence[Entry]) -> dict[str, list[Entry]]:
+def scores_document(runs: Sequence[Entry]) -> dict[str, Any]:
     """Return the content of `scores.json`."""
-    return {'runs': list(runs)}
+    return {'schema_version': SCHEMA_VERSION, 'runs': list(runs)}

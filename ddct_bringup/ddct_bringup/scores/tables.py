@@ -10,6 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
+from ddct_bringup.verdict.verdict import BEYOND
 from ddct_plant.base.printable import printable
 
 UNDEFINED = '-'
@@ -28,6 +30,8 @@ class Column:
     """Whether to align it to the right."""
     below: Callable[[Entry], str] = lambda run: ''
     """What a second line says beneath the text; empty for none."""
+    undefined: str = ''
+    """Why a run that can be read may have a dash here."""
 
     def cell(self, run: Entry) -> str:
         """Return the text of a run's cell, of one line or two."""
@@ -40,26 +44,29 @@ def fact(name: str, heading: str) -> Column:
     return Column(heading, lambda run: _text(run[name], '{}'), number=False)
 
 
-def metric(name: str, heading: str, form: str) -> Column:
+def metric(name: str, heading: str, form: str, undefined: str = '') -> Column:
     """Return the column of a metric, written in the format `form`, such as '{:.3f}'."""
-    return Column(heading, lambda run: _text(run['metrics'][name], form))
+    return Column(heading, lambda run: _text(run['metrics'][name], form), undefined=undefined)
 
 
 BAG = fact('bag', 'bag')
 CONTROLLER = fact('controller', 'controller')
 WEAR = Column('wear', lambda run: _text(run['wear_gain'], '{:g}'))
-ENGAGEMENT_TIME = metric('engagement_time_s', 't_a\ns', '{:.3f}')
-TORSION_STD = metric('torsion_speed_std_rpm', 'std w_sr\nrpm', '{:.3f}')
-ACCELERATION_STD = metric('acceleration_std_m_s2', 'std A_x\nm/s^2', '{:.3f}')
-FINAL_SLIP = metric('slip_final_rpm', 'final\nw_d rpm', '{:.2f}')
-SLIP_RMSE = metric('slip_rmse_rpm', 'slip\nRMSE rpm', '{:.2f}')
-PEAK_JERK = metric('peak_jerk_m_s3', 'jerk\nm/s^3', '{:.2f}')
-MISSED = metric('missed_steps', 'missed\nsteps', '{:d}')
+ENGAGEMENT_TIME = metric('engagement_time_s', 't_a\ns', '{:.3f}', NO_CROSSING)
+TORSION_STD = metric('torsion_speed_std_rpm', 'std w_sr\nrpm', '{:.3f}', NO_WINDOW)
+ACCELERATION_STD = metric('acceleration_std_m_s2', 'std A_x\nm/s^2', '{:.3f}', NO_WINDOW)
+FINAL_SLIP = metric('slip_final_rpm', 'final\nw_d rpm', '{:.2f}', NOT_FINITE)
+SLIP_RMSE = metric('slip_rmse_rpm', 'slip\nRMSE rpm', '{:.2f}', NO_WINDOW)
+PEAK_JERK = metric('peak_jerk_m_s3', 'jerk\nm/s^3', '{:.2f}', NO_WINDOW)
+MISSED = metric('missed_steps', 'missed\nsteps', '{:d}', NO_TIMING)
 LATENESS = Column(
     'latest\nms',
     lambda run: _text(_in_ms(run['metrics']['worst_lateness_us']), '{:.2f}'),
+    undefined=f'it ran in lock-step, or {NO_TIMING}',
 )
-SAFE_STATE = Column('safe state', lambda run: _safe_state(run), number=False)
+SAFE_STATE = Column(
+    'safe state', lambda run: _safe_state(run), number=False, undefined='it ran in lock-step'
+)
 VALID = Column('valid', lambda run: 'yes' if run['valid'] else 'NO', number=False)
 
 COLUMNS = (
@@ -73,6 +80,11 @@ COLUMNS = (
 )
 """What every table of runs shows, after the columns that tell the runs apart."""
 
+VERDICT_COLUMNS = (
+    Column('state', lambda run: run['verdict']['state'], number=False),
+    Column('limits', lambda run: run['verdict']['limits'], number=False),
+)
+"""Before the last column where the terminal is wide enough; otherwise in lines below."""
 REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
 """What a table also shows when one of its runs was in real time."""
 
@@ -80,23 +92,67 @@ REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
 def print_runs(
     runs: Sequence[Entry], columns: Sequence[Column], stream: TextIO, title: str | None = None
 ) -> None:
-    """Print one row per run, then why one is invalid or not quite the controller's."""
+    """
+    Print one row per run, its verdict included, then what needs a word.
+
+    That are dashes, runs that do not count, and criteria beyond their limits.
+    """
     if any(run['mode'] == 'realtime' for run in runs):
         columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
+    console = Console(
+        file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
+    )
+    table = _table(runs, [*columns[:-1], *VERDICT_COLUMNS, columns[-1]], title)
+    unbounded = console.options.update(max_width=10 * _PIPED_WIDTH)
+    wide_enough = console.measure(table, options=unbounded).maximum <= console.width
+    console.print(table if wide_enough else _table(runs, columns, title))
+    for text in dash_notes(runs, columns):
+        console.print(Text(text), soft_wrap=True)
+    for run in runs:
+        verdict = [] if wide_enough else [_verdict_text(run)]
+        for text in [*verdict, *run_notes(run)]:
+            console.print(Text(printable(f'{run["bag"]}: {text}'), 'bold'), soft_wrap=True)
+
+
+def _verdict_text(run: Entry) -> str:
+    return ', '.join(f'{each.heading} {each.text(run)}' for each in VERDICT_COLUMNS)
+
+
+def _table(runs: Sequence[Entry], columns: Sequence[Column], title: str | None) -> Table:
     table = Table(title=title, box=box.SIMPLE, pad_edge=False, collapse_padding=True)
     for column in columns:
         table.add_column(column.heading, justify='right' if column.number else 'left')
     for run in runs:
         table.add_row(*(Text(column.cell(run)) for column in columns))
-    console = Console(
-        file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
-    )
-    console.print(table)
-    for run in runs:
-        if not run['valid']:
-            _note(console, f'{run["bag"]}: not valid: {run["reason"]}')
-        elif run['fallbacks']:
-            _note(console, f'{run["bag"]}: {fallback_note(run)}')
+    return table
+
+
+def dash_notes(runs: Sequence[Entry], columns: Sequence[Column]) -> list[str]:
+    """Return for each column in which a run that can be read has a dash, what it means there."""
+    read = [run for run in runs if run['metrics']['steps'] is not None]
+    return [
+        f"{column.heading.splitlines()[0]} '-': {column.undefined}."
+        for column in columns
+        if column.undefined and any(column.text(run) == UNDEFINED for run in read)
+    ]
+
+
+def run_notes(run: Entry) -> list[str]:
+    """Return what to know of one run: why it does not count, or what its figures do not show."""
+    notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
+    if run['valid'] and run['fallbacks']:
+        notes.append(fallback_note(run))
+    beyond = [
+        f'{each["name"]} {each["value"]:.4g} {each["unit"]} (limit {each["limit"]:g}, '
+        f'{each["source"]})'
+        for each in run['verdict']['criteria']
+        if each['state'] == BEYOND
+    ]
+    if beyond:
+        notes.append(f'beyond {"; ".join(beyond)}')
+    if run['before_schema']:
+        notes.append('recorded before scenarios had a schema_version: judged by what it holds')
+    return notes
 
 
 def fallback_note(run: Entry) -> str:
@@ -105,10 +161,6 @@ def fallback_note(run: Entry) -> str:
         f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
         'time: the figures are partly those of its fallback'
     )
-
-
-def _note(console: Console, text: str) -> None:
-    console.print(Text(printable(text), 'bold'), soft_wrap=True)
 
 
 def _safe_state(run: Entry) -> str:

@@ -81,10 +81,14 @@ def _metric(name: str) -> Callable[[JudgedRun], float | int | None]:
     return lambda run: run.metrics[name]
 
 
-_NO_STICK_SLIP = 'linear clutch, or never locked after control start'
-_NO_WINDOW = 'ends before the score window does'
+NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
+NO_WINDOW = 'the run ends before the score window does, or a value is not finite'
+NOT_FINITE = 'a value is not finite'
+NO_TIMING = 'there is no timing.json'
+_NO_LOCK = 'the clutch is linear, or never locked after control start'
 _NOT_TOGETHER = 'the plates never came together after control start'
-_NOTHING = 'ends before control start'
+_NOTHING = 'the run ends before control start'
+"""Why a figure is undefined."""
 
 CRITERIA = (
     Criterion(
@@ -92,28 +96,28 @@ CRITERIA = (
         's',
         lambda run: run.locking.time_to_lock_s,
         'control start to the first lock',
-        f'{_NO_STICK_SLIP}, or locked there already',
+        f'{_NO_LOCK}, or was locked there',
     ),
     Criterion(
         'engagement_time',
         's',
         _metric('engagement_time_s'),
         't_a, control start to the first change of sign of w_d',
-        'w_d never changes its sign after control start, or is zero there',
+        NO_CROSSING,
     ),
     Criterion(
         'peak_jerk',
         'm/s^3',
         _metric('peak_jerk_m_s3'),
         'largest jerk in the score window, A_x through a 20 Hz low-pass without delay',
-        _NO_WINDOW,
+        NO_WINDOW,
     ),
     Criterion(
         'mean_jerk',
         'm/s^3',
         lambda run: mean_jerk(run.after_control_start('vehicle_accel')),
         "largest of the jerk's means over 1 s after control start",
-        'ends less than 1 s after control start',
+        'the run ends less than 1 s after control start',
     ),
     Criterion(
         'peak_acceleration',
@@ -127,49 +131,49 @@ CRITERIA = (
         'm/s^2',
         _metric('weighted_acceleration_m_s2'),
         'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
-        _NO_WINDOW,
+        NO_WINDOW,
     ),
     Criterion(
         'daily_vibration_dose',
         'm/s^1.75',
         _daily_dose,
         "1.4 times the run's vibration dose, for all engagements of a day",
-        _NO_WINDOW,
+        NO_WINDOW,
     ),
     Criterion(
         'friction_energy',
         'J',
         _metric('friction_energy_j'),
         'friction work of the clutch, whole run',
-        'a value is not finite',
+        NOT_FINITE,
     ),
     Criterion(
         'peak_temperature',
         'degC',
         _peak_temperature,
         'highest temperature of the pressure plate',
-        'linear clutch',
+        'the clutch is linear',
     ),
     Criterion(
         'slip_acceleration_at_lock',
         'rad/s^2',
         _metric('lockup_slip_acceleration_rad_s2'),
         'slope of w_d where the plates first come together',
-        'w_d never reaches zero after control start',
+        NO_CROSSING,
     ),
     Criterion(
         'releases_after_lock',
         '1',
         lambda run: run.locking.releases,
         'how often the plates part again',
-        _NO_STICK_SLIP,
+        _NO_LOCK,
     ),
     Criterion(
         'judder',
         'rpm',
         lambda run: judder(run.torsion_speed_rpm[run.locking.slipping]),
         'r.m.s. of w_sr from 2 to 20 Hz over the longest stretch of slipping',
-        'slips for less than 1 s',
+        'the clutch slips for less than 1 s',
     ),
     Criterion(
         'shuffle_amplitude',
@@ -197,14 +201,14 @@ CRITERIA = (
         'N m',
         _metric('torque_total_variation_n_m'),
         'sum of all changes of the torque request, whole run',
-        'a value is not finite',
+        NOT_FINITE,
     ),
     Criterion(
         'deadline_misses',
         '1',
         _metric('missed_steps'),
         'steps that went on without a reply',
-        'no timing.json',
+        NO_TIMING,
     ),
 )
 

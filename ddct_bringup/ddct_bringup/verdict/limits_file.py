@@ -1,5 +1,6 @@
 """Read a limits file; whatever is wrong with it is named with file, line and key."""
 
+import argparse
 import dataclasses
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -27,6 +28,16 @@ def packaged_limits() -> Limits:
     """Return the limits that come with the package."""
     file = files('ddct_bringup.verdict') / 'limits.yaml'
     return limits_of_text(file.read_text(encoding='utf-8'), 'limits.yaml')
+
+
+def add_limits_option(parser: argparse.ArgumentParser) -> None:
+    """Add --limits to a program's options; `load_limits` takes it."""
+    parser.add_argument(
+        '--limits',
+        type=Path,
+        metavar='FILE',
+        help='what runs are judged by, see docs/verdict.md; default: the packaged limits',
+    )
 
 
 def load_limits(file: Path | None) -> Limits:

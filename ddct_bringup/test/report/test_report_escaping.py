@@ -15,6 +15,7 @@ from ddct_bringup.report.page import report_page, symbols
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording, unreadable_entry
+from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -83,7 +84,10 @@ def html() -> str:
     whole = recording(EVIL)
     runs = [
         # Two of one controller, so that the labels of the charts name the bags.
-        *(ReportRun(score_recording(whole, bag), whole) for bag in (f'{EVIL}/a', f'{EVIL}/b')),
+        *(
+            ReportRun(score_recording(whole, bag, packaged_limits()), whole)
+            for bag in (f'{EVIL}/a', f'{EVIL}/b')
+        ),
         ReportRun(unreadable_entry(Path(EVIL), DdctError(f'damaged {EVIL}'))),
     ]
     return report_page(runs, [])

@@ -52,3 +52,25 @@ def test_weighting_starts_in_equilibrium():
 def test_vibration_dose_of_a_sine():
     # The mean of sin^4 is 3/8.
     assert vibration_dose(2.0 * sine(1.0)) == pytest.approx(2.0 * (40.0 * 3 / 8) ** 0.25, rel=1e-6)
+
+
+# W_d of ISO 8041-1 at the band centres 10^(n/10) Hz, from its parameters f1 = 0.4, f2 = 100,
+# f3 = f4 = 2 Hz and Q4 = 0.63, and its value at 100 rad/s, which instruments are calibrated by.
+def weight(frequency_hz):
+    s = 2j * np.pi * frequency_hz
+    w1, w2, w3 = 2 * np.pi * 0.4, 2 * np.pi * 100.0, 2 * np.pi * 2.0
+    band = s**2 / (s**2 + np.sqrt(2) * w1 * s + w1**2)
+    band *= w2**2 / (s**2 + np.sqrt(2) * w2 * s + w2**2)
+    return abs(band * (1 + s / w3) / (1 + s / (0.63 * w3) + (s / w3) ** 2))
+
+
+def test_the_parameters_give_the_weight_that_instruments_are_calibrated_by():
+    assert weight(100.0 / (2 * np.pi)) == pytest.approx(0.1261, abs=5e-5)
+
+
+@pytest.mark.parametrize('n', range(-4, 12))
+def test_weighting_keeps_the_tolerance_of_the_standard_up_to_13_hz(n):
+    frequency_hz = 10.0 ** (n / 10.0)
+    settled = weighted_acceleration(sine(frequency_hz))[2000:]
+    rms = np.sqrt(2.0 * np.mean(settled**2))
+    assert rms == pytest.approx(weight(frequency_hz), rel=0.11)

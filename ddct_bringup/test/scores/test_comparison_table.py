@@ -8,6 +8,7 @@ from printed_table import value_under
 
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_bringup.verdict.verdict import verdict_of_unreadable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -31,7 +32,9 @@ def entry(controller='ls8'):
         'valid': True,
         'reason': '',
         'metrics': {**dict.fromkeys(METRIC_NAMES), **OURS},
+        'verdict': verdict_of_unreadable(),
         'fallbacks': None,
+        'before_schema': False,
     }
 
 

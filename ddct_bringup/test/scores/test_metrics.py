@@ -193,6 +193,7 @@ def test_metrics_have_the_names_that_other_scripts_rely_on():
         'slip_final_rpm',
         'peak_jerk_m_s3',
         'vdv_m_s1_75',
+        'weighted_acceleration_m_s2',
         'friction_energy_j',
         'lockup_slip_acceleration_rad_s2',
         'torque_total_variation_n_m',

@@ -12,6 +12,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording, why_invalid
+from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -54,6 +55,10 @@ def recording(
     )
 
 
+def scored(run):
+    return score_recording(run, 'bag', packaged_limits())
+
+
 @pytest.mark.parametrize('mode', ['lockstep', 'realtime'])
 def test_a_whole_run_counts(mode):
     assert TRAJECTORY.steps == STEPS
@@ -90,19 +95,19 @@ def test_torques_that_the_bag_lacks_count_as_misses(topic):
 @pytest.mark.parametrize('node', ['actuator', 'engine', 'driveline'])
 def test_a_safe_state_makes_a_run_invalid_and_is_named(node):
     since = {node: stamp_of_step(87)}
-    entry = score_recording(recording(facts(safe_states=since)), 'bag')
+    entry = scored(recording(facts(safe_states=since)))
     assert (entry['valid'], entry['safe_state']) == (False, f'{node} at 0.87 s')
     assert entry['reason'] == f'safe state entered by {node} at 0.87 s'
 
 
 def test_scores_say_whether_there_was_a_safe_state_in_real_time_only():
-    assert score_recording(recording(), 'bag')['safe_state'] == ''
-    assert score_recording(recording(mode='lockstep'), 'bag')['safe_state'] is None
+    assert scored(recording())['safe_state'] == ''
+    assert scored(recording(mode='lockstep'))['safe_state'] is None
 
 
 def test_scores_hold_the_worst_lateness_of_the_timing_file(tmp_path):
     RunTiming(missed_steps=2, worst_lateness_us=1500.0).write(tmp_path)
-    metrics = score_recording(recording(path=tmp_path / 'x.mcap'), 'bag')['metrics']
+    metrics = scored(recording(path=tmp_path / 'x.mcap'))['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (2, 1500.0)
 
 

@@ -7,9 +7,19 @@ from printed_table import value_under
 
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, Column, metric, print_runs
+from ddct_bringup.verdict.verdict import verdict_of_unreadable
 
 
-def run(controller='pi', *, valid=True, reason='', mode='lockstep', safe_state=None, **metrics):
+def run(
+    controller='pi',
+    *,
+    valid=True,
+    reason='',
+    mode='lockstep',
+    safe_state=None,
+    verdict=None,
+    **metrics,
+):
     return {
         'bag': controller,
         'controller': controller,
@@ -19,7 +29,9 @@ def run(controller='pi', *, valid=True, reason='', mode='lockstep', safe_state=N
         'valid': valid,
         'reason': reason,
         'metrics': {**dict.fromkeys(METRIC_NAMES), **metrics},
+        'verdict': verdict or verdict_of_unreadable(),
         'fallbacks': None,
+        'before_schema': False,
     }
 
 
@@ -60,7 +72,7 @@ def test_a_valid_run_is_told_from_one_that_is_not():
 def test_an_undefined_metric_is_a_dash():
     lines = printed([run()]).splitlines()
     row = next(line for line in lines if 'pi' in line)
-    assert row.split() == ['pi', '1', '-', '-', '-', '-', '-', '-', 'yes']
+    assert row.split() == ['pi', '1', *6 * '-', 'invalid', 'no_limit', 'yes']
 
 
 def test_the_reason_of_an_invalid_run_stands_below_the_table():
@@ -145,3 +157,50 @@ def test_no_control_character_of_a_bag_reaches_the_terminal(stream):
     assert '\x1b]' not in text
     assert '\x1b[2J' not in text
     assert r'not valid: \x1b]0;title\x07\x1b[2J\x9b31m\nsecond line' in text
+
+
+def verdict_beyond():
+    within = {'name': 'peak_jerk', 'value': 1.0, 'unit': 'm/s^3', 'limit': 2.0, 'source': 'A, 1'}
+    beyond = {'name': 'judder', 'value': 4.0, 'unit': 'rpm', 'limit': 3.0, 'source': 'B, 2'}
+    return {
+        'state': 'oscillating',
+        'limits': 'beyond',
+        'criteria': [{**within, 'state': 'within'}, {**beyond, 'state': 'beyond'}],
+    }
+
+
+def test_a_run_has_its_state_and_its_limits_and_a_word_on_what_is_beyond():
+    text = printed([run('ls8', verdict=verdict_beyond())])
+    row = next(line for line in text.splitlines() if 'ls8' in line.split())
+    assert row.split()[-3:] == ['oscillating', 'beyond', 'yes']
+    assert 'ls8: beyond judder 4 rpm (limit 3, B, 2)\n' in text
+    assert 'peak_jerk' not in text
+
+
+def test_a_narrow_terminal_has_state_and_limits_in_lines_of_their_own(monkeypatch):
+    monkeypatch.setenv('COLUMNS', '80')
+    text = printed([run('feedforward', verdict=verdict_beyond())], stream=Terminal())
+    assert 'feedforward: state oscillating, limits beyond' in text
+    wide = printed([run('feedforward', verdict=verdict_beyond())])
+    assert 'feedforward: state' not in wide
+
+
+def test_every_dash_has_its_reason_once_below_the_table():
+    text = printed([run('pi', steps=300), run('ls8', steps=300)])
+    for heading in ('t_a', 'std w_sr', 'std A_x', 'final', 'slip', 'jerk'):
+        assert text.count(f"{heading} '-': ") == 1
+    complete = dict.fromkeys(METRIC_NAMES, 1.0)
+    assert "'-'" not in printed([run(**complete)])
+    assert "t_a '-': after control start" in printed(
+        [run(**complete | {'engagement_time_s': None})]
+    )
+
+
+def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
+    text = printed([run(valid=False, reason='unfinished')])
+    assert "'-'" not in text
+    assert 'pi: not valid: unfinished' in text
+
+
+def test_a_bag_of_before_the_schema_says_so():
+    assert 'pi: recorded before' in printed([{**run(), 'before_schema': True}])

@@ -1,0 +1,230 @@
+"""Every criterion against a run whose answer is known."""
+
+import numpy as np
+import pytest
+from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
+
+from ddct_bringup.scores.metrics import compute_metrics
+from ddct_bringup.verdict.criteria import CRITERION_UNITS, JudgedRun, criterion_values
+from ddct_bringup.verdict.limits_file import limits_of_text, packaged_limits
+from ddct_bringup.verdict.verdict import verdict_of
+
+T = times()
+
+
+def values(run, start=CONTROL_START, engagements=1000.0):
+    metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=(0.6, 2.0))
+    return criterion_values(JudgedRun(run, start, metrics.as_dict(), engagements))
+
+
+def shaft(signal, index=3):
+    result = np.zeros((len(signal), 4))
+    result[:, index] = signal
+    return result
+
+
+def sticking(events, phase, slip=None, **signals):
+    """Return a run with a clutch that sticks, its events by step."""
+    slip = np.zeros(301) if slip is None else slip
+    steps = tuple(tuple(events.get(step, ())) for step in range(301))
+    return made_run(slip, clutch_phase=phase, phase_events=steps, **signals)
+
+
+def phases(*changes):
+    """Return the phase at each step of (first step, phase) pairs."""
+    result = np.zeros(301)
+    for first, phase in changes:
+        result[first:] = phase
+    return result
+
+
+def test_a_linear_clutch_never_locks():
+    found = values(made_run(600.0 - 600.0 * (T - 0.6)))
+    assert found['time_to_lock'] is None
+    assert found['releases_after_lock'] is None
+    assert found['peak_temperature'] is None
+    assert found['engagement_time'] == pytest.approx(1.0)
+
+
+def test_time_to_lock_is_that_of_the_first_lock_after_control_start():
+    events = {
+        20: [(0.195, 'lock')],
+        30: [(0.3, 'release')],
+        151: [(1.5034, 'lock'), (1.509, 'release')],
+        160: [(1.595, 'lock')],
+    }
+    found = values(sticking(events, phases((0, 1), (20, 2), (30, 1), (160, 2))))
+    assert found['time_to_lock'] == pytest.approx(0.9034)
+    assert found['releases_after_lock'] == 1
+
+
+def test_releases_of_plates_that_were_locked_at_control_start_count():
+    events = {20: [(0.195, 'lock')], 100: [(0.993, 'release')], 120: [(1.2, 'lock')]}
+    found = values(sticking(events, phases((0, 1), (20, 2), (100, 1), (120, 2))))
+    assert found['time_to_lock'] is None
+    assert found['releases_after_lock'] == 1
+
+
+def test_plates_that_only_slip_have_no_releases():
+    found = values(sticking({}, phases((0, 1))))
+    assert found['time_to_lock'] is None
+    assert found['releases_after_lock'] is None
+
+
+def test_friction_energy_is_the_work_that_the_run_reports_or_that_of_torque_and_slip():
+    torque = shaft(np.full(301, 100.0), 1)
+    slip = np.full(301, 2.0 / RAD_S_PER_RPM)
+    assert values(made_run(slip, joint_effort=torque))['friction_energy'] == pytest.approx(600.0)
+    work = np.full(301, 0.5)
+    reported = made_run(slip, joint_effort=torque, friction_work=work)
+    assert values(reported)['friction_energy'] == pytest.approx(150.5)
+
+
+def test_peak_temperature_is_the_highest():
+    found = values(made_run(np.zeros(301), clutch_temperature=np.linspace(20.0, 180.0, 301)))
+    assert found['peak_temperature'] == 180.0
+
+
+def test_judder_is_the_rms_of_w_sr_while_slipping_within_its_band():
+    slip = np.where(T <= 2.0, 300.0, -1.0)
+    in_band = 4.0 * RAD_S_PER_RPM * np.sin(2 * np.pi * 8.0 * T)
+    outside = 9.0 * RAD_S_PER_RPM * np.sin(2 * np.pi * 0.3 * T)
+    after = np.where(T > 2.01, 1000.0, 0.0)
+    speed = shaft(in_band + outside + after)
+    found = values(made_run(slip, joint_speed=speed))['judder']
+    assert found == pytest.approx(4.0 / np.sqrt(2.0), rel=0.05)
+
+
+def test_judder_of_less_than_one_second_of_slipping_is_undefined():
+    speed = shaft(np.sin(50.0 * T))
+    slipping_for = {99: None, 101: float}
+    for steps, kind in slipping_for.items():
+        run = sticking({}, phases((0, 2), (60, 1), (60 + steps, 2)), joint_speed=speed)
+        found = values(run)['judder']
+        assert (found is None) == (kind is None), steps
+
+
+def test_judder_takes_the_longest_stretch_of_slipping():
+    quiet, loud = phases((0, 1), (120, 2), (150, 1), (200, 2)), np.where(T > 1.4, 1.0, 0.0)
+    run = sticking({}, quiet, joint_speed=shaft(loud * np.sin(50.0 * T)))
+    assert values(run)['judder'] < 1e-9
+
+
+def test_shuffle_after_lock_has_an_amplitude_and_a_time_in_which_it_decays():
+    lock = 1.5
+    after = np.maximum(T - lock, 0.0)
+    ringing = np.where(lock <= T, np.exp(-after / 0.2) * np.cos(2 * np.pi * 8.0 * after), 99.0)
+    run = sticking(
+        {150: [(lock, 'lock')]},
+        phases((0, 1), (150, 2)),
+        joint_speed=shaft(30.0 * RAD_S_PER_RPM * ringing),
+    )
+    found = values(run)
+    assert found['shuffle_amplitude'] == pytest.approx(30.0)
+    # The last half wave above 1/e ends up to half a period, 62.5 ms, before or after 0.2 s.
+    assert found['shuffle_decay'] == pytest.approx(0.2, abs=0.0625)
+
+
+def test_shuffle_that_goes_on_has_no_decay_and_one_without_lock_no_amplitude():
+    speed = shaft(np.sin(50.0 * T))
+    locked = sticking({150: [(1.5, 'lock')]}, phases((0, 1), (150, 2)), joint_speed=speed)
+    assert values(locked)['shuffle_decay'] is None
+    assert values(locked)['shuffle_amplitude'] > 9.0
+    slipping = made_run(np.full(301, 100.0), joint_speed=speed)
+    assert values(slipping)['shuffle_amplitude'] is None
+
+
+def test_torque_dip_is_the_largest_fall_after_control_start():
+    torque = np.interp(T, [0.0, 0.1, 1.0, 1.2, 1.5, 3.0], [0.0, 900.0, 500.0, 380.0, 600.0, 570.0])
+    torque[:60] = np.linspace(900.0, 0.0, 60)
+    found = values(made_run(np.zeros(301), joint_effort=shaft(torque)))
+    expected = torque[60] - 380.0
+    assert found['torque_dip'] == pytest.approx(expected)
+
+
+def test_mean_jerk_is_the_change_of_acceleration_within_one_second():
+    acceleration = np.interp(T, [0.0, 1.0, 1.5, 3.0], [9.0, 0.0, 1.5, 1.5])
+    acceleration[:60] = -99.0
+    found = values(made_run(np.zeros(301), vehicle_accel=acceleration))
+    assert found['mean_jerk'] == pytest.approx(abs(acceleration[160] - acceleration[60]))
+    assert found['peak_acceleration'] == pytest.approx(acceleration[60])
+
+
+def test_the_daily_dose_is_that_of_all_engagements_in_the_sense_of_the_directive():
+    acceleration = np.sin(2 * np.pi * T)
+    run = made_run(np.zeros(301), vehicle_accel=acceleration)
+    one = compute_metrics(run, control_start_s=0.6, score_window_s=(0.6, 2.0)).vdv_m_s1_75
+    # Vibration 16 times as long has twice the dose; horizontal axes count 1.4 fold.
+    assert values(run, engagements=16.0)['daily_vibration_dose'] == pytest.approx(2.8 * one)
+
+
+def test_weighted_acceleration_of_a_sine_is_its_rms_times_the_weight():
+    t = times(40.0)
+    run = made_run(np.zeros(len(t)), vehicle_accel=2.0 * np.sin(2 * np.pi * t))
+    metrics = compute_metrics(run, control_start_s=0.6, score_window_s=(20.0, 39.99))
+    expected = 1.011 * 2.0 / np.sqrt(2.0)
+    assert metrics.weighted_acceleration_m_s2 == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize('name', ['joint_speed', 'joint_effort', 'vehicle_accel', 'slip_speed'])
+def test_a_value_that_is_not_finite_makes_no_number_up(name):
+    run = made_run(np.full(301, 100.0))
+    spoiled = run.signals[name].copy()
+    spoiled[150] = np.nan
+    found = values(made_run(np.full(301, 100.0), **{name: spoiled}))
+    assert all(value is None or np.isfinite(value) for value in found.values())
+
+
+@pytest.mark.parametrize('rows', [1, 2, 30, 61, 62])
+def test_a_run_that_ends_early_has_what_it_has(rows):
+    assert set(values(made_run(np.full(rows, 100.0)))) == set(CRITERION_UNITS)
+
+
+def test_a_criterion_is_within_beyond_or_without_limit_by_its_magnitude():
+    text = """\
+rules: RULES
+limits:
+- {criterion: slip_acceleration_at_lock, value: 40, unit: rad/s^2, applies_to: all,
+   source: A, clause: '1'}
+- {criterion: peak_jerk, value: 5, unit: m/s^3, applies_to: [launch], source: B, clause: '2'}
+- {criterion: judder, value: 5, unit: rpm, applies_to: all, convention: true}
+"""
+    rules = {
+        name: {'value': 1.0, 'unit': unit, 'reason': 'x'}
+        for name, unit in [
+            ('engaged_slip', 'rpm'),
+            ('settled_time', 's'),
+            ('oscillation_turns', '1'),
+            ('runaway_slip', 'rpm'),
+            ('runaway_growth', 'rpm/s'),
+            ('engagements_a_day', '1'),
+        ]
+    }
+    limits = limits_of_text(text.replace('RULES', repr(rules)), 'x')
+    known = dict.fromkeys(CRITERION_UNITS)
+
+    def judged(scenario='thesis', **given):
+        verdict = verdict_of('engaged', {**known, **given}, limits, scenario)
+        return verdict, {each['name']: each for each in verdict['criteria']}
+
+    verdict, criteria = judged(slip_acceleration_at_lock=-41.0, peak_jerk=6.0)
+    assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
+    assert criteria['slip_acceleration_at_lock'] == {
+        'name': 'slip_acceleration_at_lock',
+        'value': -41.0,
+        'unit': 'rad/s^2',
+        'limit': 40.0,
+        'source': 'A, 1',
+        'state': 'beyond',
+    }
+    assert [criteria['peak_jerk'][key] for key in ('limit', 'state')] == [None, 'no_limit']
+    assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
+    assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'within'
+    assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
+    undefined = judged()[1]['judder']
+    assert (undefined['value'], undefined['limit'], undefined['state']) == (None, 5.0, 'no_limit')
+
+
+def test_the_packaged_file_limits_the_dose_by_the_action_value():
+    limit = packaged_limits().of('daily_vibration_dose', 'thesis')
+    assert (limit.value, limit.unit) == (9.1, 'm/s^1.75')
