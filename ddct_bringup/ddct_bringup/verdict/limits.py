@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 
-def _rule(unit: str) -> float:
-    return field(metadata={'unit': unit})
+def _rule(unit: str, at_least: float | None = None) -> float:
+    return field(metadata={'unit': unit, 'at_least': at_least})
 
 
 @dataclass(frozen=True)
@@ -15,8 +15,8 @@ class Rules:
     """Magnitude of w_d below which the plates count as one."""
     settled_time: float = _rule('s')
     """How long the slip has to keep below it at the end of the run."""
-    oscillation_turns: float = _rule('1')
-    """Turns of the slip after control start from which a run that has not settled oscillates."""
+    oscillation_turns: float = _rule('1', at_least=3.0)
+    """Turns of the slip after control start from which it goes to and fro; 3 make a cycle."""
     runaway_slip: float = _rule('rpm')
     """Magnitude of w_d beyond which the plates have been driven apart."""
     runaway_growth: float = _rule('rpm/s')

@@ -80,16 +80,16 @@ class _LimitsFile:
         )
 
     def _rules(self, content: Any) -> Rules:
-        units = {rule.name: rule.metadata['unit'] for rule in dataclasses.fields(Rules)}
-        rules = self._mapping(content, ('rules',), tuple(units))
-        values = {}
-        for name, unit in units.items():
-            path = ('rules', name)
-            rule = self._mapping(rules[name], path, _RULE_KEYS)
-            self._text(rule['reason'], (*path, 'reason'))
-            self._unit(rule['unit'], unit, (*path, 'unit'))
-            values[name] = self._positive(rule['value'], (*path, 'value'))
-        return Rules(**values)
+        fields = dataclasses.fields(Rules)
+        rules = self._mapping(content, ('rules',), [field.name for field in fields])
+        return Rules(**{field.name: self._rule(rules[field.name], field) for field in fields})
+
+    def _rule(self, content: Any, field: dataclasses.Field[float]) -> float:
+        path = ('rules', field.name)
+        rule = self._mapping(content, path, _RULE_KEYS)
+        self._text(rule['reason'], (*path, 'reason'))
+        self._unit(rule['unit'], field.metadata['unit'], (*path, 'unit'))
+        return self._positive(rule['value'], (*path, 'value'), field.metadata['at_least'])
 
     def _limit(self, content: Any, path: tuple[Any, ...]) -> Limit:
         limit = self._mapping(content, path, _LIMIT_KEYS, (*_CITATION, 'convention'))
@@ -142,9 +142,9 @@ class _LimitsFile:
                 raise self._bad(path, f'the key {key} is missing')
         return content
 
-    def _positive(self, value: Any, path: tuple[Any, ...]) -> float:
+    def _positive(self, value: Any, path: tuple[Any, ...], at_least: float | None = None) -> float:
         try:
-            return require_number('it', value, above=0.0, at_most=1e9)
+            return require_number('it', value, above=0.0, at_least=at_least, at_most=1e9)
         except ParameterError as error:
             raise self._bad(path, str(error)) from error
 

@@ -48,17 +48,14 @@ def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:
     if np.max(np.abs(whole)) > rules.runaway_slip:
         return RUNAWAY
     slip = whole[control_start:]
-    turns = turns_of(slip, 2.0 * rules.engaged_slip)
-    oscillates = len(turns) >= rules.oscillation_turns
-    needed = rules.settled_time
-    if oscillates:
-        # A cycle leaves the band again within half of its period.
-        needed = max(needed, (turns[-1] - turns[-2]) * PERIOD_S)
+    cycle = _cycle(slip, rules)
+    # A cycle leaves the band again before the longer half of it is over.
+    needed = max(rules.settled_time, cycle or 0.0)
     if _time_within(slip, rules.engaged_slip) >= needed:
         return ENGAGED
-    if _driven_apart(trajectory, slip, oscillates, rules):
+    if _driven_apart(trajectory, slip, cycle is not None, rules):
         return RUNAWAY
-    return OSCILLATING if oscillates else NOT_ENGAGED
+    return NOT_ENGAGED if cycle is None else OSCILLATING
 
 
 def turns_of(values: np.ndarray, swing: float) -> list[int]:
@@ -82,6 +79,21 @@ def turns_of(values: np.ndarray, swing: float) -> list[int]:
     return turns
 
 
+def _cycle(slip: np.ndarray, rules: Rules) -> float | None:
+    """
+    Return the longer half in s of the last cycle of a slip that goes to and fro, else None.
+
+    It does when it has turned often enough, and last within a whole cycle before the end.
+    """
+    turns = turns_of(slip, 2.0 * rules.engaged_slip)
+    if len(turns) < rules.oscillation_turns:
+        return None
+    first, second, third = turns[-3:]
+    if len(slip) - 1 - third > third - first:
+        return None
+    return max(second - first, third - second) * PERIOD_S
+
+
 def _time_within(slip: np.ndarray, band: float) -> float:
     """Return for how many s the slip has kept within the band at the end."""
     outside = np.flatnonzero(np.abs(slip) > band)
@@ -89,22 +101,33 @@ def _time_within(slip: np.ndarray, band: float) -> float:
     return float((len(slip) - 1 - first) * PERIOD_S)
 
 
-def _driven_apart(
-    trajectory: Trajectory, slip: np.ndarray, oscillates: bool, rules: Rules
-) -> bool:
+def _driven_apart(trajectory: Trajectory, slip: np.ndarray, cycles: bool, rules: Rules) -> bool:
     """
     Say whether the slip grows at the end although the reference asks for none.
 
-    Of a slip that goes to and fro it must also be beyond all that was before.
+    Of a slip that goes to and fro it must also be beyond all that was before. Of one that has
+    crossed zero the growth must not become less, as it does in an overshoot.
     """
     window = round(rules.settled_time / PERIOD_S)
     distance = np.abs(slip)
     asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
     if len(slip) <= window or distance[-1] <= rules.engaged_slip or asked > rules.engaged_slip:
         return False
-    last = distance[-1 - window :]
-    growth = np.polyfit(np.arange(window + 1) * PERIOD_S, last, 1)[0]
+    growth = _growth(distance[-1 - window :])
     if growth < rules.runaway_growth:
         return False
-    before = np.max(distance[: -1 - window], initial=0.0)
-    return not oscillates or bool(distance[-1] > before + rules.engaged_slip)
+    if cycles:
+        before = np.max(distance[: -1 - window], initial=0.0)
+        return bool(distance[-1] > before + rules.engaged_slip)
+    other_side = np.flatnonzero(slip * slip[-1] < 0.0)
+    if not other_side.size:
+        return True
+    beyond = distance[other_side[-1] + 1 :]
+    if len(beyond) <= 2 * window:
+        return False
+    return growth > _growth(beyond[-1 - 2 * window : -window]) - rules.runaway_growth
+
+
+def _growth(values: np.ndarray) -> float:
+    """Return the slope per s of the straight line through samples of 10 ms."""
+    return float(np.polyfit(np.arange(len(values)) * PERIOD_S, values, 1)[0])

@@ -35,7 +35,7 @@ def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:
     magnitude = np.abs(torsion_speed)
     peak = int(np.argmax(magnitude))
     last = int(np.flatnonzero(magnitude >= magnitude[peak] / np.e)[-1])
-    decay = (last + 1 - peak) * PERIOD_S if last + 1 < len(magnitude) else None
+    decay = (last + 1 - peak) / STEPS_PER_S if last + 1 < len(magnitude) else None
     return float(magnitude[peak]), decay
 
 

@@ -190,7 +190,7 @@ limits:
 - {criterion: judder, value: 5, unit: rpm, applies_to: all, convention: true}
 """
     rules = {
-        name: {'value': 1.0, 'unit': unit, 'reason': 'x'}
+        name: {'value': 3.0, 'unit': unit, 'reason': 'x'}
         for name, unit in [
             ('engaged_slip', 'rpm'),
             ('settled_time', 's'),

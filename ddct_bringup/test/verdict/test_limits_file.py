@@ -57,6 +57,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
         ('criterion: mean_jerk', 'criterion: jerkiness', 'jerkiness', 'limits.4.criterion: '),
         ('unit: m/s^3', 'unit: g/s', 'unit: g/s', "limits.4.unit: it is 'g/s': give .* 'm/s\\^3'"),
         ('unit: rpm\n', 'unit: rad/s\n', 'unit: rad/s', "rules.engaged_slip.unit: it is 'rad/s'"),
+        ('value: 3\n', 'value: 2\n', 'value: 2', 'rules.oscillation_turns.value: .*least 3'),
         ('value: 0.315', 'value: low', 'value: low', "limits.0.value: it is 'low': give a number"),
         ('value: 9.1', 'value: -9.1', 'value: -9.1', 'limits.1.value: .*above 0'),
         ('value: 9.1', 'value: .nan', 'value: .nan', 'limits.1.value: .*finite'),

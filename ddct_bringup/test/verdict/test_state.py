@@ -113,6 +113,29 @@ def test_a_slip_that_crosses_zero_and_runs_away_beyond_is_a_runaway():
     assert state(falling(700.0, lowest_rpm=-1e4)) == 'runaway'
 
 
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_an_overshoot_on_its_way_is_not_a_runaway(sign):
+    beyond = np.maximum(T - 2.2, 0.0)
+    slip = falling(375.0) - 600.0 * (1.0 - np.exp(-beyond / 0.4))
+    assert slip[-1] < -400.0
+    assert state(sign * slip) == 'not_engaged'
+
+
+def test_a_slip_that_has_just_crossed_zero_is_not_a_runaway():
+    assert state(falling(300.0, lowest_rpm=-1e4)) == 'not_engaged'
+
+
+def test_an_oscillation_that_died_down_away_from_zero_is_not_engaged():
+    dying = 400.0 * np.exp(-3.0 * np.maximum(T - 0.6, 0.0)) * np.cos(25.0 * T)
+    assert state(dying + 80.0) == 'not_engaged'
+
+
+def test_plates_that_stick_long_and_break_loose_shortly_oscillate_at_whatever_end():
+    for end in range(200, 301, 10):
+        beat = np.where(np.arange(end + 1) % 40 < 8, 200.0, 0.0)
+        assert state(beat) == 'oscillating', end
+
+
 def test_an_oscillation_that_grows_beyond_all_before_is_a_runaway():
     t = times(2.95)
     grows = 20.0 * np.exp(2.0 * t) * np.sin(2 * np.pi * (t - 0.6))
