@@ -7,6 +7,7 @@ import math
 import os
 import subprocess
 import sys
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 ENTRY_KEYS = [
     'bag',
@@ -70,7 +73,15 @@ def runs_in(text):
     def refuse(constant):
         raise AssertionError(f'{constant} is no JSON')
 
-    return json.loads(text, parse_constant=refuse)['runs']
+    document = json.loads(text, parse_constant=refuse)
+    assert list(document) == ['schema_version', 'runs']
+    assert document['schema_version'] == 2
+    return document['runs']
+
+
+def together(trajectory):
+    """Return the same run with plates that never part."""
+    return Trajectory({**trajectory.signals, 'slip_speed': np.zeros(trajectory.steps + 1)})
 
 
 def test_a_valid_bag_gives_0_and_a_table(bags, trajectory, capsys):
@@ -111,6 +122,50 @@ def test_timing_beside_the_bag_is_scored(bags, trajectory, capsys):
     assert (metrics['missed_steps'], metrics['resends']) == (1, 2)
 
 
+def test_the_verdict_has_state_limits_and_every_criterion(bags, trajectory, capsys):
+    assert main([str(bags.write(together(trajectory))), '--json', '-']) == 0
+    (run,) = runs_in(capsys.readouterr().out)
+    verdict = run['verdict']
+    assert list(verdict) == ['state', 'limits', 'criteria']
+    assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
+    assert [each['name'] for each in verdict['criteria']] == list(CRITERION_UNITS)
+    keys = ['name', 'value', 'unit', 'limit', 'source', 'state']
+    assert all(list(each) == keys for each in verdict['criteria'])
+
+
+def test_another_limits_file_judges_otherwise(bags, trajectory, tmp_path, capsys):
+    bag = str(bags.write(trajectory))
+    mine = tmp_path / 'mine.yaml'
+    text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+    mine.write_text(text[: text.index('limits:')] + 'limits: []\n', encoding='utf-8')
+    assert main([bag, '--limits', str(mine), '--json', '-']) == 0
+    assert runs_in(capsys.readouterr().out)[0]['verdict']['limits'] == 'no_limit'
+
+
+def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
+    mine = tmp_path / 'mine.yaml'
+    mine.write_text('rules: {}\nlimit: []\n', encoding='utf-8')
+    assert main([str(bags.write(trajectory)), '--limits', str(mine)]) == 1
+    captured = capsys.readouterr()
+    assert captured.err == (
+        f'score: limits {mine}: line 2: limit: unknown key: known are rules, limits, '
+        'schema_version\n'
+    )
+    assert captured.out == ''
+
+
+def test_a_bag_of_before_the_schema_is_scored_and_says_so(bags, trajectory, capsys):
+    bag = bags.write(trajectory)
+    later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(load_scenario('thesis')))
+    assert main([str(bag), str(later), '--json', '-']) == 0
+    captured = capsys.readouterr()
+    before, after = runs_in(captured.out)
+    assert (before['before_schema'], after['before_schema']) == (True, False)
+    assert before['verdict'] == after['verdict']
+    assert f'{bag}: recorded before scenarios had a schema_version' in captured.err
+    assert f'{later}: recorded' not in captured.err
+
+
 def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
     bag = bags.write(trajectory, duration_s=2.0, score_window_s=(0.1, 2.0))
     assert main([str(bag), '--json', '-']) == 1
@@ -118,6 +173,7 @@ def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
     (run,) = runs_in(captured.out)
     assert not run['valid']
     assert run['reason'] == 'ended early: 60 of 200 steps'
+    assert run['verdict']['state'] == 'invalid'
     assert run['metrics']['torsion_speed_std_rpm'] is None
     assert 'ended early: 60 of 200 steps' in captured.err
 
@@ -169,10 +225,11 @@ def test_signals_come_as_csv_to_the_last_bit(bags, trajectory, tmp_path):
 
 
 def test_csv_has_one_row_per_bag(bags, trajectory, capsys):
-    assert main([str(bags.write(trajectory)), '--csv', '-']) == 0
+    assert main([str(bags.write(together(trajectory))), '--csv', '-']) == 0
     (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
     assert row['controller'] == 'pi'
     assert row['steps'] == '60'
+    assert (row['verdict_state'], row['verdict_limits']) == ('engaged', 'beyond')
     assert row['resends'] == ''
 
 

@@ -3,8 +3,8 @@
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, with a clutch that sticks as well, each
-controller's update, H-infinity synthesis, the quadratic programs of predictive control, and a
-whole step of `mpc_preview`.
+controller's update, H-infinity synthesis, the quadratic programs of predictive control, a
+whole step of `mpc_preview`, and the verdict.
 """
 
 import argparse
@@ -27,6 +27,8 @@ from qp import print_table as print_qp
 from stick_slip import measure as measure_stick_slip
 from stick_slip import print_table as print_stick_slip
 from synthesis import measure as measure_synthesis
+from verdict import GOAL_MS as VERDICT_GOAL_MS
+from verdict import measure as measure_verdict
 
 from ddct_bringup.processes.ros_domain import own_domain
 from ddct_bringup.run.execution import execute
@@ -78,6 +80,8 @@ def main() -> int:
     print_mpc_step(mpc_step)
     exported = measure_exported()
     print_exported(exported)
+    verdict_ms = measure_verdict()
+    print(f'metrics and verdict of one run: {verdict_ms:.2f} ms (goal {VERDICT_GOAL_MS:g} ms)')
     if options.json:
         figures = {
             **results,
@@ -87,6 +91,7 @@ def main() -> int:
             'quadratic_programs': programs,
             'mpc_step': mpc_step,
             'exported_mpc': exported,
+            'verdict_ms': verdict_ms,
         }
         write_json(options.json, figures)
     return (

@@ -1,5 +1,7 @@
 """What a passenger feels of a longitudinal acceleration: jerk and vibration dose."""
 
+from functools import cache
+
 import numpy as np
 from scipy import signal
 from scipy.integrate import trapezoid
@@ -9,6 +11,7 @@ from ddct_plant.base.timebase import PERIOD_S
 JERK_CUTOFF_HZ = 20.0
 _JERK_FILTER_ORDER = 2
 """Order of the Butterworth filter, which runs once forward and once backward."""
+_JERK_FILTER = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
 
 VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
 """The limit lies above the 50 Hz that a 100 Hz recording holds."""
@@ -21,16 +24,23 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
     that it is not delayed, and is differenced. Shorter than 10 samples gives an empty array.
     """
-    filter_ = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
     padding = 3 * (_JERK_FILTER_ORDER + 1)
     if len(acceleration) <= padding:
         return np.empty(0)
-    return np.diff(signal.filtfilt(*filter_, acceleration, padlen=padding)) / PERIOD_S
+    return np.diff(signal.filtfilt(*_JERK_FILTER, acceleration, padlen=padding)) / PERIOD_S
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
+    """Return the (n,) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
+    sos = _weighting()
+    start = signal.sosfilt_zi(sos) * acceleration[0]
+    return signal.sosfilt(sos, acceleration, zi=start)[0]
+
+
+@cache
+def _weighting() -> np.ndarray:
     """
-    Return the (n,) acceleration in m/s^2 weighted by W_d, started in equilibrium.
+    Return W_d as sections for 100 Hz.
 
     ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and
     (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
@@ -41,9 +51,7 @@ def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
         ([1.0, 0.0, 0.0], [1.0, np.sqrt(2.0) * high_pass, high_pass**2]),
         ([1.0 / corner, 1.0], [1.0 / corner**2, 1.0 / (quality * corner), 1.0]),
     ]
-    sos = np.vstack([np.hstack(_digital(*section)) for section in sections])
-    start = signal.sosfilt_zi(sos) * acceleration[0]
-    return signal.sosfilt(sos, acceleration, zi=start)[0]
+    return np.vstack([np.hstack(_digital(*section)) for section in sections])
 
 
 def vibration_dose(weighted: np.ndarray) -> float:

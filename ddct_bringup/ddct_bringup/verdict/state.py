@@ -83,15 +83,16 @@ def _cycle(slip: np.ndarray, rules: Rules) -> float | None:
     """
     Return the longer half in s of the last cycle of a slip that goes to and fro, else None.
 
-    It does when it has turned often enough, and last within a whole cycle before the end.
+    It does when it has turned often enough, and last no longer ago than twice that.
     """
     turns = turns_of(slip, 2.0 * rules.engaged_slip)
     if len(turns) < rules.oscillation_turns:
         return None
     first, second, third = turns[-3:]
-    if len(slip) - 1 - third > third - first:
+    longer_half = max(second - first, third - second)
+    if len(slip) - 1 - third > 2 * longer_half:
         return None
-    return max(second - first, third - second) * PERIOD_S
+    return longer_half * PERIOD_S
 
 
 def _time_within(slip: np.ndarray, band: float) -> float:

@@ -14,23 +14,16 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Group, OptionGroup, close_name, group_of
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import read_text_file
-<<<<<<< HEAD
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
-from ddct_plant.scenario.consistency import FILE, SET, consistent
-from ddct_plant.scenario.scenario import Scenario
-
-_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
-_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
-=======
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.schema_version import require_schema_version
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
 """Of a scenario file; one that does not say it is of this version."""
->>>>>>> bc591aa (Metrics and tables carry the verdict; scores.json says its schema version; limits by --limits)
+_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
+_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
 def scenario_names() -> list[str]:

@@ -44,6 +44,26 @@ def test_a_scenario_survives_its_yaml_to_the_last_bit(scenario_file):
     assert scenario_digest(again) == scenario_digest(scenario)
 
 
+def test_a_scenario_may_say_its_schema_version_and_a_written_one_does(scenario_file):
+    without = load_scenario(scenario_file(MINIMAL))
+    assert load_scenario(scenario_file(f'schema_version: 1\n{MINIMAL}')) == without
+    assert scenario_to_yaml(without).startswith('schema_version: 1\n')
+
+
+@pytest.mark.parametrize(
+    ('version', 'complaint'),
+    [
+        ('2', 'schema_version is 2, this version reads up to 1: update the project'),
+        ('0', 'schema_version is 0: give a whole number from 1 to 1'),
+        ('1.0', 'schema_version is 1.0: give a whole number'),
+        ('true', 'schema_version is True: give a whole number'),
+    ],
+)
+def test_a_schema_version_that_is_not_known_is_refused(scenario_file, version, complaint):
+    with pytest.raises(DdctError, match=f'mine.yaml: {complaint}'):
+        load_scenario(scenario_file(f'schema_version: {version}\n{MINIMAL}'))
+
+
 def test_a_file_without_a_name_is_named_after_itself(scenario_file):
     assert load_scenario(scenario_file(MINIMAL)).name == 'mine'
 

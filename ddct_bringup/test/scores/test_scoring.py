@@ -1,0 +1,91 @@
+"""What a run that its engine ended counts as, and what it is called."""
+
+import dataclasses
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+TRAJECTORY = run_headless(SETTINGS, 'ls8')
+FACTS = RunFacts(
+    controller='ls8',
+    architecture='detailed',
+    scenario='thesis',
+    clutch='linear',
+    wear_gain=1.0,
+    mode='lockstep',
+    seed=0,
+    control_start_s=0.6,
+    score_window_s=(0.6, 1.7),
+    duration_s=3.0,
+)
+
+
+class Judged(Recording):
+    """A recording of a scenario whose engine has these limits."""
+
+    settings = SimpleNamespace(
+        scenario=SimpleNamespace(
+            engine_limits=SimpleNamespace(stall_rad_s=52.0, over_rev_rad_s=785.0)
+        )
+    )
+
+
+def scored(last_engine_speed, rows=301, kind=Judged, **signals):
+    """Return the entry of a run that ends after `rows` samples at this engine speed."""
+    cut = {name: value[:rows] for name, value in {**TRAJECTORY.signals, **signals}.items()}
+    speeds = cut['joint_speed'].copy()
+    speeds[-1, 0] = last_engine_speed
+    trajectory = Trajectory({**cut, 'joint_speed': speeds})
+    recording = kind(Path('x.mcap'), trajectory, FACTS, {}, {}, {}, {}, RealtimeFacts())
+    return score_recording(recording, 'x', packaged_limits())
+
+
+@pytest.mark.parametrize(
+    ('speed', 'state'), [(52.0, 'stalled'), (10.0, 'stalled'), (785.0, 'over_revved')]
+)
+def test_a_run_that_its_engine_ended_is_valid_and_has_that_as_its_state(speed, state):
+    entry = scored(speed, rows=100)
+    assert (entry['valid'], entry['reason']) == (True, '')
+    assert entry['verdict']['state'] == state
+    assert entry['metrics']['torsion_speed_std_rpm'] is None
+
+
+def test_an_early_end_without_a_cause_is_not_valid():
+    for entry in (scored(200.0, rows=100), scored(10.0, rows=100, kind=Recording)):
+        assert (entry['valid'], entry['verdict']['state']) == (False, 'invalid')
+        assert entry['reason'] == 'ended early: 99 of 300 steps'
+
+
+def test_a_stall_with_a_value_that_is_not_finite_is_not_valid():
+    accelerations = TRAJECTORY.vehicle_accel.copy()
+    accelerations[50] = np.inf
+    entry = scored(10.0, rows=100, vehicle_accel=accelerations)
+    assert (entry['valid'], entry['verdict']['state']) == (False, 'invalid')
+
+
+def test_a_whole_run_of_a_good_controller_is_engaged():
+    entry = scored(TRAJECTORY.joint_speed[-1, 0])
+    assert (entry['valid'], entry['verdict']['state']) == (True, 'engaged')
+    time = next(c for c in entry['verdict']['criteria'] if c['name'] == 'engagement_time')
+    assert time['value'] == entry['metrics']['engagement_time_s']
+
+
+def test_the_facts_of_the_run_are_those_of_the_bag():
+    entry = scored(200.0)
+    facts = dataclasses.asdict(FACTS)
+    assert {key: entry[key] for key in ('controller', 'scenario', 'wear_gain')} == {
+        key: facts[key] for key in ('controller', 'scenario', 'wear_gain')
+    }
