@@ -78,6 +78,12 @@ def test_a_limit_cycle_of_270_rpm_is_oscillating_wherever_the_run_ends(offset, p
         assert state(cycle) == 'oscillating', end
 
 
+def test_a_slow_limit_cycle_is_not_engaged_while_it_passes_through_zero():
+    for end in range(800, 1201, 20):
+        t = np.arange(end + 1) / 100.0
+        assert state(100.0 * np.sin(2 * np.pi * (t - 0.6) / 4.0)) == 'oscillating', end
+
+
 def test_plates_that_stick_and_break_loose_again_and_again_oscillate():
     cycle = 200.0 * np.maximum(np.sin(2 * np.pi * (T - 0.6) / 0.5), 0.0)
     assert state(cycle) == 'oscillating'

@@ -1,0 +1,52 @@
+"""The page docs/verdict.md says what the code and the packaged limits say."""
+
+import re
+from pathlib import Path
+
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.state import STATES
+
+PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'verdict.md').read_text(encoding='utf-8')
+
+
+def rows(heading):
+    """Return the cells of the rows of the table below a heading."""
+    section = PAGE.partition(f'\n## {heading}\n')[2].partition('\n## ')[0]
+    lines = [line for line in section.splitlines() if line.startswith('| ')][1:]
+    return [[cell.strip() for cell in line.strip('|').split('|')] for line in lines]
+
+
+def test_every_state_is_on_the_page():
+    assert [name for row in rows('States') for name in re.findall('`(.*?)`', row[0])] == list(STATES)
+
+
+def test_every_criterion_is_on_the_page_as_the_program_says_it():
+    printed = [[f'`{each.name}`', each.unit, each.meaning, each.undefined] for each in CRITERIA]
+    assert rows('Criteria') == printed
+
+
+def test_every_limit_is_on_the_page():
+    printed = [
+        [
+            f'`{limit.criterion}`',
+            f'{limit.value:g} {limit.unit}',
+            'all' if limit.applies_to is None else ', '.join(f'`{n}`' for n in limit.applies_to),
+            limit.source,
+        ]
+        for limit in packaged_limits().limits
+    ]
+    assert rows('Limits') == printed
+
+
+def test_the_thresholds_of_the_text_are_those_of_the_file():
+    rules = packaged_limits().rules
+    states = PAGE.partition('\n## States\n')[2].partition('\n## ')[0]
+    for text in (
+        f'within {rules.engaged_slip:g} rpm for {rules.settled_time:g} s',
+        f'more than {rules.runaway_slip:g} rpm',
+        f'grows by {rules.runaway_growth:g} rpm/s',
+        f'each time by {2 * rules.engaged_slip:g} rpm or more',
+    ):
+        assert text in states
+    assert f'takes {rules.engagements_a_day:g} engagements a day' in PAGE
