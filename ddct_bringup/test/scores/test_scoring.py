@@ -33,23 +33,18 @@ FACTS = RunFacts(
 )
 
 
-class Judged(Recording):
-    """A recording of a scenario whose engine has these limits."""
-
-    settings = SimpleNamespace(
-        scenario=SimpleNamespace(
-            engine_limits=SimpleNamespace(stall_rad_s=52.0, over_rev_rad_s=785.0)
-        )
-    )
+ENGINE_LIMITS = SimpleNamespace(stall_rad_s=52.0, over_rev_rad_s=785.0)
 
 
-def scored(last_engine_speed, rows=301, kind=Judged, **signals):
+def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     """Return the entry of a run that ends after `rows` samples at this engine speed."""
     cut = {name: value[:rows] for name, value in {**TRAJECTORY.signals, **signals}.items()}
     speeds = cut['joint_speed'].copy()
     speeds[-1, 0] = last_engine_speed
     trajectory = Trajectory({**cut, 'joint_speed': speeds})
-    recording = kind(Path('x.mcap'), trajectory, FACTS, {}, {}, {}, {}, RealtimeFacts())
+    recording = Recording(Path('x.mcap'), trajectory, FACTS, {}, {}, {}, {}, RealtimeFacts())
+    scenario = SimpleNamespace(engine_limits=engine_limits)
+    vars(recording)['settings'] = SimpleNamespace(scenario=scenario)
     return score_recording(recording, 'x', packaged_limits())
 
 
@@ -64,7 +59,7 @@ def test_a_run_that_its_engine_ended_is_valid_and_has_that_as_its_state(speed, s
 
 
 def test_an_early_end_without_a_cause_is_not_valid():
-    for entry in (scored(200.0, rows=100), scored(10.0, rows=100, kind=Recording)):
+    for entry in (scored(200.0, rows=100), scored(10.0, rows=100, engine_limits=None)):
         assert (entry['valid'], entry['verdict']['state']) == (False, 'invalid')
         assert entry['reason'] == 'ended early: 99 of 300 steps'
 

@@ -18,7 +18,9 @@ def rows(heading):
 
 
 def test_every_state_is_on_the_page():
-    assert [name for row in rows('States') for name in re.findall('`(.*?)`', row[0])] == list(STATES)
+    assert [name for row in rows('States') for name in re.findall('`(.*?)`', row[0])] == list(
+        STATES
+    )
 
 
 def test_every_criterion_is_on_the_page_as_the_program_says_it():
