@@ -38,6 +38,17 @@ def test_options_reach_the_bag(tmp_path: Path) -> None:
     assert 'slope_rad: 0.05' in recording.custom_data['scenario_yaml']
 
 
+def test_a_run_ends_with_its_state_and_its_limits(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    arguments = ['--controller', 'ls8', '--headless', '--out', str(tmp_path / 'runs')]
+    assert bringup.main(arguments) == 0
+    assert 'bringup: state engaged, limits beyond\n' in capfd.readouterr().err
+    arguments += ['--limits', str(tmp_path / 'none.yaml'), '--overwrite']
+    assert bringup.main(arguments) == 1
+    assert capfd.readouterr().err.startswith('bringup: limits ')
+
+
 def test_controllers_share_one_output_folder_and_overwrite_replaces_one(tmp_path: Path) -> None:
     arguments = ['--duration', '0.7', '--headless', '--out', str(tmp_path / 'runs')]
     assert bringup.main(['--controller', 'pi', *arguments]) == 0

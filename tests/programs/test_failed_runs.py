@@ -86,3 +86,4 @@ def test_compare_keeps_the_old_result_and_names_the_controller(
     assert (rows['pi'], rows['ls8']) == ('yes', 'NO')
     scores = json.loads((tmp_path / 'runs.partial' / 'scores.json').read_text())['runs']
     assert [(run['controller'], run['valid']) for run in scores] == [('pi', True), ('ls8', False)]
+    assert [run['verdict']['state'] for run in scores] == ['not_engaged', 'invalid']
