@@ -69,6 +69,8 @@ class Measurement:
         )
 
 
+SCENARIO, THESIS, UNSTATED = 'scenario', 'thesis', 'not stated'
+"""What a controller is computed from: see `ControllerSpec.computed_from`."""
 Status = tuple[tuple[str, str], ...]
 """(key, value) pairs for `controller/status`; deterministic, so no wall time in them."""
 
@@ -95,6 +97,8 @@ class Controller(ABC):
     """What `controllers.<name>` of a scenario may hold, by name; None leaves it unchecked."""
     registered_name: str = ''
     """What errors call it: the registry gives it the name under which it was asked for."""
+    computed_from: str = UNSTATED
+    """As `ControllerSpec` has it, from where the registry takes it."""
     preview_steps: int = 0
     """How many steps beyond the present one the controller wants the reference for."""
     commands_engine: bool = False
@@ -133,7 +137,12 @@ class Controller(ABC):
         """Say for `run_info` what it is called, if it commands the engine, and its exact gains."""
         gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
         two_input = str(self.commands_engine).lower()
-        return {'controller': name, 'two_input': two_input, **gains}
+        return {
+            'controller': name,
+            'two_input': two_input,
+            'computed_from': self.computed_from,
+            **gains,
+        }
 
     def set_gain(self, name: str, value: float) -> None:
         """Change one gain; raise ParameterError for a name or value that it does not take."""
@@ -165,6 +174,11 @@ class ControllerSpec(Generic[Made]):
     make: Callable[[ControllerContext], Made]
     options: Options | None = None
     """None for a third party's controller that declares none."""
+    computed_from: str = SCENARIO
+    """
+    SCENARIO for one computed from the scenario's driveline; THESIS for one that stays what it is
+    whatever the driveline: printed, or tuned to the thesis's rows. UNSTATED for others.
+    """
 
     def __call__(self, context: ControllerContext) -> Made:
         """Make the controller; raise ParameterError for an option that it does not take."""

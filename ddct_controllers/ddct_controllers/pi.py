@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ddct_controllers.interface import Command, Controller, ControllerSpec, Measurement
+from ddct_controllers.interface import THESIS, Command, Controller, ControllerSpec, Measurement
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Option
 from ddct_plant.base.timebase import PERIOD_S
@@ -62,4 +62,4 @@ class PiController(Controller):
         self._gains[name] = OPTIONS[name].checked(f'controllers.pi.{name}', value)
 
 
-PI = ControllerSpec('pi', lambda context: PiController(**context.gains), OPTIONS)
+PI = ControllerSpec('pi', lambda context: PiController(**context.gains), OPTIONS, THESIS)

@@ -6,7 +6,14 @@ from functools import partial
 from typing import Any
 
 from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
-from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
+from ddct_controllers.interface import (
+    SCENARIO,
+    THESIS,
+    UNSTATED,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+)
 from ddct_controllers.linear import LinearController
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.pi import PI
@@ -43,6 +50,7 @@ def make_controller(
     given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name
+    controller.computed_from = spec.computed_from
     return controller
 
 
@@ -50,7 +58,7 @@ def controller_spec(name: str) -> ControllerSpec[Controller]:
     """Return how the controller called `name` is made and its options, as `make_controller`."""
     if is_designed_file(name):
         designed = _load_designed(name)
-        return _linear(designed.name, designed.sampled())
+        return _linear(designed.name, designed.sampled(), UNSTATED)
     return _own_controllers().get(name) or _third_party(name)
 
 
@@ -70,7 +78,7 @@ def _load_designed(file: str) -> DesignedController:
 
 
 def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
-    printed = {name: _linear(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()}
+    printed = {name: _linear(name, g_c, THESIS) for name, g_c in PRINTED_CONTROLLERS.items()}
     synthesised = {
         name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED
     }
@@ -81,8 +89,10 @@ def _synthesised(name: str, context: ControllerContext) -> Controller:
     return LinearController(synthesised_controller(name, context.settings.scenario.driveline))
 
 
-def _linear(name: str, model: FactoredTransferFunction | StateSpace) -> ControllerSpec[Controller]:
-    return ControllerSpec(name, lambda context: LinearController(model), {})
+def _linear(
+    name: str, model: FactoredTransferFunction | StateSpace, computed_from: str
+) -> ControllerSpec[Controller]:
+    return ControllerSpec(name, lambda context: LinearController(model), {}, computed_from)
 
 
 def _third_party(name: str) -> ControllerSpec[Controller]:
@@ -123,7 +133,13 @@ def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
         _require_plain(point.name, controller)
         return controller
 
-    return ControllerSpec(point.name, make, _declared(point.name, factory))
+    computed_from = getattr(factory, 'computed_from', UNSTATED)
+    if computed_from not in (SCENARIO, THESIS, UNSTATED):
+        raise DdctError(
+            f'controller {point.name!r}: its computed_from is {computed_from!r}: give '
+            f'{SCENARIO!r} or {THESIS!r}'
+        )
+    return ControllerSpec(point.name, make, _declared(point.name, factory), computed_from)
 
 
 def _declared(name: str, factory: object) -> Options | None:

@@ -31,6 +31,7 @@ def test_compare_has_it_above_its_table(capfd: pytest.CaptureFixture[str], tmp_p
     table = capfd.readouterr().out
     assert table.startswith(MOVED)
     assert 'thesis row' not in table
+    assert table.endswith('computed from thesis: pi\n')
 
 
 def test_a_contradiction_is_one_line_and_leaves_nothing(

@@ -10,7 +10,12 @@ from ddct_bringup.report.output import require_chart_library
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
 from ddct_bringup.run.execution import run_with_progress, tell_of_logs
 from ddct_bringup.run.folder_lock import held
-from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.options import (
+    add_run_options,
+    computed_from,
+    print_choices,
+    settings_of,
+)
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.comparison_table import print_comparison
@@ -113,6 +118,8 @@ def _report(entries: list[Entry], settings: RunSettings, options: argparse.Names
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)
     print_comparison(entries, settings, options.overrides, stream)
+    for source, names in computed_from(_controllers(options.controllers)).items():
+        print(f'computed from {source}: {printable(", ".join(names))}', file=stream)
 
 
 def _controllers(text: str) -> list[str]:

@@ -7,7 +7,7 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.source_commit import UNKNOWN, short_commit
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
-_REPEATED = ('version', 'scenario', 'scenario_digest', *_CONDITIONS[1:])
+_REPEATED = ('version', 'scenario', 'scenario_digest', 'computed_from', *_CONDITIONS[1:])
 """What every node says and the page has elsewhere."""
 
 
@@ -36,6 +36,8 @@ def run_origin(run: ReportRun) -> RunOrigin:
     conditions = tuple(
         (name, '–' if run.entry[name] is None else str(run.entry[name])) for name in _CONDITIONS
     )
+    told = {} if run.recording is None else run.recording.run_info.get('controller', {})
+    conditions += (('computed_from', told.get('computed_from', '–')),)
     if run.recording is None:
         return RunOrigin(conditions, (), '–', '–')
     nodes = {

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Sequence
 
+from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
@@ -71,7 +72,22 @@ def print_choices() -> None:
     for title, names in rows:
         print(f'{title + ":":15}{printable(", ".join(names))}')
     print()
+    for source, names in computed_from(controller_names()).items():
+        print(f'computed from {source}: {printable(", ".join(names))}')
+    print()
     print_table(controller_options_table())
+
+
+def computed_from(names: Sequence[str]) -> dict[str, list[str]]:
+    """Return by what they are computed from the controllers, files by their own names."""
+    found: dict[str, list[str]] = {}
+    for name in names:
+        try:
+            spec = controller_spec(name)
+            found.setdefault(spec.computed_from, []).append(spec.name)
+        except DdctError:  # a third party's that cannot be loaded; the table of options says why
+            found.setdefault(UNSTATED, []).append(name)
+    return found
 
 
 def controller_options_table() -> Table:

@@ -1,0 +1,38 @@
+"""Every controller says if it is computed from the scenario's driveline, and it is true."""
+
+import pytest
+
+from ddct_controllers.interface import SCENARIO, THESIS
+from ddct_controllers.registry import controller_names, controller_spec, make_controller
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+CHANGED = RunSettings(load_scenario('thesis', ['driveline.halfshaft_stiffness=8000']))
+AS_IT_IS = RunSettings(load_scenario('thesis'))
+LINEAR = [
+    *('pi', 'ls1', 'ls8', 'hinf1', 'hinf3', 'lqi'),
+    *('hinf_thesis', 'hinf_fitted', 'hinf_sampled'),
+]
+
+
+@pytest.mark.parametrize('name', LINEAR)
+def test_a_linear_controller_changes_with_the_driveline_or_stays_as_it_says(name):
+    models = [make_controller(name, run).linear_model() for run in (AS_IT_IS, CHANGED)]
+    assert models[0] is not None
+    assert models[1] is not None
+    same = all(
+        getattr(models[0], part).tobytes() == getattr(models[1], part).tobytes() for part in 'abcd'
+    )
+    assert controller_spec(name).computed_from == (THESIS if same else SCENARIO)
+
+
+def test_ours_all_say_it_and_only_what_the_thesis_prints_or_tunes_is_fixed():
+    said = {name: controller_spec(name).computed_from for name in controller_names()}
+    fixed = [name for name, source in said.items() if source == THESIS]
+    assert fixed == ['pi', *(f'ls{i}' for i in range(1, 10)), 'hinf1', 'hinf2', 'hinf3']
+    assert {said[name] for name in ('mpc3', 'mpc4', 'mpc_wear', 'pedal_mpc')} == {SCENARIO}
+
+
+def test_a_controller_says_it_in_its_run_info():
+    assert make_controller('ls8', AS_IT_IS).info('ls8')['computed_from'] == THESIS
+    assert make_controller('mpc3', AS_IT_IS).info('mpc3')['computed_from'] == SCENARIO
