@@ -37,6 +37,6 @@ def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -
         ) from error
 
 
-def synthesised_controller(name: str, driveline: DrivelineParameters) -> StateSpace:
+def synthesised_controller(name: str, driveline: DrivelineParameters = IDENTIFIED) -> StateSpace:
     """Return G_c(z) behind a registry name, from slip error in rpm to torque in N m."""
     return synthesised_design(name, driveline).sampled
