@@ -9,32 +9,17 @@ The state that a run reached: one word, by the rules of the limits file.
     invalid       the run does not count
 """
 
-from typing import Any
-
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 ENGAGED, NOT_ENGAGED, OSCILLATING = 'engaged', 'not_engaged', 'oscillating'
-RUNAWAY, STALLED, OVER_REVVED, INVALID = 'runaway', 'stalled', 'over_revved', 'invalid'
+RUNAWAY, INVALID = 'runaway', 'invalid'
 STATES = (ENGAGED, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
-
-
-def engine_end(trajectory: Trajectory, engine_limits: Any) -> str | None:
-    """
-    Return STALLED or OVER_REVVED when the last engine speed is at or beyond that limit, else None.
-
-    `engine_limits` is that section of the scenario, None without one.
-    """
-    if engine_limits is None:
-        return None
-    speed = trajectory.joint_speed[-1, 0]
-    if speed <= engine_limits.stall_rad_s:
-        return STALLED
-    return OVER_REVVED if speed >= engine_limits.over_rev_rad_s else None
 
 
 def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:

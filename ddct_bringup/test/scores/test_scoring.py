@@ -2,7 +2,6 @@
 
 import dataclasses
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +13,8 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits_file import packaged_limits
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.models.engine_limits import EngineLimits
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
@@ -33,7 +33,7 @@ FACTS = RunFacts(
 )
 
 
-ENGINE_LIMITS = SimpleNamespace(stall_rad_s=52.0, over_rev_rad_s=785.0)
+ENGINE_LIMITS = EngineLimits(stall_rad_s=52.0, over_rev_rad_s=785.0)
 
 
 def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
@@ -42,9 +42,9 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     speeds = cut['joint_speed'].copy()
     speeds[-1, 0] = last_engine_speed
     trajectory = Trajectory({**cut, 'joint_speed': speeds})
-    recording = Recording(Path('x.mcap'), trajectory, FACTS, {}, {}, {}, {}, RealtimeFacts())
-    scenario = SimpleNamespace(engine_limits=engine_limits)
-    vars(recording)['settings'] = SimpleNamespace(scenario=scenario)
+    scenario = dataclasses.replace(SETTINGS.scenario, engine_limits=engine_limits)
+    data = {'scenario_yaml': scenario_to_yaml(scenario)}
+    recording = Recording(Path('x.mcap'), trajectory, FACTS, data, {}, {}, {}, RealtimeFacts())
     return score_recording(recording, 'x', packaged_limits())
 
 

@@ -61,3 +61,12 @@ def test_a_pi_of_the_wrong_sign_runs_away_though_it_may_cross_zero():
     trajectory = run(WrongSign(), duration_s=5.0)
     assert abs(rpm_from_rad_s(trajectory.slip_speed[-1])) > 8000.0
     assert state(trajectory) == 'runaway'
+
+
+def test_plates_that_stick_at_wear_1_3_never_part_and_are_engaged():
+    assert state(run('ls8', wear_gain=1.3, clutch='stick_slip')) == 'engaged'
+    assert state(run('ls8', wear_gain=1.3)) == 'not_engaged'
+
+
+def test_a_worn_clutch_that_sticks_does_not_engage_under_the_pi_in_time():
+    assert state(run(wear_gain=0.7, clutch='stick_slip')) == 'not_engaged'

@@ -1,16 +1,13 @@
 """The state of a run is what a control engineer would call it by eye."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
 from ddct_bringup.verdict.limits_file import packaged_limits
-from ddct_bringup.verdict.state import engine_end, slip_state, turns_of
+from ddct_bringup.verdict.state import slip_state, turns_of
 
 T = times()
-ENGINE = SimpleNamespace(stall_rad_s=50.0, over_rev_rad_s=780.0)
 
 
 def state(slip_rpm, **signals):
@@ -146,20 +143,6 @@ def test_an_oscillation_that_grows_beyond_all_before_is_a_runaway():
     t = times(2.95)
     grows = 20.0 * np.exp(2.0 * t) * np.sin(2 * np.pi * (t - 0.6))
     assert state(grows[:283]) == 'runaway'
-
-
-def test_a_stalled_engine_is_told_from_its_last_speed():
-    for speed, cause in [
-        (49.9, 'stalled'),
-        (50.0, 'stalled'),
-        (50.1, None),
-        (780.0, 'over_revved'),
-    ]:
-        speeds = np.full((301, 4), 100.0)
-        speeds[-1, 0] = speed
-        run = made_run(np.zeros(301), joint_speed=speeds)
-        assert engine_end(run, ENGINE) == cause
-        assert engine_end(run, None) is None
 
 
 def test_turns_are_extremes_from_which_the_values_move_back():
