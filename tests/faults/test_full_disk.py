@@ -12,6 +12,7 @@ from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
 from ddct_bringup.programs import score
+from ddct_bringup.run.output_folder import mark_folder
 
 ROOM_KB = 200
 RUN = ('--controller', 'ls8', '--duration', '20')
@@ -65,3 +66,25 @@ def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
     assert bringup.wait() == 1
     assert_one_line(bringup.errors(), 'bringup', 'File too large', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
+
+
+def test_a_compare_whose_disk_fills_up_takes_no_old_result_away(
+    programs: Programs, small_disk: Path
+) -> None:
+    out = small_disk / 'runs'
+    mark_folder(out)
+    (out / 'scores.json').write_text('an old result', encoding='utf-8')
+    before = {path: path.read_bytes() for path in out.rglob('*') if path.is_file()}
+    compare = programs.start_module(
+        'ddct_bringup.programs.compare',
+        *('--controllers', 'pi,ls8', '--headless', '--overwrite'),
+        *('--duration', '1', '--out', str(out)),
+    )
+    assert compare.wait() == 1
+    assert (small_disk / 'runs.partial' / 'pi' / 'metadata.yaml').is_file(), 'the first one fits'
+    first, last = compare.errors().splitlines()[-2:]
+    assert first.startswith('compare: ls8: ')
+    assert 'No space left on device' in first
+    assert last.startswith('compare: ')
+    assert 'No space left on device' in last
+    assert {path: path.read_bytes() for path in out.rglob('*') if path.is_file()} == before

@@ -1,5 +1,6 @@
 """A controller of another package works everywhere by its name alone; a broken one is named."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -147,6 +148,48 @@ def test_compare_names_the_controller_whose_linear_model_is_none(
     *_, last = capfd.readouterr().err.splitlines()
     assert last.startswith("compare: controller 'bad_linear_model': its linear_model cannot be")
     assert 'it is of type list' in last
+
+
+@pytest.mark.usefixtures('broken')
+def test_compare_runs_nothing_where_the_evidence_of_a_controller_cannot_be_had(
+    tmp_path: Path,
+) -> None:
+    options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]
+    assert compare.main(['--controllers', 'pi,bad_linear_model', *options]) == 1
+    assert not list(tmp_path.rglob('*.mcap'))
+
+
+@pytest.mark.usefixtures('broken')
+@pytest.mark.parametrize('layout', ['--headless', '--single-process'])
+def test_compare_goes_on_after_a_controller_that_commands_no_number(
+    tmp_path: Path, layout: str
+) -> None:
+    out = tmp_path / 'runs'
+    options = [layout, '--duration', '1', '--out', str(out)]
+    assert compare.main(['--controllers', 'not_a_number,pi', *options]) == 1
+    bad, good = json.loads((out / 'scores.json').read_text())['runs']
+    assert (bad['controller'], bad['valid']) == ('not_a_number', False)
+    assert 'torque at step 60 is nan' in bad['reason']
+    assert (good['controller'], good['valid']) == ('pi', True)
+
+
+@pytest.mark.usefixtures('broken')
+def test_compare_keeps_and_names_the_log_of_a_run_that_failed_in_the_graph(
+    programs: Programs, tmp_path: Path
+) -> None:
+    out = tmp_path / 'runs'
+    run = programs.start_module(
+        'ddct_bringup.programs.compare',
+        *('--controllers', 'raising,pi', '--duration', '1', '--out', str(out)),
+    )
+    assert run.wait() == 1
+    log = out / 'raising' / 'work' / 'controller.log'
+    assert str(log) in run.errors()
+    assert 'Traceback' in log.read_text(encoding='utf-8')
+    bad, good = json.loads((out / 'scores.json').read_text())['runs']
+    assert "controller 'raising': it failed at step 60" in bad['reason']
+    assert bad['reason'].endswith('its log is work/controller.log')
+    assert (bad['valid'], good['valid']) == (False, True)
 
 
 @pytest.mark.usefixtures('broken')

@@ -8,7 +8,9 @@ from ddct_bringup.programs.report import REPORT_FILE, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.output import require_chart_library
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
+from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.execution import run_with_progress, tell_of_logs
+from ddct_bringup.run.failed_run import note_failure
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import (
     add_run_options,
@@ -19,7 +21,7 @@ from ddct_bringup.run.options import (
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.scores.scoring import Entry, scores_document, unreadable_entry
+from ddct_bringup.scores.scoring import Entry, scores_document
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, controller_names
@@ -40,8 +42,9 @@ examples:
   compare --controllers pi,mine --headless --json - --out runs/mine
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
-linear ones, and DIR/report.html, a page that shows all of it. Either every run is valid, or DIR
-is not touched, what was recorded stays in DIR.partial, and the exit code is 1.
+linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
+others: it stands there with its reason and its logs, and the exit code is 1. When no run is
+valid DIR is not touched, and what was recorded stays in DIR.partial.
 """
 
 
@@ -65,14 +68,22 @@ def _compare(argv: list[str]) -> int:
     settings = settings_of(options, [controller_label(name) for name in names])
     plans = [RunPlan(settings, name, options.layout) for name in names]
     with held(options.out):
-        _run_all(plans, settings, options, limits)
-    return 0
+        failed = _run_all(plans, settings, options, limits)
+    if failed:
+        complain(PROGRAM, f'not valid: {", ".join(failed)}: the table and the report say why')
+    return 1 if failed else 0
 
 
 def _run_all(
     plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace, limits: Limits
-) -> None:
+) -> list[str]:
+    """
+    Carry out all runs, put what they left under its final name, and return which are not valid.
+
+    Raise DdctError when none is valid: DIR stays what it was.
+    """
     folder = StagedFolder(options.out, overwrite=options.overwrite)
+    evidence = frequency_evidence([plan.controller for plan in plans], settings)
     runs = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ', limits)
         for index, plan in enumerate(plans, start=1)
@@ -80,11 +91,13 @@ def _run_all(
     entries = [run.entry for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(entries))
     _report(entries, settings, options)
-    failed = [entry['controller'] for entry in entries if not entry['valid']]
-    if failed:
+    failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
+    if len(failed) == len(plans):
         tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
-        raise DdctError(f'{", ".join(failed)} failed: what was recorded is in {folder.path}')
-    evidence = frequency_evidence([plan.controller for plan in plans], settings)
+        raise DdctError(
+            f'no run is valid ({", ".join(failed)}): {folder.final} is untouched, what was '
+            f'recorded is in {folder.path}'
+        )
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE))
     folder.commit()
@@ -94,21 +107,30 @@ def _run_all(
         f'{folder.final}',
         file=sys.stderr,
     )
+    return failed
 
 
 def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
-    """Carry out, read and score one run; without a bag the entry is invalid and says why."""
+    """
+    Carry out, read and score one run; of one that fails, note in its folder why.
+
+    Raise DdctError when that folder cannot be written, as on a full disk: no other run would fare
+    better.
+    """
     bag = out / plan.name
+    mark_folder(bag)
     try:
-        mark_folder(bag)
         run_with_progress(plan, bag, label)
         run = read_run(bag, out, limits)
+        if run.recording is not None:
+            return run
+        reason = run.entry['reason']
     except DdctError as error:
-        run = ReportRun(unreadable_entry(bag, error, relative_to=out))
-    if run.recording is not None:
-        return run
-    complain(PROGRAM, f'{plan.name}: {run.entry["reason"]}')
-    return ReportRun({**run.entry, 'controller': plan.name})
+        reason = str(error)
+    reason = reason.replace(f'{bag}/', '')  # the folder gets its final name later
+    complain(PROGRAM, f'{plan.name}: {reason}')
+    note_failure(bag, reason, custom_data(plan.settings, plan.name, plan.steps))
+    return read_run(bag, out, limits)
 
 
 def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:

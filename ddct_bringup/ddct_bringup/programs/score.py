@@ -87,8 +87,9 @@ def _scored(
         try:
             runs.append(_score_one(bag, folder, options, limits))
         except DdctError as error:
-            complain(PROGRAM, error)
-            runs.append(unreadable_entry(bag, error, relative_to=folder))
+            entry = unreadable_entry(bag, error, relative_to=folder)
+            complain(PROGRAM, entry['reason'])
+            runs.append(entry)
     return runs
 
 

@@ -26,7 +26,7 @@ class Cell:
     spread: str = ''
     """Range over the admissible scenarios, of a predicted figure."""
     verdict: str = ''
-    """Hit or miss, of a predicted figure."""
+    """Hit or miss, of a predicted figure of a valid run."""
 
 
 def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
@@ -48,13 +48,18 @@ def metric_cells(
     figures = [row.figures()[column.key] for row in printed if row is not None]
     largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
     return [
-        _cell(column, value, row, largest or 1.0)
-        for value, row in zip(values, printed, strict=True)
+        _cell(column, value, row, largest or 1.0, valid=run.entry['valid'])
+        for run, value, row in zip(runs, values, printed, strict=True)
     ]
 
 
 def _cell(
-    column: FigureColumn, value: float | None, row: ThesisRow | None, largest: float
+    column: FigureColumn,
+    value: float | None,
+    row: ThesisRow | None,
+    largest: float,
+    *,
+    valid: bool,
 ) -> Cell:
     text = column.text(value)
     share = 0.0 if value is None else abs(value) / largest
@@ -71,5 +76,5 @@ def _cell(
         thesis / largest,
         '' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
         predicted_range(row.controller, column.key) if predicted else '',
-        row.verdict(column.key, value) if predicted else '',
+        row.verdict(column.key, value) if predicted and valid else '',
     )

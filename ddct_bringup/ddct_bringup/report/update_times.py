@@ -36,9 +36,9 @@ class UpdateTimes:
 def update_times(run: ReportRun) -> UpdateTimes | None:
     """Return the update times of a run, None where none were recorded."""
     timing = run.timing
-    if timing is None or not timing.update_times_us:
-        return None
     median, p99 = (run.entry['metrics'][f'update_time_{name}_us'] for name in ('median', 'p99'))
+    if timing is None or median is None:
+        return None
     largest = max(timing.update_times_us)
     return UpdateTimes(
         median_us=median,

@@ -7,6 +7,7 @@ from typing import TypeVar
 from rich.console import Console
 from rich.progress import track
 
+from ddct_bringup.run.failed_run import NOTE_FILE
 from ddct_plant.base.errors import DdctError
 
 Bag = TypeVar('Bag')
@@ -36,24 +37,31 @@ def find_bags(path: Path) -> list[Path]:
     """
     Return the bags in a folder and below it, or the one that `path` is, in alphabetical order.
 
-    A folder with one .mcap file is a bag; of several, each file is one. Hidden files and folders
-    do not count. Raise DdctError without any.
+    A folder with one .mcap file is a bag; of several, each file is one. The folder of a failed run
+    counts without any. Hidden files and folders do not. Raise DdctError without any bag.
     """
     if not path.is_dir():
         if not path.exists():
             raise DdctError(f'{path}: no such file or folder')
         return [path]
-    files = [
-        file
-        for file in sorted(path.rglob('*.mcap'))
-        if not any(part.startswith('.') for part in file.relative_to(path).parts)
-    ]
+    files = _visible(path, '*.mcap')
+    recorded = {file.parent for file in files}
+    files += [note for note in _visible(path, NOTE_FILE) if note.parent not in recorded]
+    files.sort()
     if not files:
         raise DdctError(f'{path}: no .mcap file in this folder or below it: give a bag')
     folders = [file.parent for file in files]
     return [
         folder if folders.count(folder) == 1 else file
         for file, folder in zip(files, folders, strict=True)
+    ]
+
+
+def _visible(folder: Path, pattern: str) -> list[Path]:
+    return [
+        file
+        for file in folder.rglob(pattern)
+        if not any(part.startswith('.') for part in file.relative_to(folder).parts)
     ]
 
 

@@ -87,7 +87,7 @@ def _thesis(unit: str, name: str) -> Column:
 
     def below(run: Entry) -> str:
         row = thesis_row(run['controller'])
-        if row is None or row.use != PREDICTED:
+        if row is None or row.use != PREDICTED or not run['valid']:
             return ''
         return row.verdict(name, run['metrics'][name])
 

@@ -12,6 +12,7 @@ from ddct_bringup.bag.file.records import mcap_of, salvage_records
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.failed_run import failed_run
 from ddct_bringup.run.run_timing import read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
@@ -47,9 +48,11 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
     """
     Score and judge a recording, with its `timing.json` if there is one; `bag` names it.
 
-    Raise DdctError for timing that cannot be used.
+    What a failed run recorded has no score. Raise DdctError for timing that cannot be used.
     """
     facts = recording.facts
+    if failure := failed_run(recording.path.parent):
+        return _entry_without_score(bag, facts, failure.reason)
     computed = compute_metrics(
         recording.trajectory,
         control_start_s=facts.control_start_s,
@@ -72,18 +75,27 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
 
 
 def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None = None) -> Entry:
-    """Return the entry of a bag that could not be read: invalid, with the facts it still tells."""
+    """
+    Return the entry of a bag that could not be read: invalid, with the facts it still tells.
+
+    Of a run that failed the entry says why it did, whether it left a bag or not.
+    """
+    name = bag_name(path, relative_to)
+    if failure := failed_run(path if path.is_dir() else path.parent):
+        return _entry_without_score(name, failure.facts, failure.reason)
     try:
-        facts: RunFacts | None = RunFacts.from_custom_data(
-            salvage_records(mcap_of(path)).custom_data
-        )
+        facts = RunFacts.from_custom_data(salvage_records(mcap_of(path)).custom_data)
     except DdctError:
-        facts = None
+        return _entry_without_score(name, None, str(error))
+    return _entry_without_score(name, facts, str(error))
+
+
+def _entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
     return {
-        'bag': bag_name(path, relative_to),
+        'bag': bag,
         **{name: getattr(facts, name, None) for name in _FACT_NAMES},
         'valid': False,
-        'reason': str(error),
+        'reason': reason,
         'metrics': dict.fromkeys(METRIC_NAMES),
         'verdict': verdict_of_unreadable(),
         'fallbacks': None,

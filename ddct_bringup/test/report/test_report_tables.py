@@ -23,6 +23,7 @@ def run(controller='ls8', settings=None, timing=None, **metrics):
     entry = {
         'bag': controller,
         'controller': controller,
+        'valid': True,
         'metrics': dict.fromkeys(METRIC_NAMES) | metrics,
     }
     return ReportRun(entry, timing=timing, settings=settings)
@@ -71,6 +72,19 @@ def test_a_predicted_figure_has_its_range_and_its_verdict_and_a_calibrated_one_h
     assert re.fullmatch(r'0\.\d{3} to 0\.\d{3}', predicted.spread)
     assert undefined.verdict == 'miss'
     assert (calibrated.verdict, calibrated.spread) == ('', '')
+
+
+def test_a_run_that_is_not_valid_neither_hits_nor_misses():
+    hit = run('mpc3', RunSettings(THESIS), engagement_time_s=0.62)
+    failed = run('mpc3', RunSettings(THESIS), engagement_time_s=0.62)
+    failed.entry['valid'] = False
+    runs = [hit, failed]
+    cells = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
+    assert [cell.verdict for cell in cells] == ['hit', '']
+
+
+def test_a_failed_run_has_no_update_times_even_where_a_timing_was_left():
+    assert update_times(run(timing=RunTiming([10.0, 100.0]))) is None
 
 
 def test_update_times_lie_on_a_logarithmic_scale():

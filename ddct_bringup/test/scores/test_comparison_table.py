@@ -23,14 +23,14 @@ OURS = {
 }
 
 
-def entry(controller='ls8'):
+def entry(controller='ls8', *, valid=True):
     return {
         'bag': controller,
         'controller': controller,
         'wear_gain': 1.0,
         'mode': 'lockstep',
-        'valid': True,
-        'reason': '',
+        'valid': valid,
+        'reason': '' if valid else 'node clutch was killed',
         'metrics': {**dict.fromkeys(METRIC_NAMES), **OURS},
         'verdict': verdict_of_unreadable(),
         'fallbacks': None,
@@ -38,10 +38,10 @@ def entry(controller='ls8'):
     }
 
 
-def printed(settings=None, overrides=()):
+def printed(settings=None, overrides=(), runs=()):
     stream = io.StringIO()
     print_comparison(
-        [entry('ls8'), entry('mpc4')], settings or RunSettings(THESIS), overrides, stream
+        runs or [entry('ls8'), entry('mpc4')], settings or RunSettings(THESIS), overrides, stream
     )
     return stream.getvalue()
 
@@ -99,3 +99,12 @@ def test_the_thesis_is_shown_beside_its_own_conditions_only(settings, overrides)
     assert 'thesis' not in text
     assert 'calibrated' not in text
     assert '0.71' not in text
+
+
+def test_a_run_that_is_not_valid_neither_hits_nor_misses():
+    table, _, _ = printed(runs=[entry('mpc4')]).partition('thesis: Table 5.1.')
+    assert 'miss' in table
+    table, _, _ = printed(runs=[entry('mpc4', valid=False)]).partition('thesis: Table 5.1.')
+    assert 'hit' not in table
+    assert 'miss' not in table
+    assert 'mpc4: not valid: node clutch was killed' in table
