@@ -68,7 +68,7 @@ def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
     assert not (out / 'ls8').exists()
 
 
-def test_a_compare_whose_disk_fills_up_takes_no_old_result_away(
+def test_a_compare_whose_disk_fills_up_ends_and_takes_no_old_result_away(
     programs: Programs, small_disk: Path
 ) -> None:
     out = small_disk / 'runs'
@@ -77,7 +77,7 @@ def test_a_compare_whose_disk_fills_up_takes_no_old_result_away(
     before = {path: path.read_bytes() for path in out.rglob('*') if path.is_file()}
     compare = programs.start_module(
         'ddct_bringup.programs.compare',
-        *('--controllers', 'pi,ls8', '--headless', '--overwrite'),
+        *('--controllers', 'pi,ls8,ls1', '--headless', '--overwrite'),
         *('--duration', '1', '--out', str(out)),
     )
     assert compare.wait() == 1
@@ -85,6 +85,7 @@ def test_a_compare_whose_disk_fills_up_takes_no_old_result_away(
     first, last = compare.errors().splitlines()[-2:]
     assert first.startswith('compare: ls8: ')
     assert 'No space left on device' in first
-    assert last.startswith('compare: ')
+    assert last.startswith(f'compare: {small_disk}/runs.partial/ls8/failed_run.json: ')
     assert 'No space left on device' in last
+    assert not (small_disk / 'runs.partial' / 'ls1').exists(), 'it would fare no better'
     assert {path: path.read_bytes() for path in out.rglob('*') if path.is_file()} == before
