@@ -159,6 +159,4 @@ class _LimitsFile:
     def _bad(self, path: tuple[Any, ...], what: str) -> ParameterError:
         parts = (f'[{part}]' if isinstance(part, int) else f'.{part}' for part in path)
         key = ''.join(parts).removeprefix('.')
-        return ParameterError(
-            f'line {self._lines.get(key, 1)}: {f"{key}: " if key else ""}{what}'
-        )
+        return ParameterError(f'line {self._lines.get(key, 1)}: {f"{key}: " if key else ""}{what}')

@@ -88,7 +88,7 @@ class Locking:
 
     def _times(self, kind: str) -> list[float]:
         """Return the scenario times in s of all locks or releases, none of a linear clutch."""
-        events = getattr(self.trajectory, 'phase_events', ())
+        events = getattr(self.trajectory, 'phase_events', None) or ()
         return [time for step in events for time, what in step if what == kind]
 
 

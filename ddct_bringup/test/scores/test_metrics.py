@@ -33,7 +33,7 @@ def trajectory(steps=STEPS, **signals):
     arrays = {
         each.name: signals.get(each.name, np.zeros((STEPS + 1, *shapes.get(each.name, ()))))
         for each in all_signals()
-        if each.name != 'status'
+        if each.name not in ('status', 'friction_work', 'clutch_phase', 'phase_events')
     }
     rows = {name: np.asarray(value, float)[: steps + 1] for name, value in arrays.items()}
     return Trajectory({**rows, 'status': ((),) * (steps + 1)})
