@@ -1,6 +1,7 @@
 """Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
-from ddct_plant.graph.topics import TOPICS, all_signals
+from ddct_plant.graph.topics import RunKind, all_topics, recorded_topics
 
 RUN_INFO = {'load': [('version', '1.0')], 'engine': [('version', '1.0'), ('seed', '0')]}
 
@@ -34,8 +35,9 @@ def facts(steps, **changes):
     return RunFacts(**{**values, **changes})
 
 
-def random_trajectory(steps, preview_steps=2):
+def random_trajectory(steps, preview_steps=2, clutch='linear'):
     """Return a run of random numbers."""
+    run = RunKind(clutch=clutch)
     random = np.random.default_rng(steps)
     widths = {
         'joint_position': (4,),
@@ -45,17 +47,25 @@ def random_trajectory(steps, preview_steps=2):
         'slip_reference_rate': (preview_steps + 1,),
         'actuator_torque': (11,),
         'clutch_torque': (11,),
+        'clutch_static_torque': (11,),
     }
-    arrays = {
+    arrays: dict[str, Any] = {
         signal.name: random.normal(0.0, 100.0, (steps + 1, *widths.get(signal.name, ())))
-        for signal in all_signals()
-        if signal.name not in ('status', 'engine_torque_request')
+        for topic in recorded_topics(run)
+        for signal in topic.signals_in(run)
+        if signal.unit
     }
+    if run.clutch != 'linear':
+        arrays['clutch_phase'] = random.integers(0, 3, steps + 1).astype(float)
     status = tuple(
         (('part_n_m', repr(float(value))), ('saturated', 'true' if value < 0.0 else 'false'))
         for value in random.normal(0.0, 100.0, steps + 1)
     )
-    return Trajectory({**arrays, 'status': status})
+    texts: dict[str, Any] = {'status': status}
+    if run.clutch != 'linear':
+        events = (((0.25, 'lock'), (1.0 / 3.0, 'release')), ())
+        texts['phase_events'] = tuple(events[step % 2] for step in range(steps + 1))
+    return Trajectory.of_columns({**arrays, **texts})
 
 
 class Bags:
@@ -84,7 +94,7 @@ class Bags:
         """Write the messages of a bag again, edited, as a list of (topic, stamp, bytes)."""
         records = read_records(mcap_of(source))
         bag = self.folder / name
-        known = {topic.resolved_name: topic for topic in TOPICS}
+        known = {topic.resolved_name: topic for topic in all_topics()}
         topics = [known[channel.topic] for channel in records.channels.values()]
         with BagWriter(bag, name, topics, {**records.custom_data, **changes}) as writer:
             for message in edit(records.messages):

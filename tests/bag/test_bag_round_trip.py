@@ -23,6 +23,14 @@ def test_trajectory_comes_back_to_the_last_bit(bags, trajectory):
     assert recording.missed == {}
 
 
+def test_a_stick_slip_run_comes_back_with_its_phases(bags, make_trajectory):
+    run = make_trajectory(60, clutch='stick_slip')
+    recording = read_bag(bags.write(run, clutch='stick_slip'))
+    assert recording.trajectory.sha256() == run.sha256()
+    assert recording.trajectory.phase_events == run.phase_events
+    assert recording.counts['/clutch/phase'] == run.steps + 1
+
+
 def test_run_info_facts_and_counts_come_back(bags, trajectory):
     recording = read_bag(bags.write(trajectory, wear_gain=0.7))
     assert recording.run_info == {

@@ -121,21 +121,23 @@ def test_a_bag_that_lacks_it_is_refused(add: Any, bags: Any, trajectory: Traject
 
 
 def test_only_runs_that_meet_its_condition_have_it(
-    add: Any, bags: Any, trajectory: Trajectory
+    add: Any, bags: Any, trajectory: Trajectory, make_trajectory: Any
 ) -> None:
     topic = add(entry(when=_stick_slip))
     assert topic not in topics.recorded_topics(RunKind())
     assert topic in topics.recorded_topics(RunKind(clutch='stick_slip'))
     linear = read_bag(bags.write(trajectory, folder='linear'))
     assert linear.trajectory.sha256() == trajectory.sha256()
-    run = with_more(trajectory)
+    run = with_more(make_trajectory(60, clutch='stick_slip'))
     stick_slip = bags.write(run, folder='stick_slip', clutch='stick_slip')
     assert np.array_equal(
         read_bag(stick_slip).trajectory.signals['made_up_torque'], run.made_up_torque
     )
     assert 'made_up_torque_n_m' in csv_columns(signals_csv(read_bag(stick_slip)))
     assert 'made_up_torque_n_m' not in csv_columns(signals_csv(linear))
-    lacking = bags.rewrite(bags.folder / 'linear', 'lacking', clutch='stick_slip')
+    lacking = bags.rewrite(
+        stick_slip, 'lacking', lambda messages: [m for m in messages if m[0] != '/load/made_up']
+    )
     with pytest.raises(DdctError, match='no message on /load/made_up'):
         read_bag(lacking)
 
