@@ -1,5 +1,6 @@
 """A scenario: everything about a run that is not the controller or the way it is started."""
 
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -38,8 +39,8 @@ _ADJUSTED = Option(
 
 
 def _section(default: OptionGroup) -> Any:
-    """Return the field of a section that files and digests leave out while it is the default."""
-    return field(default=default, metadata={'left_out': True})
+    """Return a field that only the clutch that sticks heeds; left out while it is the default."""
+    return field(default=default, metadata={'left_out': True, 'stick_slip': True})
 
 
 @dataclass(frozen=True)
@@ -204,6 +205,17 @@ class Scenario(OptionGroup):
     def steps(self) -> int:
         """N, the number of 10 ms periods of the run."""
         return steps_in('duration_s', self.duration_s)
+
+    @property
+    def of_stick_slip(self) -> tuple[str, ...]:
+        """What is given that only the clutch that sticks heeds, by key."""
+        sections = [
+            each.name
+            for each in dataclasses.fields(self)
+            if each.metadata.get('stick_slip') and getattr(self, each.name) != each.default
+        ]
+        phase = ['initial.clutch_phase'] if self.initial.clutch_phase else []
+        return (*phase, *sections)
 
     @property
     def control_start_step(self) -> int:

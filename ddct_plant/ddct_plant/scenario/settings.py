@@ -30,6 +30,7 @@ class RunSettings(OptionGroup):
         """Check every setting; raise ParameterError that names a bad one and the choices."""
         super().__post_init__()
         self._require_reference()
+        self._require_clutch()
 
     @property
     def detailed(self) -> bool:
@@ -56,6 +57,15 @@ class RunSettings(OptionGroup):
     def lockstep(self) -> bool:
         """Whether the owner of time waits for every reply."""
         return self.mode == 'lockstep'
+
+    def _require_clutch(self) -> None:
+        """Refuse a scenario that gives what the linear clutch would ignore."""
+        given = self.scenario.of_stick_slip
+        if given and not self.stick_slip:
+            raise ParameterError(
+                f'scenario {self.scenario.name} gives {", ".join(given)}, which the clutch '
+                f'{self.clutch} would ignore: choose --clutch {STICK_SLIP}, or leave that out'
+            )
 
     def _require_reference(self) -> None:
         start_s, end_s = self.scenario.control_start_s, self.scenario.reference.reference_end_s

@@ -1,0 +1,70 @@
+"""Launches and tip-in: every value has its source, and they are for the clutch that sticks."""
+
+import importlib.resources
+
+import pytest
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.settings import RunSettings
+
+NAMES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
+
+
+def test_they_are_packaged_and_consistent():
+    assert set(NAMES) < set(scenario_names())
+    for name in NAMES:
+        assert load_scenario(name).adjusted == ()
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_each_value_or_the_section_it_is_in_has_a_comment(name):
+    packaged = importlib.resources.files('ddct_plant.scenario') / 'packaged'
+    explained: dict[int, bool] = {}
+    for line in (packaged / f'{name}.yaml').read_text(encoding='utf-8').splitlines():
+        if line.startswith(('#', 'description:')):
+            continue
+        depth = len(line) - len(line.lstrip())
+        explained = {at: said for at, said in explained.items() if at < depth}
+        explained[depth] = '#' in line
+        is_section = line.split('#')[0].rstrip().endswith(':')
+        assert is_section or any(explained.values()), line
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_the_linear_clutch_refuses_what_it_would_ignore(name):
+    with pytest.raises(ParameterError) as caught:
+        RunSettings(load_scenario(name))
+    message = str(caught.value)
+    assert message.startswith(f'scenario {name} gives initial.clutch_phase')
+    assert 'which the clutch linear would ignore: choose --clutch stick_slip' in message
+
+
+@pytest.mark.parametrize('section', ['friction', 'heat', 'brake'])
+def test_each_section_of_the_clutch_that_sticks_is_named(section):
+    change = {
+        'friction': 'friction.static_over_kinetic=1.2',
+        'heat': 'heat.facing_c=90',
+        'brake': 'brake={time_s: [0.0], torque_n_m: [9.0]}',
+    }[section]
+    scenario = load_scenario('thesis', [change])
+    with pytest.raises(ParameterError, match=f'scenario thesis gives {section}, which the clutch'):
+        RunSettings(scenario)
+    assert RunSettings(scenario, clutch='stick_slip').scenario.of_stick_slip == (section,)
+
+
+@pytest.mark.parametrize('name', [name for name in NAMES if name != 'tip_in'])
+def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
+    settings = RunSettings(load_scenario(name), clutch='stick_slip')
+    start = initial_state(settings)
+    assert start.engine_speed == pytest.approx(104.72)
+    assert (start.shaft_speed, start.wheel_speed) == (0.0, 0.0)
+    assert (start.torque_request, start.clutch_torque, start.twist) == (0.0, 0.0, 0.0)
+    assert start.wheel_torque == pytest.approx(-start.load_torque), 'the brake holds the slope'
+
+
+def test_the_tip_in_starts_locked():
+    start = initial_state(RunSettings(load_scenario('tip_in'), clutch='stick_slip'))
+    assert start.engine_speed == start.shaft_speed
+    assert start.torque_request > 0.0
