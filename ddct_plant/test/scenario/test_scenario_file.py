@@ -60,7 +60,7 @@ def test_a_scenario_may_say_its_schema_version_and_a_written_one_does(scenario_f
     ],
 )
 def test_a_schema_version_that_is_not_known_is_refused(scenario_file, version, complaint):
-    with pytest.raises(DdctError, match=f'mine.yaml: {complaint}'):
+    with pytest.raises(DdctError, match=f'mine.yaml: line 1: {complaint}'):
         load_scenario(scenario_file(f'schema_version: {version}\n{MINIMAL}'))
 
 
