@@ -173,7 +173,11 @@ def annotated_yaml(scenario: Scenario, head: Sequence[str]) -> str:
         (f'  time_s: {time}', 'the end of the rise is fitted'),
         (f'  torque_n_m: {torque}', 'fitted; only the rise is determined, not its level'),
         ('initial:', 'assumed: no slip; 160 rad/s is 20 km/h in second gear'),
-        *((f'  {name}: {value}', '') for name, value in vars(scenario.initial).items()),
+        *(
+            (f'  {name}: {value}', '')
+            for name, value in vars(scenario.initial).items()
+            if value is not None
+        ),
         ('load:', 'assumed: a level road; an ordinary car has 0.32 and 0.0125'),
         *((f'  {name}: {value}', '') for name, value in vars(scenario.load).items()),
         ('reference:', ''),
