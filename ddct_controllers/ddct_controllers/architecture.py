@@ -7,6 +7,7 @@ from numbers import Real
 
 import numpy as np
 
+from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.base.checks import require_finite
 from ddct_plant.base.errors import DdctError, ForeignError
@@ -37,7 +38,8 @@ class Architecture:
     """
     C_f = open loop + feedback; feedback is held off until its first step.
 
-    The open loop takes the measurement, and C_load computed from V_x and the slope.
+    The open loop takes the measurement, and C_load computed from V_x and the slope. A closing
+    stage, if there is one, adds to it and holds feedback off while it is closed.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class Architecture:
         load: RoadLoad,
         controller: Controller,
         feedback_start_step: int,
+        closing: ClosingStage | None = None,
     ) -> None:
         """Wire `controller` as the feedback, on from `feedback_start_step`."""
         self._open_loop = open_loop
@@ -53,15 +56,26 @@ class Architecture:
         self._controller = controller
         self._name = f'controller {controller.registered_name or type(controller).__name__!r}'
         self._start_step = feedback_start_step
+        self._closing = closing
+        self._last_request = self._engine_deviation = 0.0
 
     def update(self, measurement: Measurement) -> TorqueRequest:
         """Return the request for the period that starts at the measurement's step."""
         load_torque = self._load.torque(measurement.vehicle_speed)
         open_loop = self._open_loop(measurement, load_torque)
-        measurement = measurement.within(load_torque, open_loop)
         on = measurement.step >= self._start_step
+        closing: Status = ()
+        if self._closing:
+            open_loop += self._closing.update(
+                measurement, load_torque, open_loop, self._last_request, feedback_on=on
+            )
+            on = on and not self._closing.closed
+            closing = self._closing.status
+        measurement = measurement.within(load_torque, open_loop)
         command = self._command(measurement, on)
-        torque = open_loop + command.clutch_torque
+        torque = self._last_request = open_loop + command.clutch_torque
+        if on and command.engine_torque is not None:
+            self._engine_deviation = command.engine_torque - measurement.engine_torque
         return TorqueRequest(
             torque,
             (
@@ -69,6 +83,7 @@ class Architecture:
                 ('open_loop_torque_n_m', repr(open_loop)),
                 ('closed_loop_torque_n_m', repr(command.clutch_torque)),
                 ('saturated', 'true' if torque < 0.0 else 'false'),
+                *closing,
                 *command.status,
             ),
             command.engine_torque,
@@ -96,10 +111,13 @@ class Architecture:
             ) from error
 
     def _feedback_off(self, measurement: Measurement) -> Command:
-        """Return no torque of the controller's own; the engine then follows the driver."""
-        if self._controller.commands_engine:
-            return Command(0.0, engine_torque=measurement.engine_torque)
-        return _FEEDBACK_OFF
+        """Return no torque of the controller's own; the engine is, or goes back, to the driver."""
+        if not self._controller.commands_engine:
+            return _FEEDBACK_OFF
+        engine = measurement.engine_torque
+        if self._closing and self._closing.closed:
+            engine += self._closing.engine_share * self._engine_deviation
+        return Command(0.0, engine_torque=engine)
 
     def _checked(self, command: object, step: int) -> Command:
         """Return the command with plain floats; raise DdctError for any other answer."""
@@ -151,19 +169,20 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
     In `detailed` feedback starts at the scenario's `control_start_s`, in the others at t = 0.
     """
     scenario = settings.scenario
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
     return Architecture(
-        _make_open_loop(settings),
+        _make_open_loop(settings, static),
         RoadLoad(scenario.load, scenario.vehicle),
         controller,
         scenario.control_start_step if settings.detailed else 0,
+        ClosingStage(scenario.closing, static) if scenario.closing else None,
     )
 
 
-def _make_open_loop(settings: RunSettings) -> OpenLoop:
+def _make_open_loop(settings: RunSettings, static: StaticTorque) -> OpenLoop:
     """Return C_fOL (Section 1.4.5.1), the feedforward (1.6.2), or nothing (1.6.1)."""
     scenario = settings.scenario
     if settings.detailed:
-        static = StaticTorque(scenario.driveline, scenario.equilibrium)
         return lambda m, load: static.torque(m.engine_torque, load, m.engine_speed, m.shaft_speed)
     if settings.architecture == 'base':
         return lambda m, load: 0.0

@@ -116,6 +116,8 @@ class Controller(ABC):
         """
         Pass a period in which feedback is held off and only the open-loop torque acts.
 
+        So it is before control starts, and while the closing stage keeps a locked clutch closed.
+
         Here the controller is reset. One with an observer lets it follow the plant instead.
         """
         self.reset()

@@ -18,6 +18,7 @@ from ddct_plant.models.holding import BrakeProfile
 from ddct_plant.models.load import LoadParameters
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
+from ddct_plant.scenario.closing import ClosingParameters
 from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 
 LONGEST_S = 3600.0
@@ -179,6 +180,7 @@ class Scenario(OptionGroup):
     heat: HeatParameters = _section(HeatParameters())
     brake: BrakeProfile = _section(BrakeProfile())
     engine_limits: EngineLimits | None = None
+    closing: ClosingParameters | None = field(default=None, metadata={'stick_slip': True})
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""
     gear: int | None = option(

@@ -41,12 +41,13 @@ def test_the_linear_clutch_refuses_what_it_would_ignore(name):
     assert 'which the clutch linear would ignore: choose --clutch stick_slip' in message
 
 
-@pytest.mark.parametrize('section', ['friction', 'heat', 'brake'])
+@pytest.mark.parametrize('section', ['friction', 'heat', 'brake', 'closing'])
 def test_each_section_of_the_clutch_that_sticks_is_named(section):
     change = {
         'friction': 'friction.static_over_kinetic=1.2',
         'heat': 'heat.facing_c=90',
         'brake': 'brake={time_s: [0.0], torque_n_m: [9.0]}',
+        'closing': 'closing={}',
     }[section]
     scenario = load_scenario('thesis', [change])
     with pytest.raises(ParameterError, match=f'scenario thesis gives {section}, which the clutch'):
@@ -62,6 +63,12 @@ def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
     assert (start.shaft_speed, start.wheel_speed) == (0.0, 0.0)
     assert (start.torque_request, start.clutch_torque, start.twist) == (0.0, 0.0, 0.0)
     assert start.wheel_torque == pytest.approx(-start.load_torque), 'the brake holds the slope'
+
+
+def test_launches_close_the_clutch_after_lock_up_and_nothing_else_does():
+    closing = {name for name in scenario_names() if load_scenario(name).closing}
+    assert closing == {name for name in NAMES if name != 'tip_in'}
+    assert load_scenario('launch', ['closing=null']).closing is None
 
 
 def test_the_tip_in_starts_locked():

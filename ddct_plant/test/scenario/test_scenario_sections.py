@@ -17,6 +17,7 @@ friction: {static_over_kinetic: 1.1, slip_rad_s: [0.0, 50.0], slip_share: [1.0, 
 heat: {plate_c: 200.0, facing_c: 200.0}
 brake: {time_s: [0.0, 1.0], torque_n_m: [800.0, 0.0]}
 engine_limits: {stall_rad_s: 60.0}
+closing: {margin: 1.3}
 """
 DIGEST_OF_THESIS = '91dd4f58e1510697'
 """Of the values that the file had before there were sections: kept predictions hold it."""
@@ -38,6 +39,7 @@ def test_sections_survive_their_yaml_and_change_the_digest(scenario_file):
     assert (scenario.heat.facing_c, scenario.heat.housing_c) == (200.0, 20.0)
     assert scenario.brake.torque(0.5) == 400.0
     assert scenario.engine_limits.stall_rad_s == 60.0
+    assert (scenario.closing.margin, scenario.closing.dwell_s) == (1.3, 0.1)
     assert scenario.initial.clutch_phase == 'locked'
     again = load_scenario(scenario_file(scenario_to_yaml(scenario)))
     assert again == scenario
@@ -45,7 +47,7 @@ def test_sections_survive_their_yaml_and_change_the_digest(scenario_file):
     digests = {scenario_digest(scenario), scenario_digest(bare)}
     for section in SECTIONS.splitlines()[1:]:
         digests.add(scenario_digest(load_scenario(scenario_file(f'{BASE}{section}\n'))))
-    assert len(digests) == 6, 'each section counts'
+    assert len(digests) == 7, 'each section counts'
 
 
 def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
@@ -53,7 +55,7 @@ def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
     assert scenario_digest(scenario) == DIGEST_OF_THESIS
     assert scenario.engine_limits is None
     text = scenario_to_yaml(scenario)
-    for name in ('friction', 'heat', 'brake', 'engine_limits', 'clutch_phase'):
+    for name in ('friction', 'heat', 'brake', 'engine_limits', 'closing', 'clutch_phase'):
         assert f'{name}:' not in text
 
 
@@ -69,6 +71,8 @@ def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
         ('friction: {static_over_kinetic: 0.9}', 'line 5: friction.static_over_kinetic is 0.9'),
         ('friction:\n  slip_rad_s: [0]\n', 'line 5: friction.slip_share has 0 values for the 1'),
         ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'line 7: heat.facing_j_k is -163 J/K'),
+        ('closing: {margin: 0.9}', 'line 5: closing.margin is 0.9'),
+        ('closing:\n  dwell_s: 0.015', 'line 6: closing.dwell_s is 0.015 s'),
         (
             'brake:\n  torque_n_m: [1.0, 0.0]\n  time_s: [1.0, 1.0]',
             'line 7: brake.time_s goes from 1 to 1: it must rise',

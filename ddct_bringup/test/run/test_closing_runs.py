@@ -1,0 +1,63 @@
+"""With the closing stage the plates stay together once they are; without it they part again."""
+
+from functools import lru_cache
+
+import pytest
+
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.lock import Locking
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+ON, OFF = 'closing={}', 'closing=null'
+
+
+@lru_cache
+def run(scenario, controller, change, wear_gain=1.0):
+    settings = RunSettings(
+        load_scenario(scenario, [change]), clutch='stick_slip', wear_gain=wear_gain
+    )
+    trajectory = run_headless(settings, controller)
+    return Locking(trajectory, settings.scenario.control_start_step, None), trajectory
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'controller'),
+    [
+        ('thesis', 'mpc3'),
+        ('thesis', 'mpc_preview'),
+        ('thesis', 'torque_estimator'),
+        ('launch', 'mpc3'),
+        ('launch_hill', 'ls8'),
+        ('tip_in', 'pi'),
+    ],
+)
+def test_a_run_that_parts_again_without_it_stays_locked_with_it(scenario, controller):
+    assert run(scenario, controller, OFF)[0].releases > 0
+    locking, trajectory = run(scenario, controller, ON)
+    assert locking.releases == 0
+    assert dict(trajectory.status[-1])['closing'] == 'closed'
+
+
+def test_it_changes_nothing_before_the_lock():
+    locking, closing = run('thesis', 'mpc3', ON)
+    _, without = run('thesis', 'mpc3', OFF)
+    before = slice(0, locking.together_from - 1)
+    assert (closing.torque_request[before] == without.torque_request[before]).all()
+    assert (closing.joint_speed[before] == without.joint_speed[before]).all()
+
+
+def test_a_worn_clutch_that_feedback_has_locked_stays_locked():
+    for controller in ('ls8', 'mpc_offset_free'):
+        locking, trajectory = run('thesis', controller, ON, 0.7)
+        assert (locking.releases, dict(trajectory.status[-1])['closing']) == (0, 'closed')
+
+
+def test_the_engine_goes_back_to_the_driver_without_a_step():
+    _, trajectory = run('launch', 'torque_estimator', ON)
+    closed = [dict(pairs)['feedback'] == 'held off' for pairs in trajectory.status]
+    first = closed.index(True, 100)
+    changes = abs(trajectory.engine_torque[first + 1 :] - trajectory.engine_torque[first:-1])
+    assert abs(trajectory.engine_torque[first] - trajectory.torque_demand[first]) > 20.0
+    assert changes.max() < 2.0
+    assert trajectory.engine_torque[-1] == trajectory.torque_demand[-1]

@@ -1,0 +1,102 @@
+"""The closing stage: once the plates are seen to turn alike, a request that keeps them so."""
+
+from ddct_controllers.interface import Measurement, Status
+from ddct_plant.base.timebase import PERIOD_S, steps_in
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.closing import ClosingParameters
+
+
+class ClosingStage:
+    """
+    Adds to the open loop what a locked clutch needs to stay locked.
+
+    C_fOL is what a locked clutch carries, so a request of C_fOL is the edge at which it slips.
+    The stage closes when slip speed and reference have been within the band for the dwell time
+    with feedback on: a reference beyond it still asks for slip. The request then leaves from
+    where it was, without a jump, and its margin over |C_fOL| grows along the ramp; it never falls
+    below what feedback had locked a worn clutch with. A clutch that slips all the same has shown
+    that the margin is wrong, and only feedback can tell by how much: the stage opens, and what it
+    added fades along the ramp while feedback acts again.
+    """
+
+    def __init__(self, parameters: ClosingParameters, static_torque: StaticTorque) -> None:
+        """Start open."""
+        self._parameters = parameters
+        self._static_torque = static_torque
+        self._dwell_steps = steps_in('closing.dwell_s', parameters.dwell_s)
+        self._fade_steps = steps_in('closing.engine_fade_s', parameters.engine_fade_s)
+        self._most_change = parameters.ramp_n_m_s * PERIOD_S
+        self._samples_within = 0
+        self._added = self._margin = self._least_margin = self._missing = 0.0
+        self.closed = False
+        """Whether the clutch counts as locked, so that feedback is held."""
+
+    def update(
+        self,
+        measurement: Measurement,
+        load_torque: float,
+        open_loop: float,
+        last_request: float,
+        *,
+        feedback_on: bool,
+    ) -> float:
+        """
+        Return what to add to the open loop in N m over the coming period.
+
+        C_load, the open loop and the request of the last period in N m; `feedback_on` is whether
+        the architecture has started feedback.
+        """
+        # Feedback that asks for more than the stage may is not at the edge, and stays.
+        in_reach = self.closed or last_request <= self._parameters.most_n_m
+        alike = feedback_on and in_reach and self._within_band(measurement)
+        self._samples_within = self._samples_within + 1 if alike else 0
+        was_closed, self.closed = self.closed, self._samples_within > self._dwell_steps
+        if not self.closed:
+            self._added = self._nearer(self._added, 0.0)
+            return self._added
+        carried = abs(
+            self._static_torque.torque(
+                measurement.engine_torque,
+                load_torque,
+                measurement.engine_speed,
+                measurement.shaft_speed,
+            )
+        )
+        if not was_closed:
+            self._margin = self._least_margin = max(last_request, 0.0) - carried
+        wanted = self._wanted_margin(carried)
+        self._margin = self._nearer(self._margin, wanted)
+        self._missing = wanted - self._margin
+        self._added = carried + self._margin - open_loop
+        return self._added
+
+    @property
+    def engine_share(self) -> float:
+        """Share of a controller's last deviation from the driver's demand of C_m that is left."""
+        passed = self._samples_within - self._dwell_steps
+        return max(1.0 - passed / self._fade_steps, 0.0) if self._fade_steps else 0.0
+
+    @property
+    def status(self) -> Status:
+        """Say for `controller/status` what it does and what it adds."""
+        if self.closed:
+            state = 'closing' if self._missing else 'closed'
+        else:
+            state = 'opening' if self._added else 'open'
+        return (('closing', state), ('closing_torque_n_m', repr(self._added)))
+
+    def _within_band(self, measurement: Measurement) -> bool:
+        band = self._parameters.slip_band_rad_s
+        return abs(measurement.slip_speed) <= band and abs(measurement.slip_reference[0]) <= band
+
+    def _wanted_margin(self, carried: float) -> float:
+        """Return the margin over |C_fOL| in N m that the clutch's capacity leaves room for."""
+        p = self._parameters
+        wanted = max((p.margin - 1.0) * carried + p.reserve_n_m, self._least_margin)
+        return max(min(wanted, p.most_n_m - carried), 0.0)
+
+    def _nearer(self, torque: float, wanted: float) -> float:
+        """Return the torque in N m a period later along the ramp."""
+        if abs(wanted - torque) <= self._most_change:
+            return wanted
+        return torque + (self._most_change if wanted > torque else -self._most_change)
