@@ -93,6 +93,29 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path) -> None:
     assert seen.values[4] == ['pi', 'hinf1', 'ls8']
 
 
+def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
+    points = """[...document.querySelectorAll('.pareto .point')].map((point) => [
+      point.style.left, point.style.bottom, point.classList.contains('best'), point.title])"""
+    titles = "[...document.querySelectorAll('.pareto .title')].map((each) => each.textContent)"
+    choose = """['peak_jerk', 'friction_energy'].forEach((name, index) => {
+      const select = document.querySelectorAll('.pareto-choice select')[index];
+      select.value = name;
+      select.dispatchEvent(new Event('change'));
+    })"""
+    seen = visit(page, scripts=[points, titles, choose, points, titles])
+    before, titles_before, _, after, titles_after = seen.values
+    assert titles_after == titles_before[::-1]
+    assert len(before) == 3
+    assert any(best for *_, best, _ in before)
+    for (left, bottom, best, title), turned in zip(before, after, strict=True):
+        assert [round(float(each[:-1]), 2) for each in turned[:2]] == [
+            float(bottom[:-1]),
+            float(left[:-1]),
+        ]
+        assert turned[2:] == [best, ', '.join(reversed(title.split(', ')))]
+    assert seen.errors == []
+
+
 def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
     listen = """addEventListener('beforeprint', () => {
       const lines = window.light.map((colour) => parseInt(colour.slice(1), 16));

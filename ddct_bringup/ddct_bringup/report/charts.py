@@ -1,6 +1,6 @@
 """The time charts of the page: one per signal, all runs in each, one time axis for all."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,67 +8,22 @@ import numpy as np
 from bokeh.document import Document
 from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, HoverTool, Range1d
 from bokeh.models.annotations import BoxAnnotation, Span
-from bokeh.models.renderers import GlyphRenderer
+from bokeh.models.renderers import DataRenderer, GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
+from ddct_bringup.report.quantities import Quantity, quantities_of
 from ddct_bringup.report.run_marks import LIGHT_COLOURS, LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300
+_LANE_PX, _LANES_FRAME_PX = 28, 70
+FAINT = 0.6
+"""Opacity of a limit beside the line that it bounds."""
 NEUTRAL = '#808080'
 """Readable on a light and on a dark page."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """What one chart shows."""
-
-    key: str
-    title: str
-    symbol: str
-    unit: str
-    values: Callable[[Trajectory], np.ndarray]
-    """(N+1,) in the unit."""
-
-
-QUANTITIES = (
-    Quantity('w_d', 'Slip speed', 'w_d', 'rpm', lambda run: rpm_from_rad_s(run.slip_speed)),
-    Quantity(
-        'error',
-        'Slip error, reference less w_d',
-        'e',
-        'rpm',
-        lambda run: rpm_from_rad_s(run.slip_reference[:, 0] - run.slip_speed),
-    ),
-    Quantity(
-        'w_sr',
-        'Torsion speed of the driveshaft',
-        'w_sr',
-        'rpm',
-        lambda run: rpm_from_rad_s(run.joint_speed[:, 3]),
-    ),
-    Quantity('A_x', 'Vehicle acceleration', 'A_x', 'm/s²', lambda run: run.vehicle_accel),
-    Quantity(
-        'C_f_request', 'Clutch torque requested', 'C_f', 'N m', lambda run: run.torque_request
-    ),
-    Quantity(
-        'C_f_actuator',
-        'Clutch torque of the actuator',
-        'C_f',
-        'N m',
-        lambda run: run.actuator_torque[:, 0],
-    ),
-    Quantity(
-        'C_f_clutch',
-        'Clutch torque with wear',
-        'C_f',
-        'N m',
-        lambda run: run.clutch_torque[:, 0],
-    ),
-    Quantity('C_m', 'Engine torque', 'C_m', 'N m', lambda run: run.engine_torque),
-)
 
 
 @dataclass(frozen=True)
@@ -88,43 +43,61 @@ class ChartRun:
 
 
 def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the Bokeh document as JSON, and per quantity the id of its chart in it."""
+    """Return the Bokeh document as JSON, and per chart the id of it in there."""
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
     sources = [_source(run.trajectory) for run in runs]
     document = Document()
     roots = {}
-    for quantity in QUANTITIES:
-        chart = _chart(quantity, time_axis, cursor)
-        _mark_phases(chart, runs[0].facts)
+    for quantity in charted_quantities(runs):
+        chart = _chart(quantity.key, quantity.unit, time_axis, cursor)
+        _mark_window(chart, runs[0].facts)
         lines = [
-            _line(chart, quantity, run, source) for run, source in zip(runs, sources, strict=True)
+            _line(chart, quantity, run, source)
+            for run, source in zip(runs, sources, strict=True)
+            if quantity in quantities_of(run.trajectory)
         ]
         if quantity.key == 'w_d':
             _draw_references(chart, runs, sources)
             _mark_thesis(chart, runs)
+            _mark_events(chart, runs)
         _add_hover(chart, quantity, lines)
         document.add_root(chart)
         roots[quantity.key] = str(chart.id)
+    sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
+    if sticking:
+        chart = _chart(LANES, '', time_axis, cursor)
+        _mark_window(chart, runs[0].facts)
+        _draw_lanes(chart, sticking)
+        document.add_root(chart)
+        roots[LANES] = str(chart.id)
     return dict(document.to_json(deferred=False)), roots
+
+
+def charted_quantities(runs: Sequence[ChartRun]) -> list[Quantity]:
+    """Return the quantities that at least one run has, in the order of the page."""
+    return list(dict.fromkeys(each for run in runs for each in quantities_of(run.trajectory)))
 
 
 def _source(trajectory: Trajectory) -> ColumnDataSource:
     """Return what the charts show; single precision draws the same and halves the page."""
-    columns = {quantity.key: quantity.values(trajectory) for quantity in QUANTITIES}
-    columns['t'] = trajectory.time_s
+    columns = {'t': trajectory.time_s}
+    for quantity in quantities_of(trajectory):
+        columns[quantity.key] = quantity.values(trajectory)
+        if quantity.limit:
+            columns[quantity.limit_key] = quantity.limit(trajectory)
     columns['reference'] = rpm_from_rad_s(trajectory.slip_reference[:, 0])
     return ColumnDataSource({key: values.astype(np.float32) for key, values in columns.items()})
 
 
-def _chart(quantity: Quantity, time_axis: Range1d, cursor: Span) -> figure:
+def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span) -> figure:
     chart = figure(
         height=_HEIGHT_PX,
         sizing_mode='stretch_width',
         x_range=time_axis,
         y_range=DataRange1d(only_visible=True),
         x_axis_label='time, s',
-        y_axis_label=quantity.unit,
+        y_axis_label=unit,
         tools='xbox_zoom,xpan,xwheel_zoom,reset,save',
         active_drag='xbox_zoom',
         active_scroll=None,
@@ -133,7 +106,7 @@ def _chart(quantity: Quantity, time_axis: Range1d, cursor: Span) -> figure:
         border_fill_color=None,
         outline_line_color=None,
         min_border=6,
-        name=quantity.key,
+        name=key,
     )
     chart.toolbar.logo = None
     chart.xgrid.grid_line_color = None
@@ -143,7 +116,7 @@ def _chart(quantity: Quantity, time_axis: Range1d, cursor: Span) -> figure:
     return chart
 
 
-def _mark_phases(chart: figure, facts: RunFacts) -> None:
+def _mark_window(chart: figure, facts: RunFacts) -> None:
     """Mark the score window and where feedback starts."""
     first, last = facts.score_window_s
     chart.add_layout(
@@ -174,6 +147,17 @@ def _line(
         visible=run.shown,
     )
     line.tags = [_tag(run)]
+    if quantity.limit:
+        limit = chart.line(
+            't',
+            quantity.limit_key,
+            source=source,
+            line_width=1.0,
+            line_alpha=FAINT,
+            line_color=LIGHT_COLOURS[run.look.colour],
+            visible=run.shown,
+        )
+        limit.tags = [{**_tag(run), 'alpha': FAINT}]
     return line
 
 
@@ -216,20 +200,53 @@ def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
         mark.tags = [_tag(run)]
 
 
+def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
+    """Shade the phases of each run in a lane of its own, with its locks and releases on it."""
+    chart.height = _LANES_FRAME_PX + _LANE_PX * len(runs)
+    chart.y_range = Range1d(start=len(runs) - 0.5, end=-0.5)
+    chart.yaxis.ticker = list(range(len(runs)))
+    chart.yaxis.major_label_overrides = {lane: run.label for lane, run in enumerate(runs)}
+    chart.ygrid.grid_line_color = None
+    shades: list[DataRenderer] = []
+    for lane, run in enumerate(runs):
+        shade = draw_phases(chart, run.trajectory, lane, LIGHT_COLOURS[run.look.colour])
+        shade.name = run.label
+        shade.tags = [{**_tag(run), 'fill': True}]
+        marks = draw_events(chart, run.trajectory, lane, NEUTRAL)
+        for mark in marks:
+            mark.tags = [{**_tag(run), 'colour': None}]
+        for item in (shade, *marks):
+            item.visible = run.shown
+        shades.append(shade)
+    chart.add_tools(
+        HoverTool(
+            renderers=shades,
+            tooltips=[('', '$name'), ('phase', '@phase'), ('', '@left{0.000} to @right{0.000} s')],
+        )
+    )
+
+
+def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
+    """Mark locks and releases where the slip is zero."""
+    for run in runs:
+        if run.trajectory.clutch_phase is None:
+            continue
+        for mark in draw_events(chart, run.trajectory, 0.0, LIGHT_COLOURS[run.look.colour]):
+            mark.visible = run.shown
+            mark.tags = [_tag(run)]
+
+
 def _tag(run: ChartRun) -> dict[str, Any]:
     """Return what the page knows a line by: its runs, and its colour or None for the neutral."""
     return {'runs': [run.index], 'colour': run.look.colour}
 
 
 def _add_hover(chart: figure, quantity: Quantity, lines: Sequence[GlyphRenderer]) -> None:
-    chart.add_tools(
-        HoverTool(
-            renderers=list(lines),
-            line_policy='nearest',
-            tooltips=[
-                ('', '$name'),
-                ('time', '@t{0.00} s'),
-                (quantity.symbol, f'@{{{quantity.key}}}{{0.000}} {quantity.unit}'),
-            ],
-        )
-    )
+    tooltips = [
+        ('', '$name'),
+        ('time', '@t{0.00} s'),
+        (quantity.symbol, f'@{{{quantity.key}}}{{0.000}} {quantity.unit}'),
+    ]
+    if quantity.limit:
+        tooltips.append(('capacity', f'@{{{quantity.limit_key}}}{{0.000}} {quantity.unit}'))
+    chart.add_tools(HoverTool(renderers=list(lines), line_policy='nearest', tooltips=tooltips))

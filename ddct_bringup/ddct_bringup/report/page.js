@@ -3,6 +3,7 @@
 // Charts come from the Bokeh document in #data; this file switches lines, time range and colours.
 (async () => {
   const root = document.documentElement;
+  const data = JSON.parse(document.getElementById('data').textContent);
   const chips = [...document.querySelectorAll('.chip')];
   const shown = new Set(chips.filter(isPressed).map(runOf));
 
@@ -14,7 +15,7 @@
   const drawn = charts.flatMap((chart) => chart.renderers).filter((item) => item.tags.length);
 
   async function drawCharts() {
-    const {document: json, roots} = JSON.parse(document.getElementById('data').textContent);
+    const {document: json, roots} = data;
     const places = Object.entries(roots).map(([key, id]) => [id, `chart-${key}`]);
     const item = {docid: 'report', root_ids: Object.values(roots), roots: Object.fromEntries(places)};
     const [manager] = await Bokeh.embed.embed_items({report: json}, [item]);
@@ -53,7 +54,7 @@
   function emphasise(run) {
     drawn.forEach(({glyph, tags}) => {
       const faint = run !== null && !tags[0].runs.includes(run);
-      glyph.line_alpha = {value: faint ? 0.15 : 1.0};
+      glyph.line_alpha = {value: faint ? 0.15 : tags[0].alpha ?? 1.0};
     });
   }
   if (matchMedia('(hover: hover)').matches) {
@@ -80,6 +81,41 @@
     }));
   }
 
+  // Pareto view: every place and every front is in the data; a choice only looks them up.
+
+  const [across, up] = document.querySelectorAll('.pareto-choice select');
+
+  function placeRuns() {
+    const {criteria, fronts} = data.pareto;
+    const [x, y] = [criteria[across.value], criteria[up.value]];
+    const front = fronts[[across.value, up.value].sort().join(' ')];
+    document.querySelectorAll('.pareto .point').forEach((point) => {
+      const run = runOf(point);
+      point.hidden = !(run in x.places && run in y.places);
+      if (point.hidden) return;
+      point.style.left = `${100 * x.places[run]}%`;
+      point.style.bottom = `${100 * y.places[run]}%`;
+      point.classList.toggle('left', x.places[run] > 0.6);
+      point.classList.toggle('best', front.includes(run));
+      point.title = `${x.values[run]}, ${y.values[run]}`;
+    });
+    [[x, 'across', 'left'], [y, 'up', 'bottom']].forEach(([criterion, name, side]) => {
+      document.querySelector(`.pareto .title.${name}`).textContent = criterion.title;
+      document.querySelector(`.pareto .ticks.${name}`).replaceChildren(
+        ...criterion.ticks.map(([text, place]) => {
+          const tick = document.createElement('i');
+          tick.textContent = text;
+          tick.style[side] = `${100 * place}%`;
+          return tick;
+        }));
+    });
+  }
+
+  [across, up].filter(Boolean).forEach((select) => {
+    select.disabled = false;
+    select.addEventListener('change', placeRuns);
+  });
+
   // Colours
 
   const systemDark = matchMedia('(prefers-color-scheme: dark)');
@@ -89,8 +125,10 @@
   function paint() {
     const style = getComputedStyle(root);
     drawn.forEach(({glyph, tags}) => {
-      const {colour} = tags[0];
-      glyph.line_color = style.getPropertyValue(colour === null ? '--soft' : `--run-${colour}`).trim();
+      const {colour, fill} = tags[0];
+      const painted = style.getPropertyValue(colour === null ? '--soft' : `--run-${colour}`).trim();
+      glyph.line_color = painted;
+      if (fill) glyph.fill_color = painted;
     });
   }
 

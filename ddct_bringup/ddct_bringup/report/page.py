@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import asdict
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -12,12 +13,14 @@ from bokeh.resources import Resources
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 from markupsafe import Markup, escape
 
-from ddct_bringup.report.charts import NEUTRAL, QUANTITIES, ChartRun, chart_document
+from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
 from ddct_bringup.report.columns import FURTHER, LOOP_COLUMNS, TABLE_5_1
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.origin import run_origin, scenario_text
 from ddct_bringup.report.output import MARKER
+from ddct_bringup.report.pareto import pair_key, pareto_view
+from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_marks import (
     DARK_COLOURS,
     LIGHT_COLOURS,
@@ -28,6 +31,7 @@ from ddct_bringup.report.run_marks import (
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.summary import comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times
+from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
 from ddct_plant.program.command_line import package_version
@@ -41,15 +45,24 @@ def report_page(runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence]) -> 
     """Return the HTML of a report over runs of one scenario, at least one of them readable."""
     shown = _page_runs(runs)
     thesis_rows = [run['thesis'] for run in shown]
-    document, roots = chart_document([_chart_run(run) for run in shown if run['charted']])
+    charted = [_chart_run(run) for run in shown if run['charted']]
+    document, roots = chart_document(charted)
+    pareto = pareto_view(runs)
+    data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = [run.recording for run in runs if run.recording is not None]
     return _template().render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
         style=Markup(_part('page.css')),
         script=Markup(_part('page.js')),
-        charts=_json({'document': document, 'roots': roots}),
-        quantities=QUANTITIES,
+        data=_json(data),
+        quantities=charted_quantities(charted),
+        lanes=LANES if LANES in roots else None,
+        phases=OPACITY,
+        verdict=verdict_rows(runs),
+        not_judged=NOT_JUDGED,
+        pareto=pareto,
+        front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,
         light=LIGHT_COLOURS,
         dark=DARK_COLOURS,

@@ -11,7 +11,9 @@ from bokeh.models.renderers import GlyphRenderer
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.report.charts import QUANTITIES, ChartRun, chart_document
+from ddct_bringup.report.charts import ChartRun, chart_document
+from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
+from ddct_bringup.report.quantities import quantities_of
 from ddct_bringup.report.run_marks import LineLook
 from ddct_plant.graph.topics import all_signals
 
@@ -26,6 +28,14 @@ WIDTHS = {
     'actuator_torque': (11,),
     'clutch_torque': (11,),
 }
+STICKING = (
+    'clutch_phase',
+    'friction_work',
+    'phase_events',
+    'holding_torque',
+    'clutch_static_torque',
+    'clutch_temperature',
+)
 FACTS = RunFacts(
     controller='pi',
     architecture='detailed',
@@ -46,7 +56,7 @@ def random_run() -> Trajectory:
     arrays = {
         signal.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(signal.name, ())))
         for signal in all_signals()
-        if signal.name not in ('status', 'engine_torque_request')
+        if signal.name not in ('status', 'engine_torque_request', *STICKING)
     }
     return Trajectory({**arrays, 'status': ((),) * (STEPS + 1)})
 
@@ -86,7 +96,7 @@ def lines(chart) -> list[GlyphRenderer]:
 
 
 def test_every_signal_has_its_chart(charts):
-    assert list(charts) == list(SHOWN) == [quantity.key for quantity in QUANTITIES]
+    assert list(charts) == list(SHOWN) == [quantity.key for quantity in quantities_of(RUN)]
 
 
 @pytest.mark.parametrize('key', SHOWN)
@@ -96,7 +106,7 @@ def test_a_chart_draws_its_signal_over_time(charts, key):
     np.testing.assert_allclose(time, np.arange(STEPS + 1) / 100.0, rtol=1e-6)
     np.testing.assert_allclose(shown, values, rtol=1e-6)
     assert charts[key].yaxis[0].axis_label == unit
-    (quantity,) = [each for each in QUANTITIES if each.key == key]
+    (quantity,) = [each for each in quantities_of(RUN) if each.key == key]
     assert (quantity.unit, charts[key].xaxis[0].axis_label) == (unit, 'time, s')
 
 
@@ -105,3 +115,82 @@ def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
     np.testing.assert_allclose(drawn(reference)[1], RUN.slip_reference[:, 0] * RPM, rtol=1e-6)
     (mark,) = [each for each in charts['w_d'].renderers if each not in lines(charts['w_d'])]
     assert [list(each) for each in drawn(mark)] == [[pytest.approx(0.148)], [0.0]]
+
+
+def sticking_run() -> Trajectory:
+    """Return `RUN` with a clutch that closes at 0.02 s, locks, and lets go again."""
+    random = np.random.default_rng(2)
+    events: list[tuple[tuple[float, str], ...]] = [()] * (STEPS + 1)
+    events[6] = ((0.053, 'lock'),)
+    events[9] = ((0.081, 'release'), (0.084, 'lock'), (0.088, 'release'))
+    phase = np.ones(STEPS + 1)
+    phase[:2] = 0.0
+    phase[6:9] = 2.0
+    more = {
+        'clutch_phase': phase,
+        'friction_work': random.uniform(0.0, 100.0, STEPS + 1),
+        'phase_events': tuple(events),
+        'holding_torque': np.zeros(STEPS + 1),
+        'clutch_static_torque': random.normal(0.0, 100.0, (STEPS + 1, 11)),
+        'clutch_temperature': random.uniform(20.0, 90.0, STEPS + 1),
+    }
+    return Trajectory({**RUN.signals, **more})
+
+
+STICK_SLIP = sticking_run()
+
+
+@pytest.fixture(scope='module')
+def both():
+    """Return the charts of a linear run beside one with a clutch that sticks."""
+    runs = [
+        ChartRun(0, 'linear', LineLook(0, ()), RUN, FACTS, True),
+        ChartRun(1, 'sticks', LineLook(1, ()), STICK_SLIP, FACTS, True),
+    ]
+    document: Any = chart_document(runs)[0]
+    return {chart.name: chart for chart in Document.from_json(document).roots}
+
+
+def test_a_clutch_that_sticks_adds_its_charts_for_its_own_runs_only(both):
+    assert list(both) == [*SHOWN, 'C_f_transmitted', 'friction_energy', 'temperature', LANES]
+    assert [len(lines(both[key])) for key in ('C_m', 'temperature')] == [2, 1]
+
+
+def test_transmitted_torque_stands_beside_the_capacity_of_the_phase(both):
+    transmitted, capacity = lines(both['C_f_transmitted'])
+    np.testing.assert_allclose(drawn(transmitted)[1], RUN.joint_effort[:, 1], rtol=1e-6)
+    expected = RUN.clutch_torque[:, 0].copy()
+    expected[6:9] = STICK_SLIP.clutch_static_torque[6:9, 0]
+    np.testing.assert_allclose(drawn(capacity)[1], expected, rtol=1e-6)
+
+
+def test_friction_energy_adds_up_and_temperature_is_drawn(both):
+    (energy,), (temperature,) = (lines(both[key]) for key in ('friction_energy', 'temperature'))
+    work = STICK_SLIP.friction_work
+    np.testing.assert_allclose(drawn(energy)[1], np.cumsum(work) / 1000.0, rtol=1e-6)
+    np.testing.assert_allclose(drawn(temperature)[1], STICK_SLIP.clutch_temperature, rtol=1e-6)
+
+
+def test_phases_change_at_the_instants_of_their_events():
+    assert phase_spans(STICK_SLIP) == [
+        (0.0, 0.02, 'open'),
+        (0.02, 0.053, 'slipping'),
+        (0.053, 0.081, 'locked'),
+        (0.081, 0.084, 'slipping'),
+        (0.084, 0.088, 'locked'),
+        (0.088, 0.2, 'slipping'),
+    ]
+
+
+def test_each_phase_is_shaded_in_its_own_way_with_the_events_on_it(both):
+    shade, locks, releases = both[LANES].renderers
+    source = shade.data_source.data
+    assert list(source['opacity']) == [OPACITY[phase] for phase in source['phase']]
+    assert len(set(OPACITY.values())) == 3
+    assert (locks.glyph.marker.value, releases.glyph.marker.value) == (
+        'triangle',
+        'inverted_triangle',
+    )
+    assert [list(drawn(mark)[0]) for mark in (locks, releases)] == [[0.053, 0.084], [0.081, 0.088]]
+    marks = [each for each in both['w_d'].renderers if each not in lines(both['w_d'])]
+    assert [list(drawn(mark)[0]) for mark in marks] == [[0.053, 0.084], [0.081, 0.088]]

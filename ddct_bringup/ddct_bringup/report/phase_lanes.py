@@ -1,0 +1,83 @@
+"""Phases of a clutch that sticks: spans of time to shade, and the instants of lock and release."""
+
+from bokeh.models import ColumnDataSource
+from bokeh.models.renderers import GlyphRenderer
+from bokeh.plotting import figure
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.lock import LOCKED, SLIPPING
+
+LANES = 'phases'
+"""Name of the chart."""
+OPACITY = {'open': 0.0, 'slipping': 0.3, 'locked': 0.85}
+"""By phase, in the order of its numbers."""
+EVENT_MARKERS = {'lock': 'triangle', 'release': 'inverted_triangle'}
+_PHASES = tuple(OPACITY)
+_HALF_HEIGHT = 0.36
+
+Span = tuple[float, float, str]
+"""Scenario times in s at which a phase begins and ends, and its name."""
+
+
+def phase_spans(run: Trajectory) -> list[Span]:
+    """
+    Return the spans of a run with phases, without gaps from its start to its end.
+
+    Lock and release stand at their instants, an opening or closing at the tick that shows it.
+    """
+    time_s = run.time_s.tolist()
+    changes = [(time_s[0], run.clutch_phase[0])]
+    for time, phase, events in zip(time_s, run.clutch_phase, run.phase_events, strict=True):
+        changes += [(when, LOCKED if what == 'lock' else SLIPPING) for when, what in events]
+        if changes[-1][1] != phase:
+            changes.append((time, phase))
+    ends = [time for time, _ in changes[1:]] + [time_s[-1]]
+    return [
+        (begin, end, _PHASES[int(phase)])
+        for (begin, phase), end in zip(changes, ends, strict=True)
+        if end > begin
+    ]
+
+
+def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> GlyphRenderer:
+    """Draw the spans as boxes around the height `lane`, the firmer the closer the plates."""
+    begins, ends, phases = zip(*phase_spans(run), strict=True)
+    source = ColumnDataSource(
+        {
+            'left': list(begins),
+            'right': list(ends),
+            'phase': list(phases),
+            'opacity': [OPACITY[phase] for phase in phases],
+        }
+    )
+    return chart.quad(
+        left='left',
+        right='right',
+        bottom=lane + _HALF_HEIGHT,
+        top=lane - _HALF_HEIGHT,
+        source=source,
+        fill_color=colour,
+        fill_alpha='opacity',
+        line_color=colour,
+        line_width=1.0,
+    )
+
+
+def draw_events(chart: figure, run: Trajectory, height: float, colour: str) -> list[GlyphRenderer]:
+    """Mark the locks and releases of a run at a height of the chart."""
+    marks = []
+    for kind, marker in EVENT_MARKERS.items():
+        times = [time for events in run.phase_events for time, what in events if what == kind]
+        if times:
+            marks.append(
+                chart.scatter(
+                    times,
+                    [height] * len(times),
+                    marker=marker,
+                    size=9,
+                    fill_color='#ffffff',
+                    line_color=colour,
+                    line_width=1.5,
+                )
+            )
+    return marks

@@ -1,0 +1,108 @@
+"""The signals that the page draws, one chart each."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.lock import LOCKED
+from ddct_plant.base.units import rpm_from_rad_s
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What one chart shows."""
+
+    key: str
+    title: str
+    symbol: str
+    unit: str
+    values: Callable[[Trajectory], np.ndarray]
+    """(N+1,) in the unit."""
+    limit: Callable[[Trajectory], np.ndarray] | None = None
+    """(N+1,) in the unit: what bounds its magnitude, drawn beside it."""
+
+    @property
+    def limit_key(self) -> str:
+        """Name of the limit's column."""
+        return f'{self.key}_limit'
+
+
+_QUANTITIES = (
+    Quantity('w_d', 'Slip speed', 'w_d', 'rpm', lambda run: rpm_from_rad_s(run.slip_speed)),
+    Quantity(
+        'error',
+        'Slip error, reference less w_d',
+        'e',
+        'rpm',
+        lambda run: rpm_from_rad_s(run.slip_reference[:, 0] - run.slip_speed),
+    ),
+    Quantity(
+        'w_sr',
+        'Torsion speed of the driveshaft',
+        'w_sr',
+        'rpm',
+        lambda run: rpm_from_rad_s(run.joint_speed[:, 3]),
+    ),
+    Quantity('A_x', 'Vehicle acceleration', 'A_x', 'm/s²', lambda run: run.vehicle_accel),
+    Quantity(
+        'C_f_request', 'Clutch torque requested', 'C_f', 'N m', lambda run: run.torque_request
+    ),
+    Quantity(
+        'C_f_actuator',
+        'Clutch torque of the actuator',
+        'C_f',
+        'N m',
+        lambda run: run.actuator_torque[:, 0],
+    ),
+    Quantity(
+        'C_f_clutch',
+        'Clutch torque with wear',
+        'C_f',
+        'N m',
+        lambda run: run.clutch_torque[:, 0],
+    ),
+    Quantity('C_m', 'Engine torque', 'C_m', 'N m', lambda run: run.engine_torque),
+)
+"""Of every run."""
+
+
+def _capacity(run: Trajectory) -> np.ndarray:
+    """Return what the friction can carry in N m: the static capacity while it is locked."""
+    locked = run.clutch_phase == LOCKED
+    return np.where(locked, run.clutch_static_torque[:, 0], run.clutch_torque[:, 0])
+
+
+_CLUTCH_QUANTITIES = (
+    Quantity(
+        'C_f_transmitted',
+        'Clutch torque transmitted, and capacity',
+        'C_f',
+        'N m',
+        lambda run: run.joint_effort[:, 1],
+        _capacity,
+    ),
+    Quantity(
+        'friction_energy',
+        'Friction energy of the clutch',
+        'E_f',
+        'kJ',
+        lambda run: np.cumsum(run.friction_work) / 1e3,
+    ),
+    Quantity(
+        'temperature',
+        'Temperature of the pressure plate',
+        'T_p',
+        '°C',
+        lambda run: run.clutch_temperature,
+    ),
+)
+"""Of runs with a clutch that sticks."""
+
+
+def quantities_of(trajectory: Trajectory) -> tuple[Quantity, ...]:
+    """Return what there is to draw of a run."""
+    if trajectory.clutch_phase is None:
+        return _QUANTITIES
+    return _QUANTITIES + _CLUTCH_QUANTITIES

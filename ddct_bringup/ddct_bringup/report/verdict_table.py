@@ -1,0 +1,95 @@
+"""The table of verdicts: a criterion per row with its limit, a run per column."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ddct_bringup.report.columns import number_text
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.verdict.criteria import CRITERIA, Criterion
+from ddct_bringup.verdict.verdict import NO_LIMIT
+
+NOT_JUDGED = 'the run failed or cannot be read'
+_UNITS = {
+    '1': '',
+    'm/s^3': 'm/s³',
+    'm/s^2': 'm/s²',
+    'm/s^1.75': 'm/s¹·⁷⁵',
+    'degC': '°C',
+    'rad/s^2': 'rad/s²',
+}
+
+
+@dataclass(frozen=True)
+class VerdictCell:
+    """A criterion of one run."""
+
+    value: float | None
+    text: str
+    state: str
+    """`within`, `beyond` or `no_limit`."""
+    why_dash: str
+    """Why there is no value, empty where there is one."""
+
+
+@dataclass(frozen=True)
+class VerdictRow:
+    """A criterion over all runs."""
+
+    criterion: Criterion
+    title: str
+    unit: str
+    limit: str
+    """Empty where no limit applies."""
+    source: str
+    cells: tuple[VerdictCell, ...]
+
+    @property
+    def undefined(self) -> bool:
+        """Whether a run that was judged has no value."""
+        return any(cell.why_dash == self.criterion.undefined for cell in self.cells)
+
+
+def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
+    """Return one row per criterion; a run that was not judged has a value in none."""
+    judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
+    return [
+        _row(criterion, [each.get(criterion.name) for each in judged]) for criterion in CRITERIA
+    ]
+
+
+def criterion_title(name: str) -> str:
+    """Return the name of a criterion as words."""
+    return name.replace('_', ' ')
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit as it is printed, empty for a pure number."""
+    return _UNITS.get(unit, unit)
+
+
+def value_text(value: float | None) -> str:
+    """Return four digits, and of large values every digit before the point."""
+    large = value is not None and abs(value) >= 1e4
+    return number_text(value, '.0f' if large else '.4g')
+
+
+def _row(criterion: Criterion, found: Sequence[dict[str, Any] | None]) -> VerdictRow:
+    # All runs of a page are of one scenario, so one limit applies to all.
+    limited = next((each for each in found if each and each['limit'] is not None), None)
+    return VerdictRow(
+        criterion=criterion,
+        title=criterion_title(criterion.name),
+        unit=unit_text(criterion.unit),
+        limit=value_text(limited['limit']) if limited else '',
+        source=limited['source'] if limited else '',
+        cells=tuple(_cell(criterion, each) for each in found),
+    )
+
+
+def _cell(criterion: Criterion, found: dict[str, Any] | None) -> VerdictCell:
+    if found is None:
+        return VerdictCell(None, value_text(None), NO_LIMIT, NOT_JUDGED)
+    value = found['value']
+    why_dash = criterion.undefined if value is None else ''
+    return VerdictCell(value, value_text(value), found['state'], why_dash)
