@@ -123,7 +123,7 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[float | None, floa
 
 
 def _friction_energy(trajectory: Trajectory) -> float:
-    work = getattr(trajectory, 'friction_work', None)
+    work = trajectory.friction_work
     if work is not None:
         return np.sum(work)
     power = np.abs(trajectory.joint_effort[:, 1] * trajectory.slip_speed)

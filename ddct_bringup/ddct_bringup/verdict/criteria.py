@@ -69,7 +69,7 @@ def _daily_dose(run: JudgedRun) -> float | None:
 
 
 def _peak_temperature(run: JudgedRun) -> float | None:
-    temperature = getattr(run.trajectory, 'clutch_temperature', None)
+    temperature = run.trajectory.clutch_temperature
     return None if temperature is None else np.max(temperature)
 
 

@@ -26,7 +26,7 @@ class Locking:
     @cached_property
     def phase(self) -> np.ndarray | None:
         """(N+1,) phase of the clutch at t_k; None for a linear clutch."""
-        return getattr(self.trajectory, 'clutch_phase', None)
+        return self.trajectory.clutch_phase
 
     @cached_property
     def locks_from_s(self) -> float | None:
@@ -88,7 +88,7 @@ class Locking:
 
     def _times(self, kind: str) -> list[float]:
         """Return the scenario times in s of all locks or releases, none of a linear clutch."""
-        events = getattr(self.trajectory, 'phase_events', None) or ()
+        events = self.trajectory.phase_events or ()
         return [time for step in events for time, what in step if what == kind]
 
 
