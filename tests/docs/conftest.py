@@ -28,7 +28,7 @@ def install_example(site: Path) -> None:
     (package / 'control.py').write_text(code)
     (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n')
     (record / 'entry_points.txt').write_text(
-        '[ddct.controllers]\nproportional = my_package.control:make_proportional\n'
+        '[ddct.controllers]\nproportional = my_package.control:Proportional\n'
     )
 
 

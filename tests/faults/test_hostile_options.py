@@ -87,6 +87,10 @@ def test_help_into_a_full_disk_is_one_line(module: str) -> None:
     assert_one_line(done.stderr, program, 'No space left on device')
 
 
+WRAPPERS = ('run_program', 'run_subcommands', 'run_node')
+"""`run_subcommands` chooses the subcommand and ends in `run_program`."""
+
+
 @pytest.mark.parametrize('package', sorted({package_of(spec) for spec in GRAPH_NODES}))
 def test_every_program_ends_through_the_one_wrapper(package: str) -> None:
     setup = (ROOT / package / 'setup.py').read_text(encoding='utf-8')
@@ -94,7 +98,7 @@ def test_every_program_ends_through_the_one_wrapper(package: str) -> None:
     assert programs
     for program in programs:
         main = inspect.getsource(importlib.import_module(program).main)
-        assert 'run_program(' in main or 'run_node(' in main, program
+        assert any(f'{end}(' in main for end in WRAPPERS), program
 
 
 @pytest.mark.parametrize('home', [None, '/proc/nowhere'])

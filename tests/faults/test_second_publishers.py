@@ -69,9 +69,10 @@ def test_every_topic_of_a_tick_is_looked_at(graph_of: GraphOf) -> None:
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph_of: GraphOf, topic: Topic
 ) -> None:
-    controller = 'mpc4' if not topic.in_run(RunKind()) else 'ls8'
+    clutch = 'linear' if topic.in_run(RunKind(two_input=True)) else 'stick_slip'
+    controller = 'ls8' if topic.in_run(RunKind(clutch=clutch)) else 'mpc4'
     recorded = topic.name in ('recorder/ack', 'engine/torque')
-    graph = graph_of(plan(controller, duration_s=0.3))
+    graph = graph_of(plan(controller, duration_s=0.3, clutch=clutch))
     graph.add_other(Echo(topic, context=graph.context))
     node, complaint = _graph(graph, recorded=recorded).first_failure()
     assert node == 'driveline'

@@ -1,6 +1,5 @@
 """Give each graph a ROS domain of its own, so that graphs on one machine do not mix."""
 
-import itertools
 import os
 import socket
 from collections.abc import Iterator
@@ -13,8 +12,8 @@ _DOMAINS = range(1, 100)
 """Domain ids whose DDS ports stay below those that the kernel hands out."""
 _FIRST_PORT = 28400
 """A domain is taken while somebody listens on this port plus its id."""
-_TURNS = itertools.count(os.getpid())
-"""Where the search for a free domain begins: nodes killed in the last one still haunt it."""
+_turn = os.getpid()
+"""Where the search for a free domain begins: after the last one, which killed nodes still haunt."""
 
 
 @contextmanager
@@ -39,8 +38,10 @@ def own_domain() -> Iterator[int]:
 
 @contextmanager
 def _reserved() -> Iterator[int]:
-    first = next(_TURNS) % len(_DOMAINS)
-    for domain in [*_DOMAINS[first:], *_DOMAINS[:first]]:
+    global _turn
+    for _ in _DOMAINS:
+        _turn += 1
+        domain = _DOMAINS[_turn % len(_DOMAINS)]
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as lock:
             try:
                 lock.bind(('127.0.0.1', _FIRST_PORT + domain))
