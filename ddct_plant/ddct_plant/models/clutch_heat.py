@@ -84,23 +84,26 @@ class ClutchHeat:
         )
         b = np.array([[(1.0 - p.facing_share) / plate], [p.facing_share / facing], [0.0]])
         sampled = discretise_zoh(StateSpace(a, b, np.eye(3), np.zeros((3, 1))), PERIOD_S)
-        self._transition, self._of_work = sampled.a, sampled.b[:, 0] / PERIOD_S
+        # As plain numbers: a product so small takes numpy longer.
+        self._rows = np.hstack([sampled.a, sampled.b / PERIOD_S]).tolist()
         self._ambient_c = p.ambient_c
-        self._above_ambient = np.array([p.plate_c, p.facing_c, p.housing_c]) - p.ambient_c
+        self._above_ambient = [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
 
     @property
     def temperatures_c(self) -> tuple[float, float, float]:
         """Plate, facing and housing in degrees Celsius."""
-        plate, facing, housing = (self._ambient_c + self._above_ambient).tolist()
-        return plate, facing, housing
+        plate, facing, housing = self._above_ambient
+        return self._ambient_c + plate, self._ambient_c + facing, self._ambient_c + housing
 
     @property
     def facing_c(self) -> float:
         """The facing's temperature in degrees Celsius, that friction depends on."""
-        return self._ambient_c + float(self._above_ambient[1])
+        return self._ambient_c + self._above_ambient[1]
 
     def advance(self, friction_work: float) -> None:
         """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""
-        self._above_ambient = (
-            self._transition @ self._above_ambient + self._of_work * friction_work
-        )
+        plate, facing, housing = self._above_ambient
+        self._above_ambient = [
+            of_plate * plate + of_facing * facing + of_housing * housing + of_work * friction_work
+            for of_plate, of_facing, of_housing, of_work in self._rows
+        ]

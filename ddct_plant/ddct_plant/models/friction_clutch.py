@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -83,8 +84,7 @@ class FrictionParameters(OptionGroup, prefix='friction.'):
         self.require_pairs('slip_rad_s', 'slip_share')
 
 
-@dataclass(frozen=True, slots=True)
-class Capacity:
+class Capacity(NamedTuple):
     """What the clutch can carry at 0, 1, ..., 10 ms of a period, in N m, never negative."""
 
     kinetic: list[float]
@@ -126,9 +126,8 @@ class FrictionClutch:
         gain = self._wear_gain * _curve(p.temperature_c, p.temperature_share, temperature_c)
         gain *= _curve(p.slip_rad_s, p.slip_share, abs(slip_speed))
         kiss = p.kiss_torque_n_m - p.kiss_drift_n_m_k * (temperature_c - AMBIENT_C)
-        kinetic = [
-            gain * max(torque - kiss, 0.0) if torque > 0.0 else 0.0 for torque in actuator_torque
-        ]
+        least = max(kiss, 0.0)
+        kinetic = [gain * (torque - kiss) if torque > least else 0.0 for torque in actuator_torque]
         return Capacity(kinetic, [p.static_over_kinetic * torque for torque in kinetic])
 
 
