@@ -1,4 +1,9 @@
-"""What a clutch that sticks costs a headless run, set-up excluded, over the linear clutch."""
+"""
+What a clutch that sticks costs a headless run, set-up excluded, over the linear clutch.
+
+The linear clutch refuses the other packaged scenarios, so their steps are held against those of
+`thesis` with the linear clutch and the same controller.
+"""
 
 import statistics
 import time
@@ -10,7 +15,6 @@ from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
 
 MEDIAN_GOAL, WORST_GOAL = 1.5, 3.0
-_CLUTCHES = ('linear', 'stick_slip')
 _ROUNDS = 9
 
 
@@ -36,8 +40,11 @@ def print_table(figures: dict[str, Any]) -> None:
 
 
 def _ratio(scenario: str, controller: str) -> float:
-    """Return the median ratio of the time a step takes, of runs in turn."""
-    runs = [RunSettings(load_scenario(scenario), clutch=clutch) for clutch in _CLUTCHES]
+    """Return the median ratio of the time a step takes to that of linear `thesis`, in turn."""
+    runs = [
+        RunSettings(load_scenario('thesis'), clutch='linear'),
+        RunSettings(load_scenario(scenario), clutch='stick_slip'),
+    ]
     ratios = []
     for _ in range(_ROUNDS):
         linear, stick_slip = (_step_s(settings, controller) for settings in runs)
