@@ -11,7 +11,7 @@ from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
 
 def _capacity(default: float, meaning: str, source: str = ASSUMED) -> Any:
-    return option(default, meaning, 'J/K', source=source, above=0.0, at_most=1e7)
+    return option(default, meaning, 'J/K', source=source, at_least=1.0, at_most=1e7)
 
 
 def _conductance(default: float, meaning: str) -> Any:

@@ -6,14 +6,6 @@ from typing import Any
 
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 
-DEFAULT_DIGITS = 8
-"""
-Significant digits of the defaults below.
-
-More than the 3e-5 to 1e-3 to which each is known: together they reproduce the printed
-coefficients, and 8 digits move those by less than a hundredth of the rounding of the print.
-"""
-
 
 def _identified(default: float, meaning: str, unit: str, **limits: float) -> Any:
     return option(default, meaning, unit, source='`identify`', **(limits or {'above': 0.0}))
@@ -21,7 +13,13 @@ def _identified(default: float, meaning: str, unit: str, **limits: float) -> Any
 
 @dataclass(frozen=True)
 class DrivelineParameters(OptionGroup, prefix='driveline.'):
-    """Parameters of the 4-state driveline of Section 1.5; `identify` derives the defaults."""
+    """
+    Parameters of the 4-state driveline of Section 1.5; `identify` derives the defaults.
+
+    They have 8 significant digits, more than the 3e-5 to 1e-3 to which each is known: together
+    they reproduce the printed coefficients, and 8 digits move those by less than a hundredth of
+    the rounding of the print.
+    """
 
     engine_inertia: float = _identified(0.24997592, 'J_m', 'kg m²')
     engine_damping: float = _identified(

@@ -1,5 +1,6 @@
 """The models of a run, as its settings choose them; nodes and the headless loop take them here."""
 
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
 from ddct_plant.models.driveline import Driveline, InitialState
@@ -14,9 +15,20 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
-    """Return the driveline in its initial state; `step` takes what the clutch of the run gives."""
+    """
+    Return the driveline in its initial state; `step` takes what the clutch of the run gives.
+
+    Raise ParameterError for parameters that cannot be integrated, such as a shaft without weight.
+    """
+    scenario = settings.scenario
     model = StickSlipDriveline if settings.stick_slip else Driveline
-    return model(settings.scenario.driveline, settings.scenario.vehicle, initial)
+    try:
+        return model(scenario.driveline, scenario.vehicle, initial)
+    except ParameterError as error:
+        raise ParameterError(
+            f'scenario {scenario.name}: driveline cannot be integrated with the clutch '
+            f'{settings.clutch}: give inertias, damping and stiffness of a car ({error})'
+        ) from error
 
 
 def make_engine(settings: RunSettings) -> Engine:

@@ -16,7 +16,7 @@ from ddct_plant.identification.coefficients import (
 )
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
-from ddct_plant.models.parameters import DEFAULT_DIGITS, DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import (
     CLUTCH_TO_SLIP,
     CLUTCH_TO_SLIP_AS_PRINTED,
@@ -27,6 +27,8 @@ from ddct_plant.models.printed import (
 
 FIT = identify_driveline()
 COEFFICIENTS = PrintedCoefficients(CLUTCH_TO_SLIP, LOAD_TO_SLIP)
+DEFAULT_DIGITS = 8
+"""Significant digits of the default parameters."""
 
 
 def round_significant(value: float, digits: int) -> float:

@@ -5,6 +5,7 @@ import pytest
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_driveline
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 THESIS = load_scenario('thesis')
@@ -45,3 +46,22 @@ def test_the_clutch_starts_open_but_for_the_detailed_architecture():
             assert initial.clutch_torque == 0.7 * initial.torque_request
         else:
             assert (initial.torque_request, initial.clutch_torque) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ('inertias', 'complaint'),
+    [
+        ({'shaft': '0.0005'}, 'rates of 2906'),
+        ({'engine': '1e300', 'shaft': '1e300', 'vehicle': '1e300'}, 'is singular'),
+    ],
+)
+def test_a_driveline_that_sticks_and_cannot_be_integrated_is_named(inertias, complaint):
+    given = [f'driveline.{name}_inertia={value}' for name, value in inertias.items()]
+    settings = RunSettings(load_scenario('thesis', given), clutch='stick_slip')
+    with pytest.raises(ParameterError, match=f'scenario thesis: driveline .*{complaint}'):
+        make_driveline(settings, initial_state(settings))
+
+
+def test_a_clutch_without_heat_capacity_is_refused():
+    with pytest.raises(ParameterError, match=r'heat\.plate_j_k is 0.5 J/K: it must be at least 1'):
+        load_scenario('thesis', ['heat.plate_j_k=0.5'])
