@@ -8,9 +8,11 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.models import driveline
+from ddct_plant.models.driveline import PHASES
 
-SLIPPING, LOCKED = 1.0, 2.0
-"""Values of `clutch_phase`; an open clutch has 0."""
+SLIPPING, LOCKED = PHASES.index(driveline.SLIPPING), PHASES.index(driveline.LOCKED)
+"""Values of `clutch_phase`."""
 
 
 @dataclass(frozen=True)

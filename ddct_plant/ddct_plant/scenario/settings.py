@@ -64,7 +64,7 @@ class RunSettings(OptionGroup):
         if given and not self.stick_slip:
             raise ParameterError(
                 f'scenario {self.scenario.name} gives {", ".join(given)}, which the clutch '
-                f'{self.clutch} would ignore: choose --clutch {STICK_SLIP}, or leave that out'
+                f'{self.clutch} would ignore: choose the clutch {STICK_SLIP}, or leave that out'
             )
 
     def _require_reference(self) -> None:

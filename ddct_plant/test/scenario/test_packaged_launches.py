@@ -38,7 +38,7 @@ def test_the_linear_clutch_refuses_what_it_would_ignore(name):
         RunSettings(load_scenario(name))
     message = str(caught.value)
     assert message.startswith(f'scenario {name} gives initial.clutch_phase')
-    assert 'which the clutch linear would ignore: choose --clutch stick_slip' in message
+    assert 'which the clutch linear would ignore: choose the clutch stick_slip' in message
 
 
 @pytest.mark.parametrize('section', ['friction', 'heat', 'brake', 'closing'])
