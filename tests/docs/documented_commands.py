@@ -18,6 +18,9 @@ NOT_RUN_HERE = {
         'waits for a viewer; tests/live gives it one'
     ),
     'ros2 run ddct_bringup live': 'serves until Ctrl-C; tests/live stops it',
+    'ros2 run ddct_bringup reproduce studies --write-doc docs/engagements.md': (
+        'takes a minute; test_engagements_page.py makes a sample of its rows'
+    ),
     'ros2 run ddct_bringup reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""

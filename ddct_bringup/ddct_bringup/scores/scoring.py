@@ -17,10 +17,10 @@ from ddct_bringup.run.run_timing import read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
-from ddct_bringup.verdict.criteria import JudgedRun, criterion_values
+from ddct_bringup.verdict.criteria import JudgedRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.state import INVALID, slip_state
-from ddct_bringup.verdict.verdict import Verdict, verdict_of, verdict_of_unreadable
+from ddct_bringup.verdict.state import INVALID
+from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.scenario.plant import end_cause
@@ -120,13 +120,19 @@ def why_invalid(recording: Recording) -> str:
     reasons = [] if facts.lockstep else why_not_real_time(recording)
     if trajectory.steps < facts.steps and not _engine_end(recording):
         reasons.insert(0, _why_early(recording))
+    return '; '.join([*reasons, *not_finite(trajectory)])
+
+
+def not_finite(trajectory: Trajectory) -> list[str]:
+    """Return of each signal that is not finite throughout where it first is not."""
+    found = []
     for name, values in trajectory.signals.items():
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():
             continue
         rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
         first = time_of_step(int(np.flatnonzero(~rows)[0]))
-        reasons.append(f'non-finite value in {name} at {first:g} s')
-    return '; '.join(reasons)
+        found.append(f'non-finite value in {name} at {first:g} s')
+    return found
 
 
 def _verdict(
@@ -134,12 +140,9 @@ def _verdict(
 ) -> Verdict:
     facts, trajectory = recording.facts, recording.trajectory
     start = steps_in('control_start_s', facts.control_start_s)
-    if not valid:
-        state = INVALID
-    else:
-        state = _engine_end(recording) or slip_state(trajectory, start, limits.rules)
     run = JudgedRun(trajectory, start, metrics, limits.rules.engagements_a_day)
-    return verdict_of(state, criterion_values(run), limits, facts.scenario)
+    known = _engine_end(recording) if valid else INVALID
+    return judge(run, limits, facts.scenario, known)
 
 
 def _engine_end(recording: Recording) -> str | None:

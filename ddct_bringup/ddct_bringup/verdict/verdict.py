@@ -3,13 +3,24 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.criteria import CRITERIA, JudgedRun, criterion_values
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.state import INVALID
+from ddct_bringup.verdict.state import INVALID, slip_state
 
 Verdict = dict[str, Any]
 """State, limits and criteria, as in `scores.json`."""
 WITHIN, BEYOND, NO_LIMIT = 'within', 'beyond', 'no_limit'
+
+
+def judge(run: JudgedRun, limits: Limits, scenario: str, known: str | None) -> Verdict:
+    """
+    Return the verdict over a run of a scenario.
+
+    `known` is the state where more than the slip decides it: the run is invalid, or its engine
+    left its limits.
+    """
+    state = known or slip_state(run.trajectory, run.control_start, limits.rules)
+    return verdict_of(state, criterion_values(run), limits, scenario)
 
 
 def verdict_of(

@@ -3,25 +3,30 @@
 import argparse
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from ddct_bringup.reproduction.studies import (
     admissible_scenarios,
     clutch_torque_limit,
+    engagements,
     mpc4_readings,
     readings,
     score_windows,
     sweeps,
+    table_5_2,
     torque_level,
     wear,
 )
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_plant.base.checks import require_choice
+from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.page_tables import fill_tables, marked_tables, read_page
 from ddct_plant.program.table import print_table
 
-STUDIES: Mapping[str, StudyFunction] = {
+STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
     function.__name__: function
     for function in (
         admissible_scenarios.admissible_scenarios,
@@ -33,6 +38,7 @@ STUDIES: Mapping[str, StudyFunction] = {
         readings.readings,
         score_windows.score_windows,
         sweeps.state_of_art,
+        table_5_2.table_5_2_in_numbers,
         torque_level.torque_level,
         sweeps.torsion_weight,
         sweeps.two_input_wear,
@@ -46,13 +52,15 @@ STUDIES: Mapping[str, StudyFunction] = {
 PAGE_MARK = 'studies'
 _DESCRIPTION = """\
 Chapter 4 and what it leaves to future work: closed-loop studies of the predictive
-controllers in the frozen thesis scenario, each a table."""
+controllers in the frozen thesis scenario, each a table. Then every controller in
+every packaged scenario, judged, each table with a chart."""
 _EPILOG = """\
 examples:
   reproduce studies                                every study
   reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
   reproduce studies --study wear --json wear.json
-  reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks"""
+  reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks
+  reproduce studies --write-doc docs/engagements.md --charts docs/images"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -66,6 +74,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
     parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.add_argument(
+        '--charts', metavar='DIR', help='draw the charts of studies that have one: STUDY.png'
+    )
     parser.set_defaults(run=run)
 
 
@@ -75,17 +86,28 @@ def run(options: argparse.Namespace) -> int:
     names = options.study or marked_tables(page, PAGE_MARK) or list(STUDIES)
     for name in names:
         require_choice('study', name, list(STUDIES))
+    if options.charts and not Path(options.charts).is_dir():
+        raise DdctError(f'--charts {options.charts}: there is no such folder: make it first')
     studies: dict[str, Study] = {}
     for name in names:
         print(f'reproduce studies: {name}', file=sys.stderr, flush=True)
         studies[name] = STUDIES[name]()
         if options.json != STDOUT:
             _print(studies[name])
+        if options.charts:
+            _draw(studies[name], Path(options.charts) / f'{name}.png')
     if options.json:
         write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
     if options.write_doc:
         write_text(options.write_doc, fill_tables(page, PAGE_MARK, studies))
     return 0
+
+
+def _draw(study: Study, picture: Path) -> None:
+    if study.draw is None:
+        return
+    with chart_style():
+        save_chart(study.draw(), picture)
 
 
 def _print(study: Study) -> None:

@@ -6,15 +6,22 @@ from functools import cached_property
 from operator import attrgetter
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import metrics_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.scoring import not_finite
+from ddct_bringup.verdict.criteria import JudgedRun
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.state import INVALID
+from ddct_bringup.verdict.verdict import Verdict, judge
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Table
+from ddct_plant.scenario.plant import end_cause
 from ddct_plant.scenario.settings import RunSettings
 
 CLOSE_RPM = 10.0
@@ -26,6 +33,8 @@ class Study(Table):
     """A table, and what to know when reading it."""
 
     remarks: tuple[str, ...] = ()
+    draw: Callable[[], Figure] | None = None
+    """Returns the chart that goes with the table, if there is one."""
 
     def as_dict(self) -> dict[str, object]:
         """Return the table with one mapping per row."""
@@ -49,6 +58,19 @@ class StudyRun:
     def metrics(self) -> Metrics:
         """What the run scores."""
         return metrics_of(self.settings, self.trajectory)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What the packaged limits say of it."""
+        limits, scenario = packaged_limits(), self.settings.scenario
+        run = JudgedRun(
+            self.trajectory, self.start, self.metrics.as_dict(), limits.rules.engagements_a_day
+        )
+        if not_finite(self.trajectory):
+            known: str | None = INVALID
+        else:
+            known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))
+        return judge(run, limits, scenario.name, known)
 
     @property
     def slip_rpm(self) -> np.ndarray:

@@ -64,13 +64,20 @@ def _table_5_2() -> dict[str, Value | None]:
     return found | {'5.1 robust': _only_robust('hinf2', ends)}
 
 
+def figures_of_table_5_2(
+    settings: RunSettings, runs: Mapping[str, Trajectory]
+) -> tuple[dict[str, float], dict[str, Metrics]]:
+    """Return by controller |w_d| at the end of the score window in rad/s, and the metrics."""
+    end = steps_in('score_window_s', settings.scenario.score_window_s[1])
+    slips = {name: abs(float(run.slip_speed[end])) for name, run in runs.items()}
+    return slips, {name: metrics_of(settings, run) for name, run in runs.items()}
+
+
 def judge_table_5_2(
     settings: RunSettings, runs: Mapping[str, Trajectory]
 ) -> tuple[dict[str, float], dict[str, Metrics], dict[str, Finding]]:
     """Return by controller |w_d| at the end in rad/s and metrics; by the gate's ids the words."""
-    end = steps_in('score_window_s', settings.scenario.score_window_s[1])
-    slips = {name: abs(float(run.slip_speed[end])) for name, run in runs.items()}
-    metrics = {name: metrics_of(settings, run) for name, run in runs.items()}
+    slips, metrics = figures_of_table_5_2(settings, runs)
     twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
     acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
     sigma_words = OSCILLATION_WORDS[settings.wear_gain]

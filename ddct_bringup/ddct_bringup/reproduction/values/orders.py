@@ -107,6 +107,27 @@ def judge_words(
     }
 
 
+def words_of(row: Row) -> dict[str, str]:
+    """
+    Return the word that each controller's figure comes to by the rule of `judge_words`.
+
+    From the least on, figures within twice the least of them have one word. The words are good,
+    average and bad; of more groups than three all between are average, one group is alike.
+    """
+    groups: list[list[str]] = []
+    for name in sorted(row, key=row.__getitem__):
+        if groups and row[name] <= _ALIKE * row[groups[-1][0]]:
+            groups[-1].append(name)
+        else:
+            groups.append([name])
+    if len(groups) == 1:
+        return dict.fromkeys(row, 'alike')
+    best, worst = groups[0], groups[-1]
+    return {
+        name: 'good' if name in best else 'bad' if name in worst else 'average' for name in row
+    }
+
+
 def _stands(
     name: str, other: str, words: Mapping[str, str], row: Mapping[str, float | None]
 ) -> bool:

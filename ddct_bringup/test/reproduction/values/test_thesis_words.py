@@ -13,6 +13,7 @@ from ddct_bringup.reproduction.values.orders import (
     judge_words,
     sigma_text,
     text,
+    words_of,
 )
 
 WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
@@ -103,3 +104,14 @@ def test_figure_that_does_not_exist_is_infinite(monkeypatch):
     monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: None)
     monkeypatch.setattr(orders, 'thesis_metrics', lambda run: none)
     assert orders.metric('engagement_time_s', ('mpc4',)) == {'mpc4': math.inf}
+
+
+def test_figures_within_twice_the_least_share_a_word():
+    row = {'a': 1.0, 'b': 2.0, 'c': 2.1, 'd': 9.0, 'e': math.inf}
+    expected = {'a': 'good', 'b': 'good', 'c': 'average', 'd': 'average', 'e': 'bad'}
+    assert words_of(row) == expected
+
+
+def test_no_word_tells_figures_apart_that_are_alike():
+    assert set(words_of({'a': 0.0, 'b': 0.0}).values()) == {'alike'}
+    assert words_of({'a': 0.0, 'b': 0.1}) == {'a': 'good', 'b': 'bad'}

@@ -1,0 +1,92 @@
+"""Table 5.2 in numbers, with the clutch of the thesis and with one that sticks."""
+
+import math
+from collections.abc import Mapping
+
+from ddct_bringup.reproduction.numbers.thesis_number import Finding
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO
+from ddct_bringup.reproduction.studies.study import Study, StudyRun, study_run
+from ddct_bringup.reproduction.values.closed_loop_values import (
+    OSCILLATION_WORDS,
+    SLIP_WORDS,
+    WORN,
+    WORN_ARCHITECTURE,
+    figures_of_table_5_2,
+    judge_table_5_2,
+)
+from ddct_bringup.reproduction.values.orders import words_of
+from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.scenario.settings import RunSettings
+
+WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
+
+
+def table_5_2_in_numbers() -> Study:
+    """Return the figures, the words that they come to and the printed ones."""
+    return Study(
+        f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}',
+        (
+            'clutch',
+            'K_usura',
+            'controller',
+            '|w_d| at the end rad/s',
+            'std w_sr rpm',
+            'std A_x m/s^2',
+            'state',
+            'w_d, ours',
+            'w_sr, ours',
+            'A_x, ours',
+            'w_d, printed',
+            'w_sr and A_x, printed',
+        ),
+        [row for clutch in CLUTCHES for gain in WEAR_GAINS for row in rows_of(clutch, gain)],
+    )
+
+
+def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
+    """Return a row per controller."""
+    settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
+    runs = {name: study_run(settings, name) for name in SLIP_WORDS}
+    trajectories = {name: run.trajectory for name, run in runs.items()}
+    slips, metrics = figures_of_table_5_2(settings, trajectories)
+    figures = (
+        slips,
+        _known({name: one.torsion_speed_std_rpm for name, one in metrics.items()}),
+        _known({name: one.acceleration_std_m_s2 for name, one in metrics.items()}),
+    )
+    printed: Mapping[str, Finding] = {}
+    if wear_gain in WORN:
+        printed = judge_table_5_2(settings, trajectories)[2]
+    words = [words_of(row) for row in figures]
+    return [
+        (
+            clutch,
+            f'{wear_gain:g}',
+            name,
+            *(f'{row[name]:.3g}' for row in figures),
+            _state(run),
+            *(row[name] for row in words),
+            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_WORDS[name]),
+            _printed(
+                printed.get(f'5.2 {name} w_sr {wear_gain:g}'),
+                OSCILLATION_WORDS.get(wear_gain, {}).get(name, ''),
+            ),
+        )
+        for name, run in runs.items()
+    ]
+
+
+def _known(row: Mapping[str, float | None]) -> dict[str, float]:
+    """Return the figures, an undefined one as infinite."""
+    return {name: math.inf if figure is None else figure for name, figure in row.items()}
+
+
+def _state(run: StudyRun) -> str:
+    return run.verdict['state']
+
+
+def _printed(finding: Finding | None, word: str) -> str:
+    """Return the printed word and whether it holds; a dash where the thesis prints none."""
+    if finding is None:
+        return '-'
+    return f'{word}: {"holds" if finding.holds else "does not hold"}'

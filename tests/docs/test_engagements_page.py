@@ -1,0 +1,58 @@
+"""Rows of docs/engagements.md are what the runs give; the page has all rows and all charts."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.reproduction.studies import engagements
+from ddct_bringup.reproduction.studies.command import PAGE_MARK
+from ddct_bringup.reproduction.studies.table_5_2 import rows_of
+from ddct_controllers.registry import controller_names
+
+DOCS = Path(__file__).resolve().parents[2] / 'docs'
+PAGE = (DOCS / 'engagements.md').read_text(encoding='utf-8')
+MAKE = 'run: reproduce studies --write-doc docs/engagements.md --charts docs/images'
+SAMPLE = {
+    'engagements_thesis_linear': ('thesis', 'linear', 1.3, 'ls8'),
+    'engagements_thesis_stick_slip': ('thesis', 'stick_slip', 0.7, 'mpc3'),
+    'engagements_launch': ('launch', 'stick_slip', 1.0, 'hinf2'),
+    'engagements_launch_gentle': ('launch_gentle', 'stick_slip', 0.7, 'mpc4'),
+    'engagements_launch_hill': ('launch_hill', 'stick_slip', 1.3, 'pi'),
+    'engagements_launch_hot': ('launch_hot', 'stick_slip', 1.0, 'ls3'),
+    'engagements_tip_in': ('tip_in', 'stick_slip', 0.7, 'hinf1'),
+}
+LARGEST_CHART_BYTES = 150_000
+
+
+def rows_on_page(study: str) -> list[tuple[str, ...]]:
+    block = re.search(rf'<!-- {PAGE_MARK}: {study} -->\n(.*?)<!-- end -->', PAGE, re.DOTALL)
+    assert block is not None
+    return [tuple(line[2:-2].split(' | ')) for line in block[1].splitlines()[2:]]
+
+
+@pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
+def test_a_row_of_each_table_is_what_the_run_gives(study):
+    row, slip = engagements.engagement(SAMPLE[study])
+    assert row in rows_on_page(study), MAKE
+    assert slip.state == row[2]
+
+
+@pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
+def test_each_table_has_every_controller_at_every_wear_gain(study):
+    expected = [
+        (f'{gain:g}', name) for gain in engagements.WEAR_GAINS for name in controller_names()
+    ]
+    assert [row[:2] for row in rows_on_page(study)] == expected, MAKE
+
+
+@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+def test_rows_of_table_5_2_are_what_the_runs_give(clutch):
+    shown = rows_on_page('table_5_2_in_numbers')
+    assert [row for row in rows_of(clutch, 1.3) if row not in shown] == [], MAKE
+
+
+@pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
+def test_a_small_chart_stands_beside_each_table(study):
+    assert f'](images/{study}.png)' in PAGE
+    assert (DOCS / 'images' / f'{study}.png').stat().st_size < LARGEST_CHART_BYTES
