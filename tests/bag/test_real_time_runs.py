@@ -115,7 +115,8 @@ def test_compare_fails_and_its_table_and_scores_say_why(leave, tmp_path, capsys)
     metrics = entry['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (7, 1234.0)
     row = next(line for line in printed.err.splitlines() if line.lstrip().startswith('pi '))
-    assert row.split()[-9:] == ['7', '1.23', 'actuator', 'at', '0.4', 's', 'invalid', 'beyond', 'NO']
+    cells = ['7', '1.23', 'actuator', 'at', '0.4', 's', 'invalid', 'beyond', 'NO']
+    assert row.split()[-9:] == cells
     assert f'warnings are in {tmp_path / "runs.partial" / "pi" / "work"}' in printed.err
 
 

@@ -13,7 +13,7 @@ _DOMAINS = range(1, 100)
 _FIRST_PORT = 28400
 """A domain is taken while somebody listens on this port plus its id."""
 _turn = os.getpid()
-"""Where the search for a free domain begins: after the last one, which killed nodes still haunt."""
+"""After it the search for a free domain begins: nodes killed in the last one still haunt it."""
 
 
 @contextmanager
