@@ -92,8 +92,8 @@ _CLUTCH_QUANTITIES = (
     ),
     Quantity(
         'temperature',
-        'Temperature of the pressure plate',
-        'T_p',
+        'Temperature of the facing',
+        'T_f',
         '°C',
         lambda run: run.clutch_temperature,
     ),

@@ -151,7 +151,7 @@ CRITERIA = (
         'peak_temperature',
         'degC',
         _peak_temperature,
-        'highest temperature of the pressure plate',
+        'highest temperature of the facing',
         'the clutch is linear',
     ),
     Criterion(
