@@ -19,7 +19,7 @@ from support.runs import expected, plan
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.graph.topics import RUN_INFO, TOPICS
+from ddct_plant.graph.topics import RUN_INFO, TICKS_STATUS, TOPICS
 from ddct_plant.models.driveline import PHASES
 
 Record = Callable[[RunPlan], Messages]
@@ -123,7 +123,9 @@ def test_no_panel_is_empty_in_the_bag_of_a_clutch_that_sticks(record: Record) ->
 
 def test_no_panel_is_empty_in_a_real_time_bag(record: Record) -> None:
     bag = record(plan('pi', 'single-process', mode='realtime', duration_s=0.7))
-    assert '/diagnostics' in bag
+    told = {status.name for _, message in bag['/diagnostics'] for status in message.status}
+    if told != {TICKS_STATUS}:
+        pytest.skip(f'too busy for real time: {", ".join(sorted(told))}')
     assert problems(read_layout(), bag) == []
 
 
