@@ -81,7 +81,7 @@ def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
 def _run_without_a_stall(
     graph_of: GraphOf, run: RunPlan, programs: Programs, signals: list[signal.Signals]
 ) -> _Listener:
-    """Repeat a run in which a busy machine was too late for real time, at most twice."""
+    """Repeat a run that was too late for real time at most twice; then the machine is too busy."""
     for _ in range(3):
         with graph_of(run) as graph:
             heard = _Listener(context=graph.context)
@@ -89,10 +89,11 @@ def _run_without_a_stall(
             driveline = graph.nodes['driveline']
             assert isinstance(driveline, DrivelineNode)
             assert isinstance(driveline.owner, RealtimeOwner)
-            until_silent = all(map(heard.has_torque, range(SILENT_AT_STEP)))
-            if until_silent and driveline.owner.worst_lateness_s < STALL_S:
+            lateness_s = driveline.owner.worst_lateness_s
+            if lateness_s < STALL_S and all(map(heard.has_torque, range(SILENT_AT_STEP))):
                 return heard
-    raise AssertionError('this machine is too busy for real time')
+    assert lateness_s >= STALL_S, 'steps went unanswered though no tick was late'
+    pytest.skip(f'too busy for real time: a tick was {1e3 * lateness_s:.0f} ms late')
 
 
 def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:

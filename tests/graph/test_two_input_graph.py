@@ -125,15 +125,15 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
     else:
         raise AssertionError('no requests that moved the engine, or a machine too busy')
     last, first = gaps[-1]
-    alone = [step for step in sorted(torques) if step >= first]
+    alone = np.array([step for step in sorted(torques) if step >= first])
     before = torques[last] - demands[last]
     deviations = np.array([torques[step] - demands[step] for step in alone])
+    # Counted in steps, not in messages: a busy machine may skip some.
     most_change = SLEW_N_M_S * PERIOD_S
     assert abs(deviations[0] - before) <= (first - last) * most_change + 1e-9
-    assert np.abs(np.diff(deviations)).max() <= most_change + 1e-9
-    back = int(np.flatnonzero(deviations == 0.0)[0])
-    assert back <= np.ceil(abs(deviations[0]) / most_change)
-    assert np.all(deviations[back:] == 0.0)
+    left = np.maximum(abs(deviations[0]) - (alone - first) * most_change, 0.0)
+    np.testing.assert_allclose(np.abs(deviations), left, atol=1e-9)
+    assert left[-1] == 0.0
 
 
 class _Driver(Node):
