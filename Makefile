@@ -75,8 +75,8 @@ TOTAL := /pytest.xml: [1-9]/ { ran++ } \
         exit failed || ran < folders }
 test: setup
 	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
-	$(BIN)/colcon test --event-handlers console_cohesion+ --return-code-on-test-failure \
-	    || status=1; \
+	$(BIN)/colcon test --executor sequential --event-handlers console_cohesion+ \
+	    --return-code-on-test-failure --pytest-args ' -n2' ' --dist=loadfile' || status=1; \
 	$(BIN)/python -m pytest tests -n 2 --dist loadfile --junit-xml=build/tests/pytest.xml || status=1; \
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \

@@ -100,9 +100,7 @@ def _read(name_or_file: str) -> tuple[str, str]:
                 f'unknown scenario {name_or_file!r}: choose from {", ".join(scenario_names())}, '
                 'or give the path of a YAML file'
             )
-        resource = (
-            importlib.resources.files('ddct_plant.scenario') / 'packaged' / f'{name_or_file}.yaml'
-        )
+        resource = _packaged() / f'{name_or_file}.yaml'
         return resource.read_text(encoding='utf-8'), name_or_file
     path = Path(name_or_file)
     try:
