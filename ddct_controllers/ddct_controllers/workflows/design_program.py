@@ -5,11 +5,12 @@ from ddct_controllers.workflows import (
     loop_shaping_command,
     margins_command,
     mpc_command,
+    plant_command,
 )
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'design'
-_COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command)
+_COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command, plant_command)
 
 _DESCRIPTION = 'Design controllers, and check them in the loop as it runs.'
 _EPILOG = """\
@@ -19,6 +20,7 @@ examples:
   design h-infinity                                   Chapter 3, step by step
   design mpc --export control_unit --controller mpc3  C for a control unit
   design margins --controller all                     the sampled loop with hold and delay
+  design plant --export plant.m                       the plant's equations and numbers
 
 Each workflow has its own --help. The thesis's numbers, figures and studies: reproduce."""
 

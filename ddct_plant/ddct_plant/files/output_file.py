@@ -38,21 +38,26 @@ def write_text(target: str, text: str, advice: str = 'give another file') -> Non
     """
     if target == STDOUT:
         sys.stdout.write(text)
-        return
+    else:
+        write_bytes(target, text.encode(), advice)
+
+
+def write_bytes(target: str, content: bytes, advice: str = 'give another file') -> None:
+    """Write `content` to the file `target` like `write_text`."""
     path = Path(target).resolve()
     try:
         if path.exists() and not path.is_file():
-            path.write_text(text, encoding='utf-8')  # a device or pipe: nothing to replace
+            path.write_bytes(content)  # a device or pipe: nothing to replace
         else:
-            _replace(path, text)
+            _replace(path, content)
     except OSError as error:
         raise DdctError(f'{target}: cannot be written ({error.strerror}); {advice}') from error
 
 
-def _replace(path: Path, text: str) -> None:
+def _replace(path: Path, content: bytes) -> None:
     temporary = path.with_name(f'.{path.name}.{os.getpid()}')
     try:
-        temporary.write_text(text, encoding='utf-8')
+        temporary.write_bytes(content)
         temporary.replace(path)
     except BaseException:
         with contextlib.suppress(OSError):

@@ -1,0 +1,134 @@
+"""Subcommand `design plant`: the linear plant of a scenario on paper, and as a file for others."""
+
+import argparse
+import io
+from pathlib import Path
+from typing import Any
+
+from ddct_controllers.workflows.plant_on_paper import (
+    INPUTS,
+    STATES,
+    as_mat,
+    as_matlab,
+    factored_text,
+    plant_on_paper,
+)
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.output_file import STDOUT, require_place, write_bytes, write_json, write_text
+from ddct_plant.program.page_tables import fill_tables, read_page
+from ddct_plant.program.table import Table, print_table
+from ddct_plant.scenario.options import add_scenario_options, scenario_of
+
+_DESCRIPTION = """\
+The linear plant of a scenario, with its numbers: parameters, A, B, C, D, the transfer functions
+P_1, P_2, P_3 to slip speed and G_a of the actuator, its delay, and C_fOL. SI units; the clutch
+slips, and no torque is limited. docs/plant.md explains the symbols and signs."""
+_EXAMPLES = """\
+examples:
+  design plant
+  design plant --export plant.m --export plant.mat
+  design plant --set vehicle.mass_kg=1800 --export plant.json"""
+_FORMATS = ('.json', '.m', '.mat')
+
+
+def add_parser(subparsers: Any) -> None:
+    """Add `plant` to the subcommands of `design`."""
+    parser = subparsers.add_parser(
+        'plant',
+        help='the linear plant with its numbers, for JSON and MATLAB',
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
+    )
+    add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
+    parser.add_argument(
+        '--export',
+        action='append',
+        default=[],
+        metavar='FILE',
+        help=f'write it; the name ends in one of {", ".join(_FORMATS)}; may be repeated',
+    )
+    parser.add_argument('--json', metavar='FILE', help='write the JSON; - is standard output')
+    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the tables, write the files, and return the exit code."""
+    for file in options.export:
+        if Path(file).suffix not in _FORMATS:
+            raise ParameterError(
+                f'--export {file}: the name must end in one of {", ".join(_FORMATS)}'
+            )
+        require_place('--export', file)
+    page = read_page(options.write_doc) if options.write_doc else ''
+    paper = plant_on_paper(scenario_of(options, options.overrides))
+    tables = _tables(paper)
+    if options.json != STDOUT:
+        for table in tables.values():
+            print_table(table)
+    if options.json:
+        write_json(options.json, paper)
+    if options.write_doc:
+        write_text(options.write_doc, fill_tables(page, 'plant', tables))
+    for file in options.export:
+        _export(file, paper)
+    return 0
+
+
+def _export(file: str, paper: dict[str, Any]) -> None:
+    if file.endswith('.json'):
+        write_json(file, paper)
+    elif file.endswith('.m'):
+        write_text(file, as_matlab(paper))
+    else:
+        # Only here: it takes half a second to load.
+        from scipy.io import savemat
+
+        content = io.BytesIO()
+        savemat(content, as_mat(paper), oned_as='row')
+        write_bytes(file, content.getvalue())
+
+
+def _tables(paper: dict[str, Any]) -> dict[str, Table]:
+    space = paper['state_space']
+    columns = (*STATES, *INPUTS)
+    dynamics = [
+        [f'd{state}/dt', *(f'{number:.6g}' for number in (*a, *b))]
+        for state, a, b in zip(STATES, space['A'], space['B'], strict=True)
+    ]
+    outputs = [
+        [output, *(f'{number:.6g}' for number in (*c, *d))]
+        for output, c, d in zip(space['outputs'], space['C'], space['D'], strict=True)
+    ]
+    return {
+        'parameters': Table(
+            f'Parameters of the driveline, scenario {paper["scenario"]}',
+            ('symbol', 'value', 'unit', 'scenario key'),
+            [
+                (symbol, f'{each["value"]:.8g}', each['unit'], f'driveline.{each["name"]}')
+                for symbol, each in paper['parameters'].items()
+            ],
+        ),
+        'state_space': Table(
+            'A and B: each row is the sum of its numbers times the column',
+            ('', *columns),
+            dynamics,
+        ),
+        'outputs': Table('C and D, likewise', ('', *columns), outputs),
+        'transfer_functions': Table(
+            'Transfer functions, s in rad/s',
+            ('', 'from', 'to', 'function'),
+            [
+                (name, each['input'], each['output'], factored_text(each))
+                for name, each in paper['transfer_functions'].items()
+            ],
+        ),
+        'c_fol': Table(
+            'C_fOL: the sum of each signal times its factor',
+            ('signal', 'factor', 'unit of the factor'),
+            [
+                (name, f'{each["factor"]:.8g}', each['unit'])
+                for name, each in paper['c_fol'].items()
+            ],
+        ),
+    }

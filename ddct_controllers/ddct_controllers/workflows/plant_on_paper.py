@@ -1,0 +1,154 @@
+"""The linear plant of a scenario as equations with numbers, for a page, JSON, MATLAB and scipy."""
+
+from collections.abc import Mapping, Sequence
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.identification.identify import SYMBOLS_AND_UNITS
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.driveline_model import (
+    clutch_to_slip,
+    driveline_matrices,
+    engine_to_slip,
+    load_to_slip,
+)
+from ddct_plant.models.printed import ACTUATOR
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.scenario import Scenario
+
+STATES = {'w_m': 'rad/s', 'w_p': 'rad/s', 'w_r': 'rad/s', 'theta_sr': 'rad'}
+INPUTS = {'C_m': 'N m', 'C_f': 'N m', 'C_load': 'N m'}
+OUTPUTS = {'w_d': 'rad/s', 'w_sr': 'rad/s'}
+_STATIC_INPUTS = {'C_m': '1', 'C_load': '1', 'w_m': 'N m s/rad', 'w_p': 'N m s/rad'}
+MATRICES = 'ABCD'
+
+
+def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
+    """
+    Return the linear plant with its names and units, plain enough for JSON.
+
+    `transfer_functions` have the factors that the thesis prints, and polynomials with the highest
+    power first. `c_fol` holds the factors of the static torque: C_fOL is their sum of products.
+    """
+    driveline = scenario.driveline
+    model = driveline_matrices(driveline)
+    static = StaticTorque(driveline, scenario.equilibrium)
+    transfer_functions = {
+        'P_1': ('C_m', 'w_d', engine_to_slip(driveline)),
+        'P_2': ('C_f', 'w_d', clutch_to_slip(driveline)),
+        'P_3': ('C_load', 'w_d', load_to_slip(driveline)),
+        'G_a': ('C_request', 'C_actuator', ACTUATOR),
+    }
+    return {
+        'scenario': scenario.name,
+        'parameters': {
+            symbol: {'name': name, 'value': float(getattr(driveline, name)), 'unit': unit}
+            for name, (symbol, unit) in SYMBOLS_AND_UNITS.items()
+        },
+        'state_space': {
+            'states': STATES,
+            'inputs': INPUTS,
+            'outputs': OUTPUTS,
+            **dict(
+                zip(
+                    MATRICES,
+                    (_plain(each) for each in (model.a, model.b, model.c, model.d)),
+                    strict=True,
+                )
+            ),
+        },
+        'transfer_functions': {
+            name: {'input': source, 'output': output, **_entry(function)}
+            for name, (source, output, function) in transfer_functions.items()
+        },
+        'actuator_delay_s': PERIOD_S,
+        'c_fol': {
+            name: {'factor': static.torque(*row), 'unit': unit}
+            for (name, unit), row in zip(
+                _STATIC_INPUTS.items(), np.eye(len(_STATIC_INPUTS)).tolist(), strict=True
+            )
+        },
+    }
+
+
+def _plain(matrix: np.ndarray) -> list[list[float]]:
+    return (matrix + 0.0).tolist()  # no -0
+
+
+def _entry(function: FactoredTransferFunction) -> dict[str, Any]:
+    return {
+        'gain': function.gain,
+        'numerator': list(function.numerator),
+        'denominator': list(function.denominator),
+        'num': (function.gain * _polynomial(function.numerator)).tolist(),
+        'den': _polynomial(function.denominator).tolist(),
+    }
+
+
+def _polynomial(factors: Sequence[Factor]) -> np.ndarray:
+    each = [np.array([1.0, *f] if isinstance(f, tuple) else [1.0, f]) for f in factors]
+    return reduce(np.polymul, each, np.ones(1))
+
+
+def factored_text(entry: Mapping[str, Any]) -> str:
+    """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / (...)."""
+    gain = f'{entry["gain"]:.6g}'
+    above = ' '.join([gain, *map(_factor_text, entry['numerator'])])
+    return f'{above} / [{" ".join(map(_factor_text, entry["denominator"]))}]'
+
+
+def _factor_text(factor: Factor) -> str:
+    if isinstance(factor, tuple):
+        linear, constant = (f'{"-" if each < 0 else "+"} {abs(each):.6g}' for each in factor)
+        return f'(s^2 {linear} s {constant})'
+    return f'(s + {factor:.6g})' if factor else 's'
+
+
+def as_matlab(paper: Mapping[str, Any]) -> str:
+    """Return a script for MATLAB or Octave that builds the systems under their names."""
+    lines = [f'% The linear plant of scenario {paper["scenario"]}: SI units, torques in N m.']
+    lines += [
+        f'{symbol} = {each["value"]!r};  % {each["unit"]}, {each["name"]}'
+        for symbol, each in paper['parameters'].items()
+    ]
+    space = paper['state_space']
+    lines += [f'{name} = [{"; ".join(map(_row, space[name]))}];' for name in MATRICES]
+    names = (f"'{key}', {_cell(space[group])}" for key, group in _MATLAB_NAMES.items())
+    lines.append(f'driveline = ss(A, B, C, D, {", ".join(names)});')
+    lines += [
+        f'{name} = tf([{_row(each["num"])}], [{_row(each["den"])}]);  '
+        f'% {each["output"]} / {each["input"]}'
+        for name, each in paper['transfer_functions'].items()
+    ]
+    lines.append(f'actuator_delay_s = {paper["actuator_delay_s"]!r};')
+    factors = [each['factor'] for each in paper['c_fol'].values()]
+    lines.append(f'c_fol = [{_row(factors)}];  % times [{"; ".join(paper["c_fol"])}]')
+    return '\n'.join(lines) + '\n'
+
+
+_MATLAB_NAMES = {'StateName': 'states', 'InputName': 'inputs', 'OutputName': 'outputs'}
+
+
+def _row(numbers: Sequence[float]) -> str:
+    return ' '.join(map(repr, numbers))
+
+
+def _cell(names: Sequence[str]) -> str:
+    return '{' + ', '.join(f"'{name}'" for name in names) + '}'
+
+
+def as_mat(paper: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the variables of a .mat file: matrices, parameters, num and den of each function."""
+    space = paper['state_space']
+    functions = paper['transfer_functions'].items()
+    return {
+        **{symbol: each['value'] for symbol, each in paper['parameters'].items()},
+        **{name: np.array(space[name]) for name in MATRICES},
+        **{name: {'num': each['num'], 'den': each['den']} for name, each in functions},
+        'actuator_delay_s': paper['actuator_delay_s'],
+        'c_fol': [each['factor'] for each in paper['c_fol'].values()],
+    }
