@@ -1,7 +1,13 @@
 """Linear feedback on the slip error: a discrete transfer function G_c(z) in state-space form."""
 
 from ddct_controllers.discrete_filter import DiscreteFilter
-from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.interface import (
+    UNSTATED,
+    Command,
+    Controller,
+    ControllerSpec,
+    Measurement,
+)
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
@@ -38,3 +44,12 @@ class LinearController(Controller):
     def linear_model(self) -> StateSpace:
         """Return G_c(z)."""
         return self._model
+
+
+def linear_spec(
+    name: str,
+    controller: FactoredTransferFunction | StateSpace,
+    computed_from: str = UNSTATED,
+) -> ControllerSpec[Controller]:
+    """Return how the linear controller called `name`, which takes no options, is made."""
+    return ControllerSpec(name, lambda context: LinearController(controller), {}, computed_from)

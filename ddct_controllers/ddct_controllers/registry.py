@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from ddct_controllers.designed import DesignedController, is_designed_file, load_designed
+from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.interface import (
     SCENARIO,
     THESIS,
@@ -14,7 +15,7 @@ from ddct_controllers.interface import (
     ControllerContext,
     ControllerSpec,
 )
-from ddct_controllers.linear import LinearController
+from ddct_controllers.linear import LinearController, linear_spec
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.pi import PI
 from ddct_controllers.printed import PRINTED_CONTROLLERS
@@ -23,7 +24,6 @@ from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Option, Options
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
@@ -56,29 +56,28 @@ def make_controller(
 
 def controller_spec(name: str) -> ControllerSpec[Controller]:
     """Return how the controller called `name` is made and its options, as `make_controller`."""
-    if is_designed_file(name):
-        designed = _load_designed(name)
-        return _linear(designed.name, designed.sampled(), UNSTATED)
+    if is_controller_file(name):
+        return _in_file(name)
     return _own_controllers().get(name) or _third_party(name)
 
 
 def controller_label(name: str) -> str:
     """Return what a controller is called in bags and tables: a file gives its own name."""
-    return _load_designed(name).name if is_designed_file(name) else name
+    return _in_file(name).name if is_controller_file(name) else name
 
 
-def _load_designed(file: str) -> DesignedController:
-    designed = load_designed(file)
-    if designed.name in controller_names():
+def _in_file(file: str) -> ControllerSpec[Controller]:
+    spec = load_spec(file)
+    if spec.name in controller_names():
         raise ParameterError(
-            f'controller file {file}: the name {designed.name!r} is taken by another controller; '
+            f'controller file {file}: the name {spec.name!r} is taken by another controller; '
             'change it in the file'
         )
-    return designed
+    return spec
 
 
 def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
-    printed = {name: _linear(name, g_c, THESIS) for name, g_c in PRINTED_CONTROLLERS.items()}
+    printed = {name: linear_spec(name, g_c, THESIS) for name, g_c in PRINTED_CONTROLLERS.items()}
     synthesised = {
         name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED
     }
@@ -87,12 +86,6 @@ def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
     return LinearController(synthesised_controller(name, context.settings.scenario.driveline))
-
-
-def _linear(
-    name: str, model: FactoredTransferFunction | StateSpace, computed_from: str
-) -> ControllerSpec[Controller]:
-    return ControllerSpec(name, lambda context: LinearController(model), {}, computed_from)
 
 
 def _third_party(name: str) -> ControllerSpec[Controller]:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
-from ddct_controllers.designed import DesignedController
+from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 
 

@@ -9,7 +9,7 @@ from ddct_bringup.programs.compare import main as compare
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_controllers.designed import DesignedController
+from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

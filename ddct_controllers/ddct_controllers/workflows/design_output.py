@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_controllers.designed import DesignedController, load_designed, require_name
+from ddct_controllers.from_file.controller_file import require_name
+from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text

@@ -14,7 +14,7 @@ from ddct_controllers.design.loop_shaping.report import (
 from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.tables import design_tables, thesis_tables
-from ddct_controllers.designed import DesignedController
+from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.workflows.design_output import (
     add_design_options,
     free_name,

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from ddct_controllers.designed import load_designed
+from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows import loop_shaping_command
 from ddct_plant.program.command_line import run_program

@@ -7,7 +7,7 @@ import yaml
 
 from ddct_controllers.design.loop_shaping.report import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
-from ddct_controllers.designed import load_designed
+from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.program.page_tables import fill_tables
 

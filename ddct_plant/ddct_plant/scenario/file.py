@@ -4,7 +4,6 @@ import dataclasses
 import hashlib
 import importlib.resources
 import json
-import re
 from collections.abc import Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -16,14 +15,12 @@ from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.schema_version import require_schema_version
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
+from ddct_plant.files.yaml_text import dump_yaml, line_of, parse_yaml, parse_yaml_with_lines
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
 """Of a scenario file; one that does not say it is of this version."""
-_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
-_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
 def scenario_names() -> list[str]:
@@ -57,7 +54,7 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
         origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
         return consistent(scenario, origins, _number(start_before))
     except ParameterError as error:
-        line = _line_of(str(error), _in_file(lines, set_keys))
+        line = line_of(str(error), _in_file(lines, set_keys))
         where = f'scenario {name_or_file}: line {line}' if line else f'scenario {name_or_file}'
         raise ParameterError(f'{where}: {error}') from error
 
@@ -150,20 +147,6 @@ def _in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int
     within = tuple(f'{key}{mark}' for key in given for mark in '.[')
     kept = {key: line for key, line in lines.items() if not key.startswith(within)}
     return kept | dict.fromkeys(given, 0)
-
-
-def _line_of(complaint: str, lines: Mapping[str, int]) -> int:
-    """
-    Return the line of the first key that a complaint names, or else of what the key is in.
-
-    Complaints name first what must be changed. 0 where no line holds it.
-    """
-    for word in _PATH.findall(complaint):
-        while word and word not in lines:
-            word = _PARENT.sub('', word) if _PARENT.search(word) else ''
-        if word:
-            return lines[word]
-    return 0
 
 
 def _build(group: type[Group], content: Any) -> Group:

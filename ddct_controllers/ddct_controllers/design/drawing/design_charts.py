@@ -21,7 +21,7 @@ from ddct_controllers.design.drawing.chart_style import (
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_controllers.designed import DesignedController
+from ddct_controllers.from_file.designed import DesignedController
 from ddct_plant.linear.lti import StateSpace
 
 _STEP_RISE_TIMES = 8.0

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from ddct_controllers.designed import DesignedController, load_designed
+from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.linear import LinearController
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError

@@ -1,31 +1,32 @@
 """Linear controllers that live in a file: what `design` writes and `--controller FILE` reads."""
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
+from ddct_controllers.from_file.controller_file import (
+    FORMAT,
+    ControllerFile,
+    mapping,
+    read_controller_file,
+    require_name,
+)
+from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.linear import linear_spec
 from ddct_plant.base.checks import require_choice
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
-FORMAT = 'ddct-linear-controller-1'
-"""First value of every file; a change of meaning changes the number."""
+KIND = 'transfer_function'
 UNITS = {'input': 'rpm', 'output': 'N m', 'frequency': 'rad/s'}
 """Of the slip error, the clutch torque, and zeros and poles; nothing else is accepted."""
-SUFFIXES = ('.yaml', '.yml')
-_KEYS = ('format', 'name', 'units', 'transfer_function')
-_OPTIONAL_KEYS = ('discretisation', 'provenance')
 _FACTORS = ('numerator', 'denominator')
 HOLD, BILINEAR = 'hold', 'bilinear'
 """Zero-order hold as the thesis's `c2d`, or z = (1 + s T/2) / (1 - s T/2), both at 10 ms."""
-_NAME = re.compile(r'[a-z][a-z0-9_]{0,39}')
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class DesignedController:
             'name': self.name,
             'units': UNITS,
             **({} if self.discretisation == HOLD else {'discretisation': self.discretisation}),
-            'transfer_function': {
+            KIND: {
                 'gain': float(self.transfer_function.gain),
                 **{
                     key: [_plain(factor) for factor in getattr(self.transfer_function, key)]
@@ -72,61 +73,35 @@ class DesignedController:
         return dump_yaml(content, default_flow_style=None)
 
 
-def require_name(name: object) -> None:
-    """Raise ParameterError unless a controller can be called `name`."""
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise ParameterError(
-            f'controller name {name!r}: use up to 40 lower-case letters, digits and underscores, '
-            'a letter first'
-        )
-
-
-def is_designed_file(name: str) -> bool:
-    """Say whether a controller's name is that of a file."""
-    return name.endswith(SUFFIXES)
-
-
 def load_designed(file: str) -> DesignedController:
     """Read a controller; raise DdctError or ParameterError that names file, key and remedy."""
-    path = Path(file)
-    try:
-        text = read_text_file(path)
-    except OSError as error:
-        raise DdctError(f'controller file {path}: cannot be read ({error.strerror})') from error
-    try:
-        return _from_mapping(parse_yaml(text))
-    except ParameterError as error:
-        raise ParameterError(f'controller file {path}: {error}') from error
+    source = read_controller_file(file)
+    with source.located():
+        return _designed(source)
 
 
-def _from_mapping(content: Any) -> DesignedController:
-    content = _mapping('the file', content, required=_KEYS, optional=_OPTIONAL_KEYS)
-    if content['format'] != FORMAT:
-        raise ParameterError(f'format is {content["format"]!r}: it must be {FORMAT}')
-    if content['units'] != UNITS:
-        raise ParameterError(f'units are {content["units"]!r}: convert the controller to {UNITS}')
-    parts = _mapping('transfer_function', content['transfer_function'], ('gain', *_FACTORS))
+def designed_spec(file: ControllerFile) -> ControllerSpec[Controller]:
+    """Return the controller behind `transfer_function`, the factored form of the thesis."""
+    designed = _designed(file)
+    return linear_spec(designed.name, designed.sampled())
+
+
+def _designed(file: ControllerFile) -> DesignedController:
+    content = file.keys(KIND, ('format', 'units'), ('discretisation',))
+    require_units(content['units'])
+    parts = mapping(KIND, content[KIND], ('gain', *_FACTORS))
     function = FactoredTransferFunction(
-        parts['gain'], *(_factors(f'transfer_function.{key}', parts[key]) for key in _FACTORS)
+        parts['gain'], *(_factors(f'{KIND}.{key}', parts[key]) for key in _FACTORS)
     )
-    provenance = _mapping('provenance', content.get('provenance') or {})
     discretisation = content.get('discretisation', HOLD)
+    provenance = content.get('provenance') or {}
     return DesignedController(content['name'], function, provenance, discretisation)
 
 
-def _mapping(
-    name: str, content: Any, required: Sequence[str] = (), optional: Sequence[str] = ()
-) -> Mapping[str, Any]:
-    if not isinstance(content, Mapping):
-        raise ParameterError(f'{name}: give keys and values, not {content!r}')
-    for key in required:
-        if key not in content:
-            raise ParameterError(f'{name}: key {key} is missing')
-    for key in content if required else ():
-        if key not in (*required, *optional):
-            known = ', '.join((*required, *optional))
-            raise ParameterError(f'{name}: unknown key {key!r}; known: {known}')
-    return content
+def require_units(units: Any) -> None:
+    """Raise ParameterError unless the file states the units that the program has."""
+    if units != UNITS:
+        raise ParameterError(f'units are {units!r}: convert the controller to {UNITS}')
 
 
 def _factors(name: str, content: Any) -> tuple[Factor, ...]:

@@ -1,0 +1,1 @@
+"""Controllers that a YAML file describes: one loader for each kind."""

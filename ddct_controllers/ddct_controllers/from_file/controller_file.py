@@ -1,0 +1,111 @@
+"""A controller file as it was read: its values, their lines, and errors that name both."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import close_name
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
+
+SUFFIXES = ('.yaml', '.yml')
+FORMAT = 'ddct-linear-controller-1'
+"""Value of the key `format`, where one is given."""
+COMMON = ('format', 'name', 'provenance')
+"""Keys that a file of every kind may hold beside those of its kind; `name` it must."""
+_NAME = re.compile(r'[a-z][a-z0-9_]{0,39}')
+
+
+def is_controller_file(name: str) -> bool:
+    """Say whether a controller's name is that of a file."""
+    return name.endswith(SUFFIXES)
+
+
+def require_name(name: object) -> None:
+    """Raise ParameterError unless a controller can be called `name`."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise ParameterError(
+            f'controller name {name!r}: use up to 40 lower-case letters, digits and underscores, '
+            'a letter first'
+        )
+
+
+@dataclass(frozen=True)
+class ControllerFile:
+    """What one file holds. A loader reads its kind's keys from it, inside of `located`."""
+
+    path: Path
+    content: Any
+    """As YAML has it; `keys` checks that it is a mapping."""
+    lines: Mapping[str, int]
+    """By dotted path, as `parse_yaml_with_lines` gives them."""
+
+    @property
+    def name(self) -> str:
+        """What the controller is called; it names the folder of the bag."""
+        return str(self.content['name'])
+
+    @property
+    def folder(self) -> Path:
+        """Relative paths in the file start here."""
+        return self.path.parent
+
+    def keys(
+        self, kind: str, required: Sequence[str] = (), optional: Sequence[str] = ()
+    ) -> Mapping[str, Any]:
+        """Return the whole content with what every file has checked; raise ParameterError."""
+        content = mapping('', self.content, ('name', kind, *required), (*COMMON, *optional))
+        require_name(content['name'])
+        if content.get('format', FORMAT) != FORMAT:
+            raise ParameterError(f'format is {content["format"]!r}: it must be {FORMAT}')
+        mapping('provenance', content.get('provenance') or {})
+        return content
+
+    @contextmanager
+    def located(self) -> Iterator[None]:
+        """Put file, and line where the error names a key of it, before each DdctError within."""
+        try:
+            yield
+        except DdctError as error:
+            line = line_of(str(error), self.lines)
+            where = f'line {line}: ' if line else ''
+            raise type(error)(f'controller file {self.path}: {where}{error}') from error
+
+
+def read_controller_file(file: str) -> ControllerFile:
+    """Read a file of any kind; raise DdctError that names it when it cannot be read."""
+    path = Path(file)
+    try:
+        text = read_text_file(path)
+    except OSError as error:
+        raise DdctError(f'controller file {path}: cannot be read ({error.strerror})') from error
+    try:
+        return ControllerFile(path, *parse_yaml_with_lines(text))
+    except ParameterError as error:
+        raise ParameterError(f'controller file {path}: {error}') from error
+
+
+def mapping(
+    path: str, content: Any, required: Sequence[str] = (), optional: Sequence[str] = ()
+) -> Mapping[str, Any]:
+    """
+    Return what stands at `path` ('' is the whole file) when it has these keys; else complain.
+
+    Where no key is named, any will do. Raise ParameterError that names the key.
+    """
+    name = path or 'the file'
+    if not isinstance(content, Mapping):
+        raise ParameterError(f'{name}: give keys and values, not {content!r}')
+    for key in required:
+        if key not in content:
+            raise ParameterError(f'{name}: key {key} is missing')
+    known = (*required, *optional)
+    for key in content if known else ():
+        if key not in known:
+            full = f'{path}.{key}' if path else str(key)
+            raise ParameterError(f'unknown key {full!r}: {close_name(key, known)}')
+    return content

@@ -1,0 +1,43 @@
+"""The kinds of controller files, and the one way from a file to its controller."""
+
+from collections.abc import Callable, Mapping
+
+from ddct_controllers.from_file.controller_file import (
+    COMMON,
+    ControllerFile,
+    mapping,
+    read_controller_file,
+)
+from ddct_controllers.from_file.designed import designed_spec
+from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_plant.base.errors import ParameterError
+
+Loader = Callable[[ControllerFile], ControllerSpec[Controller]]
+"""
+Checks the keys of its kind and says how the controller is made.
+
+Errors name the key first, as `polynomial.den[2] is nan: ...`; `located` adds file and line. What
+is slow, such as loading a library, is left to `ControllerSpec.make`, inside of `located` too.
+"""
+KINDS: Mapping[str, Loader] = {
+    'transfer_function': designed_spec,
+}
+"""By the key that a file of the kind has."""
+
+
+def load_spec(file: str) -> ControllerSpec[Controller]:
+    """Return how the controller in a file is made; raise DdctError that names file and line."""
+    source = read_controller_file(file)
+    with source.located():
+        return KINDS[_kind(source)](source)
+
+
+def _kind(file: ControllerFile) -> str:
+    choices = ', '.join(KINDS)
+    kinds = [key for key in mapping('', file.content) if key in KINDS]
+    if len(kinds) == 1:
+        return str(kinds[0])
+    if kinds:
+        raise ParameterError(f'{kinds[1]} beside {kinds[0]}: keep one of {choices}')
+    strange = next((f'{key!r} is' for key in file.content if key not in COMMON), 'there is')
+    raise ParameterError(f'{strange} no kind of controller: give one of {choices}')
