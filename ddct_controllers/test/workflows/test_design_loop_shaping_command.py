@@ -69,7 +69,7 @@ def test_an_earlier_design_is_replaced_only_when_asked(tmp_path, capsys):
 def test_overwrite_does_not_touch_what_is_no_controller(tmp_path, capsys):
     (tmp_path / 'mine.yaml').write_text('something: else\n', encoding='utf-8')
     assert main([*OWN, '--out', str(tmp_path), '--overwrite']) == 1
-    assert 'key format is missing' in capsys.readouterr().err
+    assert 'key name is missing' in capsys.readouterr().err
     assert (tmp_path / 'mine.yaml').read_text(encoding='utf-8') == 'something: else\n'
 
 
