@@ -18,7 +18,7 @@ SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
 PEERS_INSTALLED := .venv/.peers
-BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/config ddct_*/foxglove)
+BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/config ddct_*/foxglove)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))
@@ -63,7 +63,7 @@ $(WORKSPACE_BUILT): $(VENV_MADE) $(BUILD_INPUTS)
 	@touch $@
 
 demo: setup
-	@$(SOURCED) install/ddct_bringup/lib/ddct_bringup/compare \
+	@$(SOURCED) ddct compare \
 	    --controllers pi,ls8,hinf1,mpc3,mpc4 --out runs/demo --overwrite
 
 # Both runs always take place. A package whose tests colcon did not find counts as a failure.

@@ -1,11 +1,26 @@
 """Install the programs that run, record, score and compare engagements."""
 
+import sys
 from glob import glob
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
+PROGRAMS = [
+    'bringup = ddct_bringup.programs.bringup:main',
+    'compare = ddct_bringup.programs.compare:main',
+    'live = ddct_bringup.programs.live:main',
+    'recorder = ddct_bringup.record.recorder_node:main',
+    'reproduce = ddct_bringup.programs.reproduce:main',
+    'report = ddct_bringup.programs.report:main',
+    'score = ddct_bringup.programs.score:main',
+]
+DDCT = 'ddct = ddct_bringup.programs.ddct:main'
+WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
+"""Whether pip asks, which puts scripts into bin/: `ddct` alone. colcon puts them into
+lib/<package>/, where `ros2 run` looks, and gets bin/ddct as a file."""
+
 setup(
     name=PACKAGE,
     version=ElementTree.parse('package.xml').findtext('version'),
@@ -21,6 +36,7 @@ setup(
         (f'share/{PACKAGE}', ['package.xml']),
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
         (f'share/{PACKAGE}/foxglove', sorted(glob('foxglove/*.json'))),
+        *([] if WHEEL else [('bin', ['bin/ddct'])]),
     ],
     install_requires=[
         'setuptools',
@@ -42,14 +58,7 @@ setup(
     description='The programs that run, record, score and compare engagements.',
     license='Apache-2.0',
     entry_points={
-        'console_scripts': [
-            'bringup = ddct_bringup.programs.bringup:main',
-            'compare = ddct_bringup.programs.compare:main',
-            'live = ddct_bringup.programs.live:main',
-            'recorder = ddct_bringup.record.recorder_node:main',
-            'reproduce = ddct_bringup.programs.reproduce:main',
-            'report = ddct_bringup.programs.report:main',
-            'score = ddct_bringup.programs.score:main',
-        ],
+        'console_scripts': [DDCT] if WHEEL else [DDCT, *PROGRAMS],
+        'ddct.programs': PROGRAMS,
     },
 )

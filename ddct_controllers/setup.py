@@ -1,11 +1,18 @@
 """Install the controllers and their node."""
 
+import sys
 from glob import glob
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_controllers'
+PROGRAMS = [
+    'controller = ddct_controllers.controller_node:main',
+    'design = ddct_controllers.workflows.design_program:main',
+]
+WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
+"""Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
 
 setup(
     name=PACKAGE,
@@ -24,10 +31,5 @@ setup(
     maintainer_email='maintainers@ddct.invalid',
     description='The controllers and their node.',
     license='Apache-2.0',
-    entry_points={
-        'console_scripts': [
-            'controller = ddct_controllers.controller_node:main',
-            'design = ddct_controllers.workflows.design_program:main',
-        ],
-    },
+    entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

@@ -1,11 +1,22 @@
 """Install the plant: its nodes, the identification and the scenarios."""
 
+import sys
 from glob import glob
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_plant'
+PROGRAMS = [
+    'actuator = ddct_plant.nodes.actuator_node:main',
+    'clutch = ddct_plant.nodes.clutch_node:main',
+    'driveline = ddct_plant.nodes.driveline_node:main',
+    'engine = ddct_plant.nodes.engine_node:main',
+    'identify = ddct_plant.identification.identify:main',
+    'load = ddct_plant.nodes.load_node:main',
+]
+WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
+"""Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
 
 setup(
     name=PACKAGE,
@@ -24,14 +35,5 @@ setup(
     maintainer_email='maintainers@ddct.invalid',
     description='The plant: its nodes, the identification and the scenarios.',
     license='Apache-2.0',
-    entry_points={
-        'console_scripts': [
-            'actuator = ddct_plant.nodes.actuator_node:main',
-            'clutch = ddct_plant.nodes.clutch_node:main',
-            'driveline = ddct_plant.nodes.driveline_node:main',
-            'engine = ddct_plant.nodes.engine_node:main',
-            'identify = ddct_plant.identification.identify:main',
-            'load = ddct_plant.nodes.load_node:main',
-        ],
-    },
+    entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

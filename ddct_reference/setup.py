@@ -1,11 +1,17 @@
 """Install the slip reference and its node."""
 
+import sys
 from glob import glob
 from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_reference'
+PROGRAMS = [
+    'reference = ddct_reference.reference_node:main',
+]
+WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
+"""Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
 
 setup(
     name=PACKAGE,
@@ -23,9 +29,5 @@ setup(
     maintainer_email='maintainers@ddct.invalid',
     description='The slip reference and its node.',
     license='Apache-2.0',
-    entry_points={
-        'console_scripts': [
-            'reference = ddct_reference.reference_node:main',
-        ],
-    },
+    entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

@@ -34,7 +34,7 @@ def test_a_cut_bag_is_called_unfinished_and_repair_is_suggested(bags, trajectory
     whole = file.read_bytes()
     for length in range(8, len(whole), 997):
         file.write_bytes(whole[:length])
-        with pytest.raises(DdctError, match=r'pi_0.mcap: .*unfinished.*score --repair'):
+        with pytest.raises(DdctError, match=r'pi_0.mcap: .*unfinished.*ddct score --repair'):
             read_bag(file)
 
 

@@ -32,12 +32,12 @@ def test_a_pipe_is_not_waited_for(programs: Programs, tmp_path: Path, program: s
         arguments = [str(path), *(['--out', '-'] if program == 'report' else [])]
         run = programs.start_module(f'ddct_bringup.programs.{program}', *arguments)
         assert run.wait() == 1
-        assert_one_line(run.errors(), program, 'it is a pipe: give a regular file')
+        assert_one_line(run.errors(), f'ddct {program}', 'it is a pipe: give a regular file')
 
 
 def test_an_endless_device_is_not_read(capsys: pytest.CaptureFixture[str]) -> None:
     assert score(['/dev/zero']) == 1
-    assert_one_line(capsys.readouterr().err, 'score', '/dev/zero', 'it is a device')
+    assert_one_line(capsys.readouterr().err, 'ddct score', '/dev/zero', 'it is a device')
 
 
 def test_a_file_beyond_the_limit_is_not_read(tmp_path: Path) -> None:
@@ -117,7 +117,7 @@ def test_a_fact_that_is_none_is_one_line(
     bag = bags.rewrite(bags.write(trajectory), 'odd', **{key: value})
     assert score([str(bag)]) == 1
     errors = capsys.readouterr().err
-    assert_one_line(errors, 'score', key)
+    assert_one_line(errors, 'ddct score', key)
     assert errors.rstrip('\n').isprintable()
 
 

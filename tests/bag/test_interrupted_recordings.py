@@ -81,7 +81,7 @@ def killed(source, tmp_path):
 
 def test_a_killed_recording_is_not_taken_for_a_whole_one(killed):
     assert not (killed / 'metadata.yaml').exists()
-    with pytest.raises(DdctError, match=r'copy_0.mcap: .*unfinished.*score --repair'):
+    with pytest.raises(DdctError, match=r'copy_0.mcap: .*unfinished.*ddct score --repair'):
         read_bag(killed)
 
 

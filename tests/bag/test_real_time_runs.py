@@ -62,8 +62,8 @@ def test_bringup_ends_with_misses_lateness_and_safe_state(leave, tmp_path, capsy
     printed = capsys.readouterr()
     assert printed.out == f'{out / "pi"}\n'
     assert printed.err.splitlines()[-2:] == [
-        'bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
-        'bringup: state not_engaged, limits beyond',
+        'ddct bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
+        'ddct bringup: state not_engaged, limits beyond',
     ]
 
 
@@ -82,12 +82,12 @@ def test_bringup_fails_for_misses_and_for_a_safe_state_and_keeps_the_bag(
     assert bringup.main(['--mode', 'realtime', '--out', str(out)]) == 1
     log, summary, error = capsys.readouterr().err.splitlines()[-3:]
     partial = out / 'pi.partial'
-    assert log == f'bringup: warnings are in {partial / "work" / "actuator.log"}'
+    assert log == f'ddct bringup: warnings are in {partial / "work" / "actuator.log"}'
     state = 'actuator at 0.4 s' if safe else 'none'
     assert summary == (
-        f'bringup: {missed} of 60 steps missed, worst lateness 1.23 ms, safe state: {state}'
+        f'ddct bringup: {missed} of 60 steps missed, worst lateness 1.23 ms, safe state: {state}'
     )
-    assert error == f'bringup: {partial}: not valid: {reason}'
+    assert error == f'ddct bringup: {partial}: not valid: {reason}'
     assert not (out / 'pi').exists()
 
 
@@ -96,7 +96,7 @@ def test_bringup_names_the_logs_where_the_bag_is_in_the_end(leave, tmp_path, cap
     out = tmp_path / 'runs'
     assert bringup.main(['--mode', 'realtime', '--out', str(out)]) == 0
     log = out / 'pi' / 'work' / 'actuator.log'
-    assert f'bringup: warnings are in {log}\n' in capsys.readouterr().err
+    assert f'ddct bringup: warnings are in {log}\n' in capsys.readouterr().err
     assert log.is_file()
 
 

@@ -148,7 +148,7 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
     assert main([str(bags.write(trajectory)), '--limits', str(mine)]) == 1
     captured = capsys.readouterr()
     assert captured.err == (
-        f'score: limits {mine}: line 2: limit: unknown key: known are rules, limits, '
+        f'ddct score: limits {mine}: line 2: limit: unknown key: known are rules, limits, '
         'schema_version\n'
     )
     assert captured.out == ''
@@ -201,7 +201,7 @@ def test_a_cut_bag_is_reported_and_the_others_are_scored(bags, trajectory, capsy
     assert 'unfinished' in broken['reason']
     assert set(broken['metrics']) == set(whole['metrics'])
     assert set(broken['metrics'].values()) == {None}
-    assert captured.err.startswith(f'score: {cut}: the recording is unfinished')
+    assert captured.err.startswith(f'ddct score: {cut}: the recording is unfinished')
 
 
 def test_repair_rescues_before_scoring(bags, trajectory, capsys):
@@ -239,7 +239,7 @@ def test_a_mistake_gives_1_and_one_line(arguments, capsys, tmp_path, monkeypatch
     assert main(arguments) == 1
     captured = capsys.readouterr()
     assert captured.out == ''
-    assert captured.err.startswith('score: ')
+    assert captured.err.startswith('ddct score: ')
     assert captured.err.count('\n') == 1
 
 
@@ -258,7 +258,7 @@ def test_help_has_examples(capsys):
     with pytest.raises(SystemExit) as end:
         main(['--help'])
     assert end.value.code == 0
-    assert 'score --repair' in capsys.readouterr().out
+    assert 'ddct score --repair' in capsys.readouterr().out
 
 
 def test_scoring_needs_no_ros(bags, trajectory):

@@ -1,9 +1,12 @@
 """The commands of the documentation, sorted by how a test runs them."""
 
 import shlex
-from importlib.metadata import entry_points
+import sys
+from unittest.mock import patch
 
 from support.documented import Block, blocks
+
+from ddct_bringup.programs import ddct
 
 NOT_RUN_HERE = {
     'make': 'would run this very test, or take its environment away; .ci/run and users run them',
@@ -14,19 +17,19 @@ NOT_RUN_HERE = {
     'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
     'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
     'python -m pip': 'would change the environment of the tests',
-    'ros2 run ddct_bringup bringup --mode realtime --controller ls8 --live': (
+    'ddct bringup --mode realtime --controller ls8 --live': (
         'waits for a viewer; tests/live gives it one'
     ),
-    'ros2 run ddct_bringup live': 'serves until Ctrl-C; tests/live stops it',
-    'ros2 run ddct_bringup reproduce studies --write-doc docs/engagements.md': (
+    'ddct live': 'serves until Ctrl-C; tests/live stops it',
+    'ddct reproduce studies --write-doc docs/engagements.md': (
         'takes a minute; test_engagements_page.py makes a sample of its rows'
     ),
-    'ros2 run ddct_bringup reproduce calibration': 'takes minutes; a test runs it with --quick',
+    'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell]
 SOURCE = '. install/setup.bash'
-_DESIGN = 'ros2 run ddct_controllers design'
+_DESIGN = 'ddct design'
 _RUNS = ('bringup', 'compare')
 _NOT_HEADLESS = ('--help', '--list', '--headless', '--single-process', 'realtime')
 
@@ -45,7 +48,7 @@ def in_this_process(block: Block) -> bool:
     """Say whether all commands are programs of ours that end by themselves, without a graph."""
     commands = [line for line in commands_of(block) if line != SOURCE]
     return bool(commands) and all(
-        line.startswith('ros2 run ddct_') and '&' not in line and 'realtime' not in line
+        line.startswith('ddct ') and '&' not in line and 'realtime' not in line
         for line in commands
     )
 
@@ -57,21 +60,17 @@ def is_design(block: Block) -> bool:
 
 def run_here(line: str) -> int:
     """
-    Run one `ros2 run PACKAGE PROGRAM ARGUMENTS` in this process and return its exit code.
+    Run one `ddct PROGRAM ARGUMENTS` in this process and return its exit code.
 
     A run of the graph takes place without it, which is faster; other tests run the real thing.
     """
     if line == SOURCE:
         return 0
-    package, program, *arguments = shlex.split(line, comments=True)[2:]
-    if program in _RUNS and not any(words in line for words in _NOT_HEADLESS):
-        arguments.append('--headless')
-    (point,) = {
-        point.value: point
-        for point in entry_points(group='console_scripts', name=program)
-        if point.dist is not None and point.dist.name.replace('-', '_') == package
-    }.values()
+    command = shlex.split(line, comments=True)
+    if command[1] in _RUNS and not any(words in line for words in _NOT_HEADLESS):
+        command.append('--headless')
     try:
-        return point.load()(arguments)
+        with patch.object(sys, 'argv', command):
+            return ddct.main()
     except SystemExit as end:  # of --help
         return 1 if end.code else 0

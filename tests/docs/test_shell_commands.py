@@ -17,22 +17,21 @@ BLOCKS = [block for block in SHELL_BLOCKS if not in_this_process(block)]
 
 ROS2 = """\
 #!{shell}
-# ros2 run PACKAGE PROGRAM ARGUMENTS...
-[ "$1" = run ] || exit 2
-package=$2 program=$3; shift 3
-[ "$package" = my_actuator ] && package=ddct_plant program=actuator
-exec "{install}/$package/lib/$package/$program" "$@"
+[ "$1 $2 $3" = 'run my_actuator my_actuator' ] || exit 2
+shift 3
+exec ddct actuator "$@"
 """
 
 
 @pytest.fixture
 def environment(workplace: Path, install: Path) -> dict[str, str]:
-    """Return the environment variables of a shell with a `ros2` that finds our programs."""
+    """Return the environment of a shell with `ddct`, and a `ros2` for the foreign node."""
     ros2 = workplace / 'bin' / 'ros2'
     ros2.parent.mkdir()
-    ros2.write_text(ROS2.format(shell=shutil.which('bash'), install=install))
+    ros2.write_text(ROS2.format(shell=shutil.which('bash')))
     ros2.chmod(ros2.stat().st_mode | stat.S_IXUSR)
-    return {**os.environ, 'PATH': f'{ros2.parent}:{os.environ["PATH"]}'}
+    path = f'{ros2.parent}:{install}/ddct_bringup/bin:{os.environ["PATH"]}'
+    return {**os.environ, 'PATH': path}
 
 
 @pytest.mark.parametrize('block', BLOCKS, ids=label)

@@ -1,4 +1,4 @@
-"""`design mpc --export`, as a user calls it."""
+"""`ddct design mpc --export`, as a user calls it."""
 
 from pathlib import Path
 
@@ -41,7 +41,7 @@ def test_what_cannot_be_exported_is_one_line_and_no_folder(tmp_path, capsys, opt
     assert main(['mpc', '--export', str(folder), *options]) == 1
     printed = capsys.readouterr().err
     assert error in printed
-    assert printed.startswith('design: ')
+    assert printed.startswith('ddct design: ')
     assert printed.count('\n') == 1
     assert not folder.exists()
 

@@ -46,7 +46,7 @@ def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     )
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'bringup', 'No space left on device', 'ls8_0.mcap')
+    assert_one_line(bringup.errors(), 'ddct bringup', 'No space left on device', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
     assert score.main([str(out / 'ls8.partial')]) == 1
     assert 'unfinished' in capfd.readouterr().err
@@ -64,7 +64,7 @@ def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
         'ddct_bringup.programs.bringup', *RUN, '--headless', '--out', str(out), preexec_fn=limit
     )
     assert bringup.wait() == 1
-    assert_one_line(bringup.errors(), 'bringup', 'File too large', 'ls8_0.mcap')
+    assert_one_line(bringup.errors(), 'ddct bringup', 'File too large', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
 
 
@@ -83,9 +83,9 @@ def test_a_compare_whose_disk_fills_up_ends_and_takes_no_old_result_away(
     assert compare.wait() == 1
     assert (small_disk / 'runs.partial' / 'pi' / 'metadata.yaml').is_file(), 'the first one fits'
     first, last = compare.errors().splitlines()[-2:]
-    assert first.startswith('compare: ls8: ')
+    assert first.startswith('ddct compare: ls8: ')
     assert 'No space left on device' in first
-    assert last.startswith(f'compare: {small_disk}/runs.partial/ls8/failed_run.json: ')
+    assert last.startswith(f'ddct compare: {small_disk}/runs.partial/ls8/failed_run.json: ')
     assert 'No space left on device' in last
     assert not (small_disk / 'runs.partial' / 'ls1').exists(), 'it would fare no better'
     assert {path: path.read_bytes() for path in out.rglob('*') if path.is_file()} == before

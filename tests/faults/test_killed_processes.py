@@ -50,7 +50,7 @@ def test_a_killed_node_is_named_and_what_was_recorded_is_kept(
     os.kill(node_of('clutch_node'), signal.SIGKILL)
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'bringup', 'node clutch was killed by SIGKILL')
+    assert_one_line(bringup.errors(), 'ddct bringup', 'node clutch was killed by SIGKILL')
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
 
@@ -62,10 +62,10 @@ def test_score_repair_rescues_what_a_killed_recorder_wrote(
     os.kill(node_of('recorder_node'), signal.SIGKILL)
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'bringup', 'node recorder was killed by SIGKILL')
+    assert_one_line(bringup.errors(), 'ddct bringup', 'node recorder was killed by SIGKILL')
     bag = tmp_path / 'runs' / 'ls8.partial'
     assert score.main([str(bag)]) == 1
-    assert 'score --repair' in capfd.readouterr().err
+    assert 'ddct score --repair' in capfd.readouterr().err
     assert score.main([str(bag), '--repair']) == 1, 'a run that ended early is not valid'
     printed = capfd.readouterr()
     assert 'rescued steps 0 to' in printed.err
@@ -89,7 +89,7 @@ def test_an_interrupted_bringup_stops_its_nodes_and_keeps_what_was_recorded(
     bringup.send(number)
     assert bringup.wait(20.0) == 130
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'bringup', 'interrupted')
+    assert_one_line(bringup.errors(), 'ddct bringup', 'interrupted')
     assert not bringup.output()
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20

@@ -81,7 +81,7 @@ def test_a_folder_below_keeps_the_one_around_it(
 ) -> None:
     with held(compared / 'pi'):
         assert compare.main([*PI, '--overwrite', '--out', str(compared)]) == 1
-    assert_one_line(capfd.readouterr().err, 'compare', f'{compared}: process')
+    assert_one_line(capfd.readouterr().err, 'ddct compare', f'{compared}: process')
 
 
 def test_neighbours_share_the_folder_around_them(compared: Path) -> None:

@@ -17,21 +17,21 @@ def test_a_taken_port_is_named(extras: None, programs: Programs) -> None:
         port = str(taken.getsockname()[1])
         program = programs.start_module(LIVE, '--port', port)
         assert program.wait() == 1
-    assert_one_line(program.errors(), 'live', f'port {port}', 'in use', '--port')
+    assert_one_line(program.errors(), 'ddct live', f'port {port}', 'in use', '--port')
     assert not program.output()
 
 
 def test_a_host_that_is_not_there_is_named(extras: None, programs: Programs) -> None:
     program = programs.start_module(LIVE, '--port', '0', '--host', 'no-such-host.invalid')
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'live', 'no-such-host.invalid', '--host')
+    assert_one_line(program.errors(), 'ddct live', 'no-such-host.invalid', '--host')
 
 
 @pytest.mark.parametrize('port', ['-1', '65536'])
 def test_a_port_out_of_range_is_named(programs: Programs, port: str) -> None:
     program = programs.start_module(LIVE, '--port', port)
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'live', f'--port is {port}', '65535')
+    assert_one_line(program.errors(), 'ddct live', f'--port is {port}', '65535')
 
 
 def test_without_the_extra_it_says_what_to_install(
@@ -41,7 +41,7 @@ def test_without_the_extra_it_says_what_to_install(
     monkeypatch.setenv('PYTHONPATH', str(tmp_path), prepend=':')
     program = programs.start_module(LIVE, '--port', '0')
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'live', 'foxglove-sdk', 'pip install foxglove-sdk')
+    assert_one_line(program.errors(), 'ddct live', 'foxglove-sdk', 'pip install foxglove-sdk')
 
 
 def test_it_ends_with_code_0_when_stopped(live: Start) -> None:

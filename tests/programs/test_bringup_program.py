@@ -43,10 +43,10 @@ def test_a_run_ends_with_its_state_and_its_limits(
 ) -> None:
     arguments = ['--controller', 'ls8', '--headless', '--out', str(tmp_path / 'runs')]
     assert bringup.main(arguments) == 0
-    assert 'bringup: state engaged, limits beyond\n' in capfd.readouterr().err
+    assert 'ddct bringup: state engaged, limits beyond\n' in capfd.readouterr().err
     arguments += ['--limits', str(tmp_path / 'none.yaml'), '--overwrite']
     assert bringup.main(arguments) == 1
-    assert capfd.readouterr().err.startswith('bringup: limits ')
+    assert capfd.readouterr().err.startswith('ddct bringup: limits ')
 
 
 def test_controllers_share_one_output_folder_and_overwrite_replaces_one(tmp_path: Path) -> None:

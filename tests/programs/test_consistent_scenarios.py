@@ -23,7 +23,7 @@ def test_bringup_says_it_the_bag_keeps_it_and_score_repeats_it(
     assert custom['adjusted'].startswith(MOVED)
     assert 'vehicle_inertia: 185.62926' in custom['scenario_yaml']
     assert score.main([str(out)]) == 0
-    assert f'score: pi: {MOVED}' in capfd.readouterr().err
+    assert f'ddct score: pi: {MOVED}' in capfd.readouterr().err
 
 
 def test_compare_has_it_above_its_table(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -105,7 +105,7 @@ def test_compare_keeps_what_worked_and_says_why_the_rest_did_not(
     assert _compare(out, '--overwrite') == 1
     reason = REASONS[bad_ls8]
     printed = capfd.readouterr()
-    assert 'compare: not valid: ls8: the table and the report say why' in printed.err
+    assert 'ddct compare: not valid: ls8: the table and the report say why' in printed.err
     rows = {line.split()[0]: line.split()[-1] for line in printed.out.splitlines() if line.split()}
     assert (rows['pi'], rows['ls8']) == ('yes', 'NO')
     assert f'ls8: not valid: {reason}\n' in printed.out
@@ -136,10 +136,10 @@ def test_report_and_score_tell_of_a_failed_run_what_compare_told(
     assert score.main([str(out), '--json', '-']) == 1
     printed = capfd.readouterr()
     assert json.loads(printed.out)['runs'] == sorted(entries, key=lambda run: run['bag'])
-    assert 'score: node clutch was killed by SIGKILL' in printed.err
+    assert 'ddct score: node clutch was killed by SIGKILL' in printed.err
     page = tmp_path / 'again.html'
     assert report.main([str(out), '--out', str(page)]) == 1
-    assert 'report: ls8: node clutch was killed by SIGKILL' in capfd.readouterr().err
+    assert 'ddct report: ls8: node clutch was killed by SIGKILL' in capfd.readouterr().err
     text = page.read_text()
     assert '1 of 2 runs is invalid' in text
     assert '<b>ls8</b>: node clutch was killed by SIGKILL' in text
@@ -178,7 +178,8 @@ def test_where_no_run_is_valid_an_old_result_stays(
     partial = out.with_name('runs.partial')
     *_, last = capfd.readouterr().err.splitlines()
     assert last == (
-        f'compare: no run is valid (ls8): {out} is untouched, what was recorded is in {partial}'
+        f'ddct compare: no run is valid (ls8): {out} is untouched, '
+        f'what was recorded is in {partial}'
     )
     assert [run['valid'] for run in _scores(partial)] == [False]
 

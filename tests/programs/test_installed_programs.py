@@ -8,16 +8,11 @@ from support.processes import Program, Programs, package_of, ros_arguments
 from support.runs import bag_bytes, plan, record
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.programs.ddct import programs as installed_programs
 
-PROGRAMS = [
-    *((package_of(spec), spec.name) for spec in GRAPH_NODES),
-    *(
-        ('ddct_bringup', name)
-        for name in ('bringup', 'compare', 'live', 'report', 'reproduce', 'score')
-    ),
-    ('ddct_controllers', 'design'),
-    ('ddct_plant', 'identify'),
-]
+PROGRAMS = sorted(
+    (point.module.partition('.')[0], name) for name, point in installed_programs().items()
+)
 RUN = plan('ls8', 'headless', duration_s=3.0)
 
 

@@ -6,7 +6,6 @@ import sys
 
 import pytest
 from support.in_process_graph import node_class
-from support.processes import package_of
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
@@ -26,7 +25,7 @@ def _help(module: str, *arguments: str) -> str:
 @pytest.mark.parametrize('node', GRAPH_NODES, ids=lambda node: node.name)
 def test_help_names_the_parameters_and_where_to_give_them(node):
     text = _help(node.module, '--help')
-    program = f'ros2 run {package_of(node)} {node.name}'
+    program = f'ddct {node.name}'
     for expected in (program, 'scenario: ', 'wear_gain: 1.0', "mode: 'lockstep'", '--ros-args -p'):
         assert expected in text
     assert 'use_sim_time' not in text

@@ -84,7 +84,7 @@ def test_a_gain_that_the_example_does_not_take_is_named(
 ) -> None:
     arguments = ['--controller', 'dead_zone', '--set', 'controllers.dead_zone.speed=1']
     assert bringup.main([*arguments, '--headless', '--out', str(tmp_path / 'runs')]) == 1
-    assert_one_line(capfd.readouterr().err, 'bringup', 'controllers.dead_zone.speed')
+    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'controllers.dead_zone.speed')
     assert not (tmp_path / 'runs').exists()
 
 
@@ -122,7 +122,7 @@ def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'bringup', f'controller {name!r}: it', words)
+    assert_one_line(capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words)
     assert not (out / name).exists()
 
 
@@ -136,7 +136,7 @@ def test_a_graph_names_the_controller_whose_status_is_no_text(
     )
     assert run.wait() == 1
     words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
-    assert_one_line(run.errors(), 'bringup', 'node controller', words)
+    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words)
 
 
 @pytest.mark.usefixtures('broken')
@@ -146,7 +146,9 @@ def test_compare_names_the_controller_whose_linear_model_is_none(
     options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]
     assert compare.main(['--controllers', 'bad_linear_model', *options]) == 1
     *_, last = capfd.readouterr().err.splitlines()
-    assert last.startswith("compare: controller 'bad_linear_model': its linear_model cannot be")
+    assert last.startswith(
+        "ddct compare: controller 'bad_linear_model': its linear_model cannot be"
+    )
     assert 'it is of type list' in last
 
 
@@ -202,7 +204,7 @@ def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_l
     )
     assert run.wait() == 1
     words = "controller 'raising': it failed at step 60 (ZeroDivisionError: float division by zero"
-    assert_one_line(run.errors(), 'bringup', 'node controller', words)
+    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words)
     log = out / 'raising.partial' / 'work' / 'controller.log'
     assert str(log) in run.errors()
     assert 'Traceback' in log.read_text(encoding='utf-8')

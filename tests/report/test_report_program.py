@@ -99,7 +99,7 @@ def test_a_damaged_bag_is_marked_and_the_others_stay(
     out = tmp_path / 'report.html'
     assert main([str(runs), '--out', str(out)]) == 1
     error = capsys.readouterr().err
-    assert error.startswith('report: ls8: ')
+    assert error.startswith('ddct report: ls8: ')
     assert 'unfinished' in error
     reader = read(out)
     assert '1 of 3 runs is invalid' in reader.text
@@ -134,7 +134,7 @@ def test_runs_of_several_scenarios_are_refused_and_named(
     out = tmp_path / 'report.html'
     assert main([str(demo), str(tmp_path / 'steep'), '--out', str(out)]) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith('report: the runs are of 2 scenarios')
+    assert line.startswith('ddct report: the runs are of 2 scenarios')
     assert 'steep' in line
     assert 'ls8' in line
     assert not out.exists()
@@ -261,7 +261,7 @@ def test_without_the_chart_library_the_program_says_what_to_install(
     monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
     assert main([str(demo)]) == 1
     assert capsys.readouterr().err == (
-        'report: the report needs the Python package bokeh: pip install bokeh\n'
+        'ddct report: the report needs the Python package bokeh: pip install bokeh\n'
     )
 
 

@@ -212,7 +212,7 @@ def test_program_without_one_of_its_sources_says_that_nothing_was_computed_for_i
     assert reproduce.main(['numbers']) == 1
     *_, error = capsys.readouterr().err.splitlines()
     assert error.startswith(
-        'reproduce: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
+        'ddct reproduce: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
         'the detailed model: nothing was computed for it; '
     )
 
@@ -222,7 +222,7 @@ def test_page_that_is_not_there_is_refused_before_the_work(
 ) -> None:
     assert reproduce.main(['numbers', '--write-doc', str(tmp_path / 'none.md')]) == 1
     (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith('reproduce: --write-doc ') and 'none.md' in error
+    assert error.startswith('ddct reproduce: --write-doc ') and 'none.md' in error
 
 
 def test_page_without_a_table_is_refused(

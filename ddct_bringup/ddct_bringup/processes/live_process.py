@@ -75,8 +75,8 @@ class LiveView:
 
     def _wait(self) -> None:
         if self._process.poll() is not None:
-            lines = self._words().strip().splitlines() or ['live: it ended without a word']
-            raise DdctError(lines[-1].removeprefix('live: '))
+            lines = self._words().strip().splitlines() or ['ddct live: it ended without a word']
+            raise DdctError(lines[-1].removeprefix('ddct live: '))
         time.sleep(POLL_S)
 
 

@@ -20,16 +20,16 @@ from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
 
-PROGRAM = 'bringup'
+PROGRAM = 'ddct bringup'
 
 _EPILOG = """\
 examples:
-  bringup --out runs/first                          the PI of the thesis
-  bringup --controller ls8 --out runs/first         another one into the same folder
-  bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
-  bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
-  bringup --headless --out runs/quick               the same numbers without a graph
-  bringup --mode realtime --live --out runs/live    watch it in Foxglove
+  ddct bringup --out runs/first                          the PI of the thesis
+  ddct bringup --controller ls8 --out runs/first         another one into the same folder
+  ddct bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
+  ddct bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
+  ddct bringup --headless --out runs/quick               the same numbers without a graph
+  ddct bringup --mode realtime --live --out runs/live    watch it in Foxglove
 
 The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
 in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.

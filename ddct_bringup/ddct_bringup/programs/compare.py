@@ -32,14 +32,14 @@ from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.scenario.settings import RunSettings
 
-PROGRAM = 'compare'
+PROGRAM = 'ddct compare'
 SCORES_FILE = 'scores.json'
 
 _EPILOG = """\
 examples:
-  compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
-  compare --controllers all --wear-gain 0.7 --out runs/worn
-  compare --controllers pi,mine --headless --json - --out runs/mine
+  ddct compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
+  ddct compare --controllers all --wear-gain 0.7 --out runs/worn
+  ddct compare --controllers pi,mine --headless --json - --out runs/mine
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the

@@ -12,16 +12,16 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.graph.spin import run_node
 from ddct_plant.program.command_line import ProgramParser, run_program
 
-PROGRAM = 'live'
+PROGRAM = 'ddct live'
 _LAST_PORT = 65_535
 _NICENESS = 10
 
 _EPILOG = """\
 examples:
-  live                        serve ROS domain 0, or that of ROS_DOMAIN_ID
-  live --port 9000            another port; 0 takes a free one
-  live --host 0.0.0.0         let other machines connect, with no password
-  bringup --live --out DIR    a run with its own live view, in a domain of its own
+  ddct live                        serve ROS domain 0, or that of ROS_DOMAIN_ID
+  ddct live --port 9000            another port; 0 takes a free one
+  ddct live --host 0.0.0.0         let other machines connect, with no password
+  ddct bringup --live --out DIR    a run with its own live view, in a domain of its own
 
 Open the printed address in Foxglove: Open connection, Foxglove WebSocket. The graph may start
 before or after; Ctrl-C ends the server. Arguments behind --ros-args go to the node.

@@ -22,14 +22,14 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
-PROGRAM = 'report'
+PROGRAM = 'ddct report'
 REPORT_FILE = 'report.html'
 
 _EPILOG = """\
 examples:
-  report runs/demo                                 every bag in the folder and below it
-  report runs/new/ls8 runs/worn/ls8 --out ls8.html one controller in two conditions
-  report runs/demo --out -                         the page on standard output
+  ddct report runs/demo                                 every bag in the folder and below it
+  ddct report runs/new/ls8 runs/worn/ls8 --out ls8.html one controller in two conditions
+  ddct report runs/demo --out -                         the page on standard output
 
 The page needs no network and no other file. Bags are scored anew; frequency.json and
 timing.json are taken from beside them. All runs must be of one scenario. The exit code is 0

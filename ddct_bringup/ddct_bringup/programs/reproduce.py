@@ -6,16 +6,16 @@ from ddct_bringup.reproduction.numbers import command as numbers_command
 from ddct_bringup.reproduction.studies import command as studies_command
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
-PROGRAM = 'reproduce'
+PROGRAM = 'ddct reproduce'
 _COMMANDS = (numbers_command, figures_command, studies_command, calibration_command)
 
 _DESCRIPTION = 'Compute what the thesis prints, and hold it against the print.'
 _EPILOG = """\
 examples:
-  reproduce numbers                     every printed number beside ours
-  reproduce figures --out figures       the thesis's figures, drawn again
-  reproduce studies                     what decides how the predictive controllers fare
-  reproduce calibration --quick         the scenario, fitted to Table 5.1
+  ddct reproduce numbers                     every printed number beside ours
+  ddct reproduce figures --out figures       the thesis's figures, drawn again
+  ddct reproduce studies                     what decides how the predictive controllers fare
+  ddct reproduce calibration --quick         the scenario, fitted to Table 5.1
 
 Each of them has its own --help."""
 

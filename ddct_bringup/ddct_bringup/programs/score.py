@@ -25,17 +25,17 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
-PROGRAM = 'score'
+PROGRAM = 'ddct score'
 
 _EPILOG = f"""\
 examples:
-  score runs/demo                        every bag in the folder and below it
-  score runs/demo/pi runs/demo/ls8       two bags
-  score runs/demo --json scores.json     also as JSON; '-' is standard output
-  score runs/demo --csv - | column -ts,  as CSV on standard output, table on standard error
-  score runs/demo --signals-csv signals  also every signal, one file per bag
-  score runs/demo --limits mine.yaml     judged by other limits than the packaged ones
-  score --repair runs/broken/pi          rescue an interrupted recording, then score it
+  ddct score runs/demo                        every bag in the folder and below it
+  ddct score runs/demo/pi runs/demo/ls8       two bags
+  ddct score runs/demo --json scores.json     also as JSON; '-' is standard output
+  ddct score runs/demo --csv - | column -ts,  as CSV on standard output, table on standard error
+  ddct score runs/demo --signals-csv signals  also every signal, one file per bag
+  ddct score runs/demo --limits mine.yaml     judged by other limits than the packaged ones
+  ddct score --repair runs/broken/pi          rescue an interrupted recording, then score it
 
 The exit code is 0 only if every bag was scored and valid: whole, of the length that the
 run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the

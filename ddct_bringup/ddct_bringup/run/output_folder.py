@@ -32,7 +32,7 @@ class StagedFolder:
         if not overwrite and any(self.path.rglob('*.mcap')):
             raise DdctError(
                 f'{self.path} holds what an interrupted run left: rescue it with '
-                '`score --repair`, then remove it or add --overwrite'
+                '`ddct score --repair`, then remove it or add --overwrite'
             )
         try:
             if self.path.exists():

@@ -70,7 +70,7 @@ def write_design(
     write_design_charts(path.parent, designed, specifications)
     write_text(str(path), designed.to_yaml())
     if options.json != STDOUT:
-        print(f'Run it: bringup --controller {path} --out runs/{designed.name}')
+        print(f'Run it: ddct bringup --controller {path} --out runs/{designed.name}')
 
 
 def _path(options: argparse.Namespace, name: str) -> Path | None:

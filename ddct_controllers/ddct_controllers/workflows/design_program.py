@@ -9,18 +9,18 @@ from ddct_controllers.workflows import (
 )
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
-PROGRAM = 'design'
+PROGRAM = 'ddct design'
 _COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command, plant_command)
 
 _DESCRIPTION = 'Design controllers, and check them in the loop as it runs.'
 _EPILOG = """\
 examples:
-  design loop-shaping                                 Chapter 2, step by step
-  design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
-  design h-infinity                                   Chapter 3, step by step
-  design mpc --export control_unit --controller mpc3  C for a control unit
-  design margins --controller all                     the sampled loop with hold and delay
-  design plant --export plant.m                       the plant's equations and numbers
+  ddct design loop-shaping                                 Chapter 2, step by step
+  ddct design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
+  ddct design h-infinity                                   Chapter 3, step by step
+  ddct design mpc --export control_unit --controller mpc3  C for a control unit
+  ddct design margins --controller all                     the sampled loop with hold and delay
+  ddct design plant --export plant.m                       the plant's equations and numbers
 
 Each workflow has its own --help. The thesis's numbers, figures and studies: reproduce."""
 

@@ -42,10 +42,10 @@ K grows with the square of the rise time, w_2 falls with it, unless they are giv
 --out writes the controller as DIR/NAME.yaml, which `bringup` and `compare` take, and charts."""
 _EXAMPLES = """\
 examples:
-  design h-infinity
-  design h-infinity --weights fitted --method lmi
-  design h-infinity --weights sampled --rise-time 0.4 --overshoot 10 --name mine --out designs
-  compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
+  ddct design h-infinity
+  ddct design h-infinity --weights fitted --method lmi
+  ddct design h-infinity --weights sampled --rise-time 0.4 --overshoot 10 --name mine --out designs
+  ddct compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
 _DEFAULTS = THESIS_SPECIFICATIONS
 _DEFAULT_RECIPE = 'thesis'
 

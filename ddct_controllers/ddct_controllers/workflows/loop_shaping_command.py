@@ -36,10 +36,10 @@ writes it as DIR/NAME.yaml, which `bringup` and `compare` take as a controller, 
 Nyquist, Nichols and step charts."""
 _EXAMPLES = """\
 examples:
-  design loop-shaping
-  design loop-shaping --rise-time 0.6 --overshoot 14
-  design loop-shaping --rise-time 0.3 --overshoot 10 --name quick --out designs
-  compare --controllers ls8,designs/quick.yaml --headless --out runs/quick"""
+  ddct design loop-shaping
+  ddct design loop-shaping --rise-time 0.6 --overshoot 14
+  ddct design loop-shaping --rise-time 0.3 --overshoot 10 --name quick --out designs
+  ddct compare --controllers ls8,designs/quick.yaml --headless --out runs/quick"""
 _DISTURBANCES = {'none': None, 'step': 0, 'ramp': 1}
 """h_p of the engine torque that must leave no error; without one G_c gets no integrator."""
 _NEEDS_SPECIFICATIONS = ('disturbance', 'structure', 'name', 'out', 'overwrite')
@@ -100,7 +100,7 @@ def _design(options: argparse.Namespace) -> None:
     if order is not None:
         plant, path = plant_in_rpm(parameters), engine_to_slip(parameters)
         integrators = required_integrators(plant, path, order)
-    print('design loop-shaping: searching', file=sys.stderr, flush=True)
+    print('ddct design loop-shaping: searching', file=sys.stderr, flush=True)
     structures = (options.structure,) if options.structure else STRUCTURES
     design = design_loop_shaping(specifications, integrators, parameters, structures)
     designed = DesignedController(name, design.controller, provenance(design))

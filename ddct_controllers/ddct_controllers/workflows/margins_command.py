@@ -18,8 +18,8 @@ mode. Then the highest wear gain that is stable and, over wear gains 0.7 to 1.3 
 driveline parameters +-20 %, the highest M_s and the number of unstable corners."""
 _EXAMPLES = """\
 examples:
-  design margins
-  design margins --controller ls8 --wear-gain 1.3 --json -"""
+  ddct design margins
+  ddct design margins --controller ls8 --wear-gain 1.3 --json -"""
 _POINT_COLUMNS = (
     ('GM dB', 'gain_margin_db', '.1f'),
     ('PM deg', 'phase_margin_deg', '.1f'),

@@ -14,8 +14,8 @@ Write a predictive controller, with its observer and solver, as self-contained C
 control unit (docs/control_unit.md). Studies of these controllers: reproduce studies."""
 _EPILOG = """\
 examples:
-  design mpc --export control_unit
-  design mpc --export control_unit --controller mpc_offset_free --overwrite"""
+  ddct design mpc --export control_unit
+  ddct design mpc --export control_unit --controller mpc_offset_free --overwrite"""
 
 
 def add_parser(subparsers: Any) -> None:

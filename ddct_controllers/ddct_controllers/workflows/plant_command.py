@@ -25,9 +25,9 @@ P_1, P_2, P_3 to slip speed and G_a of the actuator, its delay, and C_fOL. SI un
 slips, and no torque is limited. docs/plant.md explains the symbols and signs."""
 _EXAMPLES = """\
 examples:
-  design plant
-  design plant --export plant.m --export plant.mat
-  design plant --set vehicle.mass_kg=1800 --export plant.json"""
+  ddct design plant
+  ddct design plant --export plant.m --export plant.mat
+  ddct design plant --set vehicle.mass_kg=1800 --export plant.json"""
 _FORMATS = ('.json', '.m', '.mat')
 
 

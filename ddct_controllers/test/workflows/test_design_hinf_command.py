@@ -98,7 +98,7 @@ def test_a_users_mistake_is_one_line(capsys, options, complaint):
     assert main(['h-infinity', *options]) == 1
     error = capsys.readouterr().err
     assert complaint in error
-    assert error.startswith('design: ')
+    assert error.startswith('ddct design: ')
     assert error.count('\n') == 1
 
 

@@ -21,12 +21,12 @@ def main(argv: list[str]) -> int:
     """Run the subcommand as `design` does."""
 
     def run(arguments: list[str]) -> int:
-        parser = argparse.ArgumentParser(prog='design')
+        parser = argparse.ArgumentParser(prog='ddct design')
         loop_shaping_command.add_parser(parser.add_subparsers(required=True))
         options = parser.parse_args(arguments)
         return options.run(options)
 
-    return run_program('design', run, argv)
+    return run_program('ddct design', run, argv)
 
 
 def test_without_options_it_prints_the_thesis_workflow(capsys):
@@ -94,7 +94,7 @@ def test_a_users_mistake_is_one_line(options, complaint, capsys):
     assert main(['loop-shaping', *options]) == 1
     lines = [line for line in capsys.readouterr().err.splitlines() if 'searching' not in line]
     assert len(lines) == 1
-    assert lines[0].startswith('design: ')
+    assert lines[0].startswith('ddct design: ')
     assert complaint in lines[0]
 
 

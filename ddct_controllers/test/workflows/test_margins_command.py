@@ -22,12 +22,12 @@ PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'frequency_evidence.md'
 
 def run(*arguments: str) -> int:
     def main(argv: list[str]) -> int:
-        parser = argparse.ArgumentParser(prog='design')
+        parser = argparse.ArgumentParser(prog='ddct design')
         margins_command.add_parser(parser.add_subparsers())
         options = parser.parse_args(argv)
         return options.run(options)
 
-    return run_program('design', main, ['margins', *arguments])
+    return run_program('ddct design', main, ['margins', *arguments])
 
 
 def rows(text: str) -> dict[str, list[str]]:
@@ -170,7 +170,7 @@ def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, compl
     stub(model)
     assert run('--controller', 'ls1') == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("design: controller 'ls1': its linear_model cannot be used: ")
+    assert line.startswith("ddct design: controller 'ls1': its linear_model cannot be used: ")
     assert complaint in line
 
 

@@ -2,7 +2,6 @@
 
 import inspect
 import os
-import sys
 from collections.abc import Callable, Sequence
 
 import rclpy
@@ -83,10 +82,7 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
         node.destroy_node()
     finally:
         rclpy.try_shutdown()
-    # Run by `python -m`, the module calls itself __main__; its spec keeps the real name.
-    spec = sys.modules[type(node).__module__].__spec__
-    package = spec.name.partition('.')[0] if spec else type(node).__module__
-    program = f'ros2 run {package} {name}'
+    program = f'ddct {name}'
     return '\n'.join(
         [
             f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',

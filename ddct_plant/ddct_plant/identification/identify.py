@@ -24,6 +24,7 @@ SYMBOLS_AND_UNITS = {
     'total_ratio': ('tau', '1'),
     'vehicle_inertia': ('J_v', 'kg m^2'),
 }
+PROGRAM = 'ddct identify'
 _DESCRIPTION = """\
 Derive the driveline parameters from the nine printed coefficients of P2 and P3
 (thesis, Section 1.6.2) by least squares weighted by the rounding of the print.
@@ -32,19 +33,19 @@ half-units of the last printed digit; std follows from the rounding alone, and
 lowest and highest are the ends of what the printed digits allow."""
 _EXAMPLES = """\
 examples:
-  ros2 run ddct_plant identify
-  ros2 run ddct_plant identify --json parameters.json
-  ros2 run ddct_plant identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)"""
+  ddct identify
+  ddct identify --json parameters.json
+  ddct identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)"""
 
 
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
-    return run_program('identify', _run, argv)
+    return run_program(PROGRAM, _run, argv)
 
 
 def _run(argv: list[str]) -> int:
     parser = ProgramParser(
-        prog='identify',
+        prog=PROGRAM,
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

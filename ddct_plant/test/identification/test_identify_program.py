@@ -32,7 +32,7 @@ def test_json_holds_parameters_coefficients_and_checks(capsys):
 def test_erratum_kept_gives_exit_code_1_and_one_line_on_standard_error(capsys):
     assert main(['--as-printed']) == 1
     captured = capsys.readouterr()
-    assert captured.err.startswith('identify: no driveline fits: ')
+    assert captured.err.startswith('ddct identify: no driveline fits: ')
     assert captured.err.count('\n') == 1
     assert '334.4' in captured.out
 
@@ -62,11 +62,11 @@ def test_json_file_is_written_beside_the_table(capsys, tmp_path):
 def test_json_into_a_folder_that_does_not_exist_is_a_one_line_error(capsys, tmp_path):
     assert main(['--json', str(tmp_path / 'absent' / 'out.json')]) == 1
     error = capsys.readouterr().err
-    assert error.startswith('identify: ') and error.count('\n') == 1
+    assert error.startswith('ddct identify: ') and error.count('\n') == 1
 
 
 def test_help_gives_examples(capsys):
     with pytest.raises(SystemExit) as ended:
         main(['--help'])
     assert ended.value.code == 0
-    assert 'ros2 run ddct_plant identify --json' in capsys.readouterr().out
+    assert 'ddct identify --json' in capsys.readouterr().out

@@ -102,7 +102,7 @@ def read_records(path: Path) -> BagRecords:
     if not data.endswith(MAGIC) or len(data) == len(MAGIC):
         raise DdctError(
             f'{path}: the recording is unfinished, its writer was interrupted or the file cut '
-            'short: rescue what it holds with score --repair'
+            'short: rescue what it holds with ddct score --repair'
         )
     bag = BagRecords(path)
     try:
@@ -111,7 +111,7 @@ def read_records(path: Path) -> BagRecords:
     except _READ_ERRORS as error:
         raise DdctError(
             f'{path}: the recording is damaged ({_one_line(error)}): '
-            'rescue what is readable with score --repair'
+            'rescue what is readable with ddct score --repair'
         ) from error
     return bag
 

@@ -23,19 +23,19 @@ from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import load_scenario
 
-NAME = 'reproduce calibration'
+NAME = 'ddct reproduce calibration'
 _DESCRIPTION = """\
 Fit engine torque, reference slope, PI gains and the end of the score window to the
 LS8, Hinf1 and PI rows of Table 5.1 of the thesis (nine numbers; the MPC rows take no
 part), and show bounds, result, identifiability and what each row left out gives."""
 _EPILOG = """\
 examples:
-  reproduce calibration                          the whole calibration, about a minute and a half
-  reproduce calibration --quick                  only check that the frozen scenario is the optimum
-  reproduce calibration --json -                 the result as JSON on standard output, alone
-  reproduce calibration --write my_thesis.yaml   write the calibrated scenario
-  reproduce calibration --ensemble DIR           search the admissible scenarios, two minutes
-  reproduce calibration --predict DIR            only predict in those of DIR, half a minute
+  ddct reproduce calibration                          all of it, about a minute and a half
+  ddct reproduce calibration --quick                  only check that the scenario is the optimum
+  ddct reproduce calibration --json -                 the result as JSON on standard output, alone
+  ddct reproduce calibration --write my_thesis.yaml   write the calibrated scenario
+  ddct reproduce calibration --ensemble DIR           search the admissible scenarios, two minutes
+  ddct reproduce calibration --predict DIR            only predict in those of DIR, half a minute
 
 The exit code is 1 when a residual is outside its tolerance (5 % of t_a, 10 % of a
 sigma), or when --quick finds that the frozen scenario is not the optimum."""

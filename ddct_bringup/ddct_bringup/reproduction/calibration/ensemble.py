@@ -67,7 +67,7 @@ def write_members(scenarios: list[Scenario], folder: Path) -> None:
         what = scenario.description
         head = (
             f'# An admissible scenario: {what[0].lower()}{what[1:]}.',
-            '# Written by `ros2 run ddct_bringup reproduce calibration --ensemble DIR`;'
+            '# Written by `ddct reproduce calibration --ensemble DIR`;'
             ' docs/predictions.md tells how.',
         )
         write_text(str(folder / f'{scenario.name}.yaml'), annotated_yaml(scenario, head))

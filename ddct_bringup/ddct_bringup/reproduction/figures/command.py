@@ -43,9 +43,9 @@ does not, and of the others why they are not drawn. With --only the page shows j
 those."""
 _EXAMPLES = """\
 examples:
-  reproduce figures --out figures
-  reproduce figures --out figures --only 2.10,3.5 --overwrite
-  reproduce figures --out figures --overwrite --write-doc docs/figures.md"""
+  ddct reproduce figures --out figures
+  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite
+  ddct reproduce figures --out figures --overwrite --write-doc docs/figures.md"""
 _PAGE = 'index.html'
 
 
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     drawn: dict[ThesisFigure, str] = {}
     for count, (figure, picture) in enumerate(zip(figures, pictures, strict=True), start=1):
         progress = f'{count}/{len(figures)} {figure.heading}'
-        print(f'reproduce figures: {progress}', file=sys.stderr, flush=True)
+        print(f'ddct reproduce figures: {progress}', file=sys.stderr, flush=True)
         with chart_style():
             chart, drawn[figure] = figure.draw()
             save_chart(chart, picture)

@@ -39,10 +39,10 @@ reproduced, erratum (the thesis's own numbers lead to another value), calibrated
 whose inputs are not printed)."""
 _EPILOG = """\
 examples:
-  reproduce numbers
-  reproduce numbers --json numbers.json
-  reproduce numbers --json -                  as JSON on standard output, alone
-  reproduce numbers --write-doc docs/thesis_gate.md
+  ddct reproduce numbers
+  ddct reproduce numbers --json numbers.json
+  ddct reproduce numbers --json -                  as JSON on standard output, alone
+  ddct reproduce numbers --write-doc docs/thesis_gate.md
 
 The exit code is 0 when every claim holds: what is called reproduced is within its
 tolerance, what is called calibrated is too or is listed as a miss, and every erratum
@@ -98,7 +98,7 @@ def compute(
 
 
 def _progress(name: str) -> None:
-    print(f'reproduce numbers: {name}', file=sys.stderr, flush=True)
+    print(f'ddct reproduce numbers: {name}', file=sys.stderr, flush=True)
 
 
 def _print(rows: Sequence[GateRow]) -> None:

@@ -47,7 +47,7 @@ class GateRow:
         return f'{verdict} {"hit" if self.hit else "miss"}'
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what `reproduce numbers --json` writes for it; what is not there is None."""
+        """Return what `ddct reproduce numbers --json` writes for it; what is not there is None."""
         number, value = self.number, self.computed
         return {
             'section': number.section,

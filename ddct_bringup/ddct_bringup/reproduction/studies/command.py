@@ -56,11 +56,11 @@ controllers in the frozen thesis scenario, each a table. Then every controller i
 every packaged scenario, judged, each table with a chart."""
 _EPILOG = """\
 examples:
-  reproduce studies                                every study
-  reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
-  reproduce studies --study wear --json wear.json
-  reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks
-  reproduce studies --write-doc docs/engagements.md --charts docs/images"""
+  ddct reproduce studies                                every study
+  ddct reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
+  ddct reproduce studies --study wear --json wear.json
+  ddct reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks
+  ddct reproduce studies --write-doc docs/engagements.md --charts docs/images"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -90,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
         raise DdctError(f'--charts {options.charts}: there is no such folder: make it first')
     studies: dict[str, Study] = {}
     for name in names:
-        print(f'reproduce studies: {name}', file=sys.stderr, flush=True)
+        print(f'ddct reproduce studies: {name}', file=sys.stderr, flush=True)
         studies[name] = STUDIES[name]()
         if options.json != STDOUT:
             _print(studies[name])

@@ -49,7 +49,7 @@ def test_quick_check_fails_for_a_scenario_that_is_not_the_optimum(monkeypatch, c
     monkeypatch.setattr(command, 'load_scenario', lambda name: other)
     assert reproduce.main(['calibration', '--quick']) == 1
     errors = capsys.readouterr().err.splitlines()
-    assert errors[-1].startswith('reproduce: scenario thesis is not the optimum')
+    assert errors[-1].startswith('ddct reproduce: scenario thesis is not the optimum')
 
 
 def test_json_on_standard_output_stands_alone(calibrated, capsys):
@@ -82,10 +82,11 @@ def test_ensemble_is_written_with_what_it_predicts_and_with_progress(
     for name, one in record['predictions'].items():
         assert one['members'] == {'member': one['frozen']}, name
     assert capsys.readouterr().err.splitlines() == [
-        'reproduce calibration: centre: score window to 1.7 s',
-        'reproduce calibration: predictions of thesis',
-        'reproduce calibration: predictions of member',
-        f'reproduce calibration: 1 admissible scenarios and predictions.json are in {tmp_path}',
+        'ddct reproduce calibration: centre: score window to 1.7 s',
+        'ddct reproduce calibration: predictions of thesis',
+        'ddct reproduce calibration: predictions of member',
+        'ddct reproduce calibration: 1 admissible scenarios and predictions.json are in '
+        f'{tmp_path}',
     ]
 
 
@@ -94,7 +95,7 @@ def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, cap
     monkeypatch.setattr(command, 'find_members', None)
     assert reproduce.main(['calibration', option, '/nowhere/folder']) == 1
     error = capsys.readouterr().err
-    assert error.startswith('reproduce: /nowhere/folder is no folder')
+    assert error.startswith('ddct reproduce: /nowhere/folder is no folder')
     assert len(error.splitlines()) == 1
 
 
@@ -119,7 +120,7 @@ def test_file_that_cannot_be_written_is_refused_before_the_work(monkeypatch, cap
     monkeypatch.setattr(command, 'calibrate', no_work)
     assert reproduce.main(['calibration', option, '/nowhere/file']) == 1
     error = capsys.readouterr().err
-    assert error.startswith('reproduce: ') and '/nowhere/file' in error
+    assert error.startswith('ddct reproduce: ') and '/nowhere/file' in error
     assert len(error.splitlines()) == 1
 
 

@@ -180,7 +180,7 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
         capsys.readouterr()
         assert run_command(*arguments) == 1
         (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith('reproduce: ')
+        assert line.startswith('ddct reproduce: ')
         return line
 
     return run

@@ -27,7 +27,7 @@ def test_without_options_every_study_is_printed_with_its_remarks(capsys):
     output = capsys.readouterr()
     assert output.out.index('The first') < output.out.index('Lower is better.')
     assert output.out.index('Lower is better.') < output.out.index('The second')
-    progress = ['reproduce studies: first', 'reproduce studies: second']
+    progress = ['ddct reproduce studies: first', 'ddct reproduce studies: second']
     assert output.err.splitlines() == progress
 
 
@@ -54,7 +54,7 @@ def test_page_decides_which_studies_are_made(capsys, tmp_path):
 def test_unknown_study_is_refused_before_the_work(capsys):
     assert reproduce.main(['studies', '--study', 'first', '--study', 'third']) == 1
     (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith('reproduce: ')
+    assert error.startswith('ddct reproduce: ')
     assert all(name in error for name in ('third', 'first', 'second'))
 
 

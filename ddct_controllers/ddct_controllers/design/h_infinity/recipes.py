@@ -51,7 +51,7 @@ RECIPES = {
     ),
 }
 """
-By the name that `design h-infinity --weights` takes, for the specifications of Section 3.2.
+By the name that `ddct design h-infinity --weights` takes, for the specifications of Section 3.2.
 
 Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
 first with one more on the torque, and hold and delay in the plant.

@@ -1,0 +1,79 @@
+"""Program `ddct`: starts any program of the installed packages, nodes too, by its name."""
+
+import ast
+import sys
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from itertools import groupby
+from pathlib import Path
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import close_name
+from ddct_plant.program.command_line import ProgramParser, run_program
+
+PROGRAM = 'ddct'
+GROUP = 'ddct.programs'
+"""The entry points of the programs: the packages' setup.py holds them."""
+
+_EXAMPLES = """\
+examples:
+  ddct compare --controllers pi,ls8 --out runs/first
+  ddct compare --help
+  ddct controller --ros-args -p controller:=ls8
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return the exit code of the one that it starts."""
+    return run_program(PROGRAM, _ddct, argv)
+
+
+def programs() -> dict[str, EntryPoint]:
+    """Return the programs by name; where a name is there twice, the first on Python's path."""
+    return {point.name: point for point in reversed(tuple(entry_points(group=GROUP)))}
+
+
+def _ddct(argv: list[str]) -> int:
+    known = programs()
+    if not argv or argv[0] not in known:
+        parser = ProgramParser(
+            prog=PROGRAM,
+            usage='%(prog)s PROGRAM [ARGUMENTS ...]',
+            description='Start a program. Its own --help says what it takes.\n\n'
+            + _listing(known),
+            epilog=_EXAMPLES,
+        )
+        parser.add_argument('program', metavar='PROGRAM', help='one of those above')
+        name = parser.parse_args(argv[:1]).program
+        parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
+    try:
+        program = known[argv[0]].load()
+    except ImportError as error:
+        raise DdctError(f'{argv[0]} cannot start: {error}: install what it needs') from error
+    sys.argv[1:] = argv[1:]
+    return program()
+
+
+def _listing(known: dict[str, EntryPoint]) -> str:
+    """Return a line per program, by package."""
+    points = sorted(known.values(), key=lambda point: (_package(point), point.name))
+    width = max((len(name) for name in known), default=0)
+    lines = []
+    for package, group in groupby(points, _package):
+        lines += [f'{package}:', *(f'  {each.name:{width}}  {_task(each)}' for each in group), '']
+    return '\n'.join(lines).rstrip()
+
+
+def _package(point: EntryPoint) -> str:
+    return point.module.partition('.')[0]
+
+
+def _task(point: EntryPoint) -> str:
+    """Return what the first line of the program's module says, read without importing it."""
+    try:
+        spec = find_spec(point.module)
+        source = Path(spec.origin).read_text(encoding='utf-8') if spec and spec.origin else ''
+        first, *_ = (ast.get_docstring(ast.parse(source)) or point.value).splitlines()
+    except (ImportError, OSError, SyntaxError, ValueError) as error:
+        return f'cannot be read: {error}'
+    return first.rpartition(f' `{point.name}`: ')[2]

@@ -1,0 +1,115 @@
+"""`ddct` starts every program by its name, and says which there are."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.programs import ddct
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ('ddct_bringup', 'ddct_controllers', 'ddct_plant', 'ddct_reference')
+
+
+def install_program(site: Path, code: str) -> None:
+    """Install the program `extra` of a third party into a folder of Python's path."""
+    record = site / 'extra-1.0.dist-info'
+    record.mkdir()
+    (site / 'extra_program.py').write_text(code)
+    (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: extra\nVersion: 1.0\n')
+    (record / 'entry_points.txt').write_text('[ddct.programs]\nextra = extra_program:main\n')
+
+
+def help_text(capsys: pytest.CaptureFixture[str]) -> str:
+    with pytest.raises(SystemExit) as end:
+        ddct.main(['--help'])
+    assert not end.value.code
+    return capsys.readouterr().out
+
+
+def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
+    text = help_text(capsys)
+    packages = re.findall(r'^(\w+):\n((?:  .*\n)+)', text, re.MULTILINE)
+    assert tuple(name for name, _ in packages if name.startswith('ddct_')) == PACKAGES
+    for name in ddct.programs():
+        (task,) = re.findall(rf'^  {name}  +(.*)', text, re.MULTILINE)
+        assert len(task.split()) >= 4 and 'cannot be read' not in task
+
+
+def test_the_readme_names_every_program() -> None:
+    page = (ROOT / 'README.md').read_text(encoding='utf-8').partition('| program |')[2]
+    rows = page.partition('\n\n')[0].splitlines()[2:]
+    named = {name for row in rows for name in re.findall(r'`([a-z-]+)`', row.split('|')[1])}
+    assert named == set(ddct.programs())
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'line'),
+    [
+        (['comparee'], 'unknown program comparee: did you mean compare?'),
+        ([], 'the following arguments are required: PROGRAM'),
+        (['--nothing'], 'the following arguments are required: PROGRAM'),
+    ],
+)
+def test_what_it_does_not_know_is_one_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        ddct.main(arguments)
+    assert end.value.code == 2
+    assert capsys.readouterr().err == f'ddct: {line}: see ddct --help\n'
+
+
+def test_it_hands_on_the_arguments_and_the_exit_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = '"""Do more."""\nimport sys\n\ndef main():\n    print(sys.argv[1:])\n    return 7\n'
+    install_program(tmp_path, code)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, 'argv', ['ddct', 'extra', '--help', '-x', '1'])
+    assert ddct.main() == 7
+    assert capsys.readouterr().out == "['--help', '-x', '1']\n"
+    assert '\n  extra       Do more.\n' in help_text(capsys)
+
+
+def test_a_program_that_cannot_be_imported_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    install_program(tmp_path, 'import nowhere\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'extra_program', raising=False)
+    assert ddct.main(['extra']) == 1
+    error = capsys.readouterr().err
+    assert error == "ddct: extra cannot start: No module named 'nowhere': install what it needs\n"
+
+
+def test_it_imports_nothing_heavy_itself() -> None:
+    code = (
+        'import sys; from ddct_bringup.programs.ddct import main\n'
+        'try: main(["--help"])\n'
+        'except SystemExit: print(sorted({"numpy", "rclpy", "scipy", "yaml"} & set(sys.modules)))'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+    )
+    assert done.stdout.splitlines()[-1] == '[]'
+
+
+def test_a_sourced_workspace_has_it_on_the_path() -> None:
+    prefix = Path(os.environ.get('COLCON_PREFIX_PATH', '').split(':')[0] or ROOT / 'install')
+    if not (prefix / 'setup.bash').exists():
+        pytest.skip('the workspace is not built: make setup')
+    done = subprocess.run(
+        ['bash', '-c', f'. {prefix}/setup.bash; command -v ddct; cd /; ddct load --help'],
+        env={'PATH': os.defpath, 'HOME': os.environ.get('HOME', '/')},
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[0].endswith('/bin/ddct')
+    assert 'usage: ddct load ' in done.stdout
