@@ -1,5 +1,7 @@
 """Linear feedback on the slip error: a discrete transfer function G_c(z) in state-space form."""
 
+import numpy as np
+
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import (
     UNSTATED,
@@ -8,30 +10,58 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
+from ddct_plant.base.checks import require_choice
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+
+HOLD, BILINEAR = 'hold', 'bilinear'
+"""Zero-order hold as the thesis's `c2d`, or z = (1 + s T/2) / (1 - s T/2), both at 10 ms."""
+Given = FactoredTransferFunction | StateSpace
+"""A linear system as its author wrote it."""
+
+
+def sampled(controller: Given, discretisation: str | None = None) -> StateSpace:
+    """
+    Return G_c(z) at 10 ms of a continuous G_c(s); one that is sampled so is returned as it is.
+
+    HOLD, the default for a transfer function, gives the printed G_c(z) (Sections 2.2, 3.2).
+    BILINEAR keeps the phase of a design that had hold and delay in its plant. Raise ParameterError
+    for more than one input or output, another period, a continuous state space without a
+    discretisation, an improper transfer function or, with BILINEAR, a pole at 2/T.
+    """
+    if isinstance(controller, FactoredTransferFunction):
+        controller, discretisation = controller.to_state_space(), discretisation or HOLD
+    if discretisation is not None:
+        require_choice('discretisation', discretisation, (HOLD, BILINEAR))
+    periods = (PERIOD_S,) if discretisation is None else (PERIOD_S, None)
+    if controller.period_s not in periods or controller.d.shape != (1, 1):
+        raise ParameterError(
+            f'linear controller: a state space must have one input, one output and a period '
+            f'of {PERIOD_S} s'
+        )
+    if controller.period_s is not None:
+        return controller
+    if discretisation == HOLD:
+        return discretise_zoh(controller, PERIOD_S)
+    try:
+        return from_w_plane(controller)
+    except np.linalg.LinAlgError as error:
+        raise ParameterError(
+            f'linear controller: it has a pole at {2.0 / PERIOD_S:g} rad/s, for which '
+            f'{BILINEAR} has no value: move it, or choose {HOLD}'
+        ) from error
 
 
 class LinearController(Controller):
-    """
-    u = G_c e with e in rpm and u in N m, sampled at 10 ms.
+    """u = G_c e with e in rpm and u in N m, sampled at 10 ms."""
 
-    A continuous G_c(s) is discretised by zero-order hold, which is what the thesis's `c2d` uses:
-    it gives the printed G_c(z) (Sections 2.2, 3.2).
-    """
-
-    def __init__(self, controller: FactoredTransferFunction | StateSpace) -> None:
-        """Discretise G_c(s), or take G_c(z); raise ParameterError when it is neither."""
-        if isinstance(controller, FactoredTransferFunction):
-            controller = discretise_zoh(controller.to_state_space(), PERIOD_S)
-        elif controller.period_s != PERIOD_S or controller.d.shape != (1, 1):
-            raise ParameterError(
-                f'linear controller: a state space must have one input, one output and a period '
-                f'of {PERIOD_S} s'
-            )
-        self._model = controller
+    def __init__(self, controller: Given, discretisation: str | None = None) -> None:
+        """Discretise G_c(s), or take G_c(z); raise ParameterError as `sampled` does."""
+        self._model = sampled(controller, discretisation)
         self._filter = DiscreteFilter(self._model)
+        self.given, self.discretisation = controller, discretisation
 
     def reset(self) -> None:
         """Set the state to zero."""
@@ -48,8 +78,11 @@ class LinearController(Controller):
 
 def linear_spec(
     name: str,
-    controller: FactoredTransferFunction | StateSpace,
+    controller: Given,
+    discretisation: str | None = None,
     computed_from: str = UNSTATED,
 ) -> ControllerSpec[Controller]:
     """Return how the linear controller called `name`, which takes no options, is made."""
-    return ControllerSpec(name, lambda context: LinearController(controller), {}, computed_from)
+    return ControllerSpec(
+        name, lambda context: LinearController(controller, discretisation), {}, computed_from
+    )

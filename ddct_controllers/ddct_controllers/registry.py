@@ -77,7 +77,10 @@ def _in_file(file: str) -> ControllerSpec[Controller]:
 
 
 def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
-    printed = {name: linear_spec(name, g_c, THESIS) for name, g_c in PRINTED_CONTROLLERS.items()}
+    printed = {
+        name: linear_spec(name, g_c, computed_from=THESIS)
+        for name, g_c in PRINTED_CONTROLLERS.items()
+    }
     synthesised = {
         name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED
     }

@@ -12,11 +12,8 @@ from scipy.linalg import eigvals
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
-_REAL = 1e-9
-"""Imaginary part, relative to the magnitude, below which a root counts as real."""
 _FAR = 1e8
 """Generalised eigenvalues beyond this, relative to the largest pole, are zeros at infinity."""
 
@@ -110,7 +107,7 @@ def factored_form(system: StateSpace) -> FactoredTransferFunction:
     resolvent = np.linalg.solve(point * np.eye(len(system.a)) - system.a, system.b)
     value = float((system.c @ resolvent + system.d)[0, 0])
     gain = value * float((np.prod(point - poles) / np.prod(point - zeros)).real)
-    return FactoredTransferFunction(gain, _factors(zeros), _factors(poles))
+    return FactoredTransferFunction.from_roots(gain, zeros, poles)
 
 
 def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTransferFunction:
@@ -153,14 +150,3 @@ def _zeros(system: StateSpace, far: float) -> np.ndarray:
     with np.errstate(divide='ignore', invalid='ignore'):
         found = eigvals(pencil, mass)
     return found[np.isfinite(found) & (np.abs(found) < far)]
-
-
-def _factors(roots: np.ndarray) -> tuple[Factor, ...]:
-    """Return real roots as numbers a, slow to fast, then pairs as (b, c) in the same order."""
-    real = np.abs(roots.imag) <= _REAL * np.abs(roots)
-    singles = sorted(0.0 - roots[real].real, key=abs)
-    upper = sorted(roots[~real & (roots.imag > 0.0)], key=abs)
-    return (
-        *(float(a) for a in singles),
-        *((float(-2.0 * root.real), float(abs(root) ** 2)) for root in upper),
-    )

@@ -1,4 +1,4 @@
-"""Linear controllers that live in a file: what `design` writes and `--controller FILE` reads."""
+"""What `design` writes: a continuous linear controller and where it comes from, as a file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,27 +6,17 @@ from typing import Any
 
 from ddct_controllers.from_file.controller_file import (
     FORMAT,
-    ControllerFile,
-    mapping,
     read_controller_file,
     require_name,
 )
-from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.linear import linear_spec
-from ddct_plant.base.checks import require_choice
+from ddct_controllers.from_file.transfer_functions import FACTORED, FREQUENCY, UNITS, linear_in
+from ddct_controllers.linear import HOLD, sampled
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.files.yaml_text import dump_yaml
-from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.cascade import Factor
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
-KIND = 'transfer_function'
-UNITS = {'input': 'rpm', 'output': 'N m', 'frequency': 'rad/s'}
-"""Of the slip error, the clutch torque, and zeros and poles; nothing else is accepted."""
 _FACTORS = ('numerator', 'denominator')
-HOLD, BILINEAR = 'hold', 'bilinear'
-"""Zero-order hold as the thesis's `c2d`, or z = (1 + s T/2) / (1 - s T/2), both at 10 ms."""
 
 
 @dataclass(frozen=True)
@@ -44,24 +34,20 @@ class DesignedController:
     def __post_init__(self) -> None:
         """Check name, properness and choice; raise ParameterError that names what is wrong."""
         require_name(self.name)
-        require_choice('discretisation', self.discretisation, (HOLD, BILINEAR))
-        self.transfer_function.to_state_space()
+        self.sampled()
 
     def sampled(self) -> StateSpace:
         """Return G_c(z) at 10 ms."""
-        realised = self.transfer_function.to_state_space()
-        if self.discretisation == BILINEAR:
-            return from_w_plane(realised)
-        return discretise_zoh(realised, PERIOD_S)
+        return sampled(self.transfer_function, self.discretisation)
 
     def to_yaml(self) -> str:
         """Return the text that `load_designed` reads back to the same controller, to the bit."""
         content = {
             'format': FORMAT,
             'name': self.name,
-            'units': UNITS,
+            'units': {**UNITS, **FREQUENCY},
             **({} if self.discretisation == HOLD else {'discretisation': self.discretisation}),
-            KIND: {
+            FACTORED: {
                 'gain': float(self.transfer_function.gain),
                 **{
                     key: [_plain(factor) for factor in getattr(self.transfer_function, key)]
@@ -74,45 +60,14 @@ class DesignedController:
 
 
 def load_designed(file: str) -> DesignedController:
-    """Read a controller; raise DdctError or ParameterError that names file, key and remedy."""
+    """Read what `design` wrote; raise DdctError that names file, key and remedy."""
     source = read_controller_file(file)
     with source.located():
-        return _designed(source)
-
-
-def designed_spec(file: ControllerFile) -> ControllerSpec[Controller]:
-    """Return the controller behind `transfer_function`, the factored form of the thesis."""
-    designed = _designed(file)
-    return linear_spec(designed.name, designed.sampled())
-
-
-def _designed(file: ControllerFile) -> DesignedController:
-    content = file.keys(KIND, ('format', 'units'), ('discretisation',))
-    require_units(content['units'])
-    parts = mapping(KIND, content[KIND], ('gain', *_FACTORS))
-    function = FactoredTransferFunction(
-        parts['gain'], *(_factors(f'{KIND}.{key}', parts[key]) for key in _FACTORS)
-    )
-    discretisation = content.get('discretisation', HOLD)
-    provenance = content.get('provenance') or {}
-    return DesignedController(content['name'], function, provenance, discretisation)
-
-
-def require_units(units: Any) -> None:
-    """Raise ParameterError unless the file states the units that the program has."""
-    if units != UNITS:
-        raise ParameterError(f'units are {units!r}: convert the controller to {UNITS}')
-
-
-def _factors(name: str, content: Any) -> tuple[Factor, ...]:
-    if not isinstance(content, list):
-        raise ParameterError(f'{name} is {content!r}: give a list, such as [0.0, [5.3, 339.4]]')
-    for factor in content:
-        if isinstance(factor, list) and len(factor) != 2:
-            raise ParameterError(
-                f'{name}: {factor} is no factor: write a for (s + a), [b, c] for (s^2 + b s + c)'
-            )
-    return tuple(tuple(factor) if isinstance(factor, list) else factor for factor in content)
+        function, discretisation = linear_in(source, FACTORED)
+        if not isinstance(function, FactoredTransferFunction):
+            raise ParameterError('sample_time_s is given: a design is continuous')
+        provenance = source.content.get('provenance') or {}
+        return DesignedController(source.name, function, provenance, discretisation)
 
 
 def _plain(factor: Factor) -> float | list[float]:

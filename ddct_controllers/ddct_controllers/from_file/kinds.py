@@ -8,7 +8,7 @@ from ddct_controllers.from_file.controller_file import (
     mapping,
     read_controller_file,
 )
-from ddct_controllers.from_file.designed import designed_spec
+from ddct_controllers.from_file.transfer_functions import LINEAR
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 
@@ -20,7 +20,7 @@ Errors name the key first, as `polynomial.den[2] is nan: ...`; `located` adds fi
 is slow, such as loading a library, is left to `ControllerSpec.make`, inside of `located` too.
 """
 KINDS: Mapping[str, Loader] = {
-    'transfer_function': designed_spec,
+    **LINEAR,
 }
 """By the key that a file of the kind has."""
 

@@ -19,7 +19,8 @@ from ddct_controllers.design.h_infinity.report import (
 )
 from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_controllers.from_file.designed import BILINEAR, HOLD, DesignedController
+from ddct_controllers.from_file.designed import DesignedController
+from ddct_controllers.linear import BILINEAR, HOLD
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_controllers.workflows.design_output import (

@@ -23,12 +23,12 @@ CHOICES = ', '.join(KINDS)
             f"line 2: 'transfer_funktion' is no kind of controller: give one of {CHOICES}",
         ),
         (
-            'name: mine\ntransfer_function: {gain: 1}\n',
-            'the file: key format is missing',
+            'name: mine\npolynomial: {}\nstate_space: {}\n',
+            f'line 3: state_space beside polynomial: keep one of {CHOICES}',
         ),
     ],
 )
-def test_a_file_of_no_kind_says_the_line_and_the_choices(tmp_path, text, complaint):
+def test_a_file_of_none_or_two_kinds_says_the_line_and_the_choices(tmp_path, text, complaint):
     path = tmp_path / 'mine.yaml'
     path.write_text(text)
     with pytest.raises(ParameterError, match=re.escape(f'controller file {path}: {complaint}')):

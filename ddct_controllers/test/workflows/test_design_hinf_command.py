@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.h_infinity.weights import WeightError
-from ddct_controllers.from_file.designed import BILINEAR, DesignedController, load_designed
+from ddct_controllers.from_file.designed import DesignedController, load_designed
+from ddct_controllers.linear import BILINEAR
 from ddct_controllers.registry import make_controller
 from ddct_controllers.synthesised import synthesised_controller
 from ddct_controllers.workflows.design_program import main

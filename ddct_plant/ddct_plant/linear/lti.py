@@ -10,6 +10,11 @@ from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.cascade import Factor, realise_cascade
 
+_REAL = 1e-9
+"""Imaginary part, relative to the magnitude, below which a root counts as real."""
+_PAIRED = 1e-6
+"""How far, relative to the magnitude, a root may be from the conjugate of another."""
+
 
 @dataclass(frozen=True, eq=False)
 class StateSpace:
@@ -68,6 +73,33 @@ class FactoredTransferFunction:
             for number in factor if isinstance(factor, tuple) else (factor,):
                 require_number('transfer function: a coefficient', number)
 
+    @classmethod
+    def from_roots(
+        cls, gain: float, zeros: ArrayLike, poles: ArrayLike
+    ) -> 'FactoredTransferFunction':
+        """
+        Return gain times a product of (s - zero), over that of (s - pole), all complex, in rad/s.
+
+        Raise ParameterError for a complex root whose conjugate is not there too.
+        """
+        return cls(gain, _factors('zeros', zeros), _factors('poles', poles))
+
+    @classmethod
+    def from_polynomials(
+        cls, numerator: ArrayLike, denominator: ArrayLike
+    ) -> 'FactoredTransferFunction':
+        """
+        Return a ratio of polynomials, each with its highest power first.
+
+        Raise ParameterError for one of zeros alone.
+        """
+        sides = {'numerator': numerator, 'denominator': denominator}
+        num, den = (np.trim_zeros(np.asarray(side, dtype=float), 'f') for side in sides.values())
+        for name, side in zip(sides, (num, den), strict=True):
+            if not len(side):
+                raise ParameterError(f'transfer function: its {name} is zero')
+        return cls.from_roots(float(num[0] / den[0]), np.roots(num), np.roots(den))
+
     @property
     def zeros(self) -> np.ndarray:
         """(number of zeros,) complex, in rad/s."""
@@ -108,6 +140,24 @@ def _product(factors: Sequence[Factor], s: np.ndarray) -> np.ndarray:
         else:
             product = product * (s + factor)
     return product
+
+
+def _factors(name: str, roots: ArrayLike) -> tuple[Factor, ...]:
+    """Return real roots as numbers a, slow to fast, then pairs as (b, c) in the same order."""
+    roots = np.asarray(roots, dtype=complex)
+    real = np.abs(roots.imag) <= _REAL * np.abs(roots)
+    singles = sorted(0.0 - roots[real].real, key=abs)
+    upper = sorted(roots[~real & (roots.imag > 0.0)], key=abs)
+    lower = roots[~real & (roots.imag < 0.0)]
+    far = [root for root in upper if np.all(np.abs(lower.conj() - root) > _PAIRED * abs(root))]
+    if far or len(upper) != len(lower):
+        raise ParameterError(
+            f'transfer function: its {name} {roots.tolist()} are not in conjugate pairs'
+        )
+    return (
+        *(float(a) for a in singles),
+        *((float(-2.0 * root.real), float(abs(root) ** 2)) for root in upper),
+    )
 
 
 def _roots(factors: Sequence[Factor]) -> np.ndarray:

@@ -1,0 +1,174 @@
+"""Linear controllers in a file: a transfer function in one of four forms, in s or in z."""
+
+import cmath
+import dataclasses
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ddct_controllers.from_file.controller_file import ControllerFile, mapping
+from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.linear import BILINEAR, HOLD, Given, linear_spec, sampled
+from ddct_plant.base.checks import require_choice, require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.files.yaml_text import line_of
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+
+FACTORED = 'transfer_function'
+UNITS = {'input': 'rpm', 'output': 'N m'}
+"""Of the slip error and the clutch torque; nothing else is accepted."""
+FREQUENCY = {'frequency': 'rad/s'}
+"""Of zeros and poles, which a file may state too."""
+
+
+def linear_in(file: ControllerFile, kind: str) -> tuple[Given, str]:
+    """
+    Return the system in a file of `kind`, and how it is discretised if it is continuous.
+
+    Raise ParameterError for what cannot run, an improper G_c included.
+    """
+    content = file.keys(kind, ('units',), ('discretisation', 'sample_time_s'))
+    if content['units'] not in (UNITS, {**UNITS, **FREQUENCY}):
+        raise ParameterError(f'units are {content["units"]!r}: convert the controller to {UNITS}')
+    discretisation = content.get('discretisation', HOLD)
+    require_choice('discretisation', discretisation, (HOLD, BILINEAR))
+    _require_period(content)
+    try:
+        given = FORMS[kind](kind, content[kind])
+        if 'sample_time_s' in content:
+            form = given if isinstance(given, StateSpace) else given.to_state_space()
+            given = dataclasses.replace(form, period_s=PERIOD_S)
+        sampled(given, discretisation)
+    except ParameterError as error:
+        at = '' if line_of(str(error), file.lines) else f'{kind}: '
+        raise ParameterError(f'{at}{error}') from error
+    return given, discretisation
+
+
+def _require_period(content: Mapping[str, Any]) -> None:
+    if 'sample_time_s' not in content:
+        return
+    period_s = require_number('sample_time_s', content['sample_time_s'], unit='s')
+    if period_s != PERIOD_S:
+        raise ParameterError(
+            f'sample_time_s is {period_s:g} s, the loop runs at {PERIOD_S:g} s: sample the '
+            'controller at that, or give it continuous, without this key'
+        )
+    if 'discretisation' in content:
+        raise ParameterError(
+            'discretisation is for a continuous controller, and sample_time_s says that this '
+            'one is sampled: drop one of them'
+        )
+
+
+def _linear_spec(kind: str, file: ControllerFile) -> ControllerSpec[Controller]:
+    given, discretisation = linear_in(file, kind)
+    return linear_spec(file.name, given, discretisation)
+
+
+def _factored(path: str, content: Any) -> FactoredTransferFunction:
+    """Read numbers a as (s + a), and pairs [b, c] as (s^2 + b s + c)."""
+    parts = mapping(path, content, ('gain', 'numerator', 'denominator'))
+    numerator, denominator = (
+        tuple(
+            _factor(*item) for item in _items(f'{path}.{key}', parts[key], '[0.0, [5.3, 339.4]]')
+        )
+        for key in ('numerator', 'denominator')
+    )
+    gain = require_number(f'{path}.gain', parts['gain'])
+    return FactoredTransferFunction(gain, numerator, denominator)
+
+
+def _factor(path: str, content: Any) -> Factor:
+    if not isinstance(content, list):
+        return require_number(f'{path}: a coefficient', content)
+    if len(content) != 2:
+        raise ParameterError(
+            f'{path}: {content} is no factor: write a for (s + a), [b, c] for (s^2 + b s + c)'
+        )
+    b, c = (require_number(f'{path}: a coefficient', value) for value in content)
+    return b, c
+
+
+def _polynomial(path: str, content: Any) -> FactoredTransferFunction:
+    """Read coefficients with the highest power first, as scipy.signal and MATLAB have them."""
+    parts = mapping(path, content, ('num', 'den'))
+    num, den = (
+        [require_number(*item) for item in _items(f'{path}.{key}', parts[key], '[1.0, 5.3]')]
+        for key in ('num', 'den')
+    )
+    return FactoredTransferFunction.from_polynomials(num, den)
+
+
+def _zeros_poles_gain(path: str, content: Any) -> FactoredTransferFunction:
+    parts = mapping(path, content, ('zeros', 'poles', 'gain'))
+    zeros, poles = (
+        [_root(*item) for item in _items(f'{path}.{key}', parts[key], '[-0.8, -2.7+18.2j]')]
+        for key in ('zeros', 'poles')
+    )
+    gain = require_number(f'{path}.gain', parts['gain'])
+    return FactoredTransferFunction.from_roots(gain, zeros, poles)
+
+
+def _root(path: str, content: Any) -> complex:
+    if not isinstance(content, str):
+        return complex(require_number(path, content))
+    try:
+        root = complex(content.replace(' ', '').replace('i', 'j'))
+    except ValueError as error:
+        raise ParameterError(
+            f'{path} is {content!r}: give a number such as -0.8 or -2.7+18.2j'
+        ) from error
+    if not cmath.isfinite(root):
+        raise ParameterError(f'{path} is {root}: give a finite number')
+    return root
+
+
+def _state_space(path: str, content: Any) -> StateSpace:
+    """Read `a` row by row; in `b`, `c` and `d` brackets around single numbers may be missing."""
+    parts = mapping(path, content, ('a', 'b', 'c', 'd'))
+    rows = [row for _, row in _items(f'{path}.a', parts['a'], '[[-1.0, 0.0], [2.0, 3.0]]')]
+    states = len(rows)
+    if any(not isinstance(row, list) or len(row) != states for row in rows):
+        raise ParameterError(f'{path}.a: give as many rows as columns, each row a list')
+    sizes = {'a': (states, states), 'b': (states, 1), 'c': (1, states), 'd': (1, 1)}
+    a, b, c, d = (_matrix(f'{path}.{key}', parts[key], *size) for key, size in sizes.items())
+    return StateSpace(a, b, c, d)
+
+
+def _matrix(path: str, content: Any, rows: int, columns: int) -> np.ndarray:
+    entries = _entries(path, content)
+    if len(entries) != rows * columns:
+        raise ParameterError(
+            f'{path} has {len(entries)} numbers: with the states of a, one input and one output '
+            f'it must be {rows} x {columns}'
+        )
+    return np.reshape(entries, (rows, columns))
+
+
+def _entries(path: str, content: Any) -> list[float]:
+    if not isinstance(content, list):
+        return [require_number(path, content)]
+    return [entry for i, item in enumerate(content) for entry in _entries(f'{path}[{i}]', item)]
+
+
+def _items(path: str, content: Any, example: str) -> list[tuple[str, Any]]:
+    """Return the items of a list, each behind its path."""
+    if not isinstance(content, list):
+        raise ParameterError(f'{path} is {content!r}: give a list, such as {example}')
+    return [(f'{path}[{i}]', item) for i, item in enumerate(content)]
+
+
+FORMS: Mapping[str, Callable[[str, Any], Given]] = {
+    FACTORED: _factored,
+    'polynomial': _polynomial,
+    'zeros_poles_gain': _zeros_poles_gain,
+    'state_space': _state_space,
+}
+"""By the key in the file; each takes that key and what stands there."""
+LINEAR = {kind: partial(_linear_spec, kind) for kind in FORMS}
+"""The loaders of these kinds."""
