@@ -1,5 +1,7 @@
 """Linear feedback on the slip error: a discrete transfer function G_c(z) in state-space form."""
 
+import dataclasses
+
 import numpy as np
 
 from ddct_controllers.discrete_filter import DiscreteFilter
@@ -52,6 +54,13 @@ def sampled(controller: Given, discretisation: str | None = None) -> StateSpace:
             f'linear controller: it has a pole at {2.0 / PERIOD_S:g} rad/s, for which '
             f'{BILINEAR} has no value: move it, or choose {HOLD}'
         ) from error
+
+
+def in_z(form: Given) -> StateSpace:
+    """Return G_c(z) at 10 ms of a form whose variable is z already."""
+    if isinstance(form, FactoredTransferFunction):
+        form = form.to_state_space()
+    return dataclasses.replace(form, period_s=PERIOD_S)
 
 
 class LinearController(Controller):

@@ -16,6 +16,7 @@ from ddct_bringup.run.description import custom_data, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_timing import RunTiming
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.stop_signals import stop_signals
@@ -29,10 +30,11 @@ def run_with_progress(
     plan: RunPlan, folder: Path, label: str = '', live: LiveView | None = None
 ) -> None:
     """
-    Carry out `plan` into `folder`, saying what runs and how fast it went.
+    Carry out `plan` into `folder`, saying what runs, if its loop is stable, and how fast it went.
 
     Raise DdctError when the run does not end well, KeyboardInterrupt after SIGINT or SIGTERM.
     """
+    _tell_of_the_loop(plan)
     scenario = plan.settings.scenario
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.monotonic()
@@ -72,6 +74,17 @@ def execute(
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
+
+
+def _tell_of_the_loop(plan: RunPlan) -> None:
+    """Say on standard error what a controller's file holds: its reader may have meant another."""
+    if not is_controller_file(plan.controller):
+        return
+    # Only here: scipy's searches take long to import.
+    from ddct_controllers.workflows.loop_summary import loop_summary
+
+    for line in loop_summary(plan.controller, plan.settings):
+        print(line, file=sys.stderr, flush=True)
 
 
 def kept_logs(folder: Path) -> list[Path]:

@@ -53,6 +53,9 @@ def test_compare_scores_it_beside_the_others(file, tmp_path, capsys):
     ls8, mine = json.loads((out / 'scores.json').read_text(encoding='utf-8'))['runs']
     assert (mine['controller'], mine['bag']) == ('mine', 'mine')
     assert mine['metrics']['engagement_time_s'] == ls8['metrics']['engagement_time_s']
+    told = capsys.readouterr().err
+    assert 'ls8: G_c(s)' not in told
+    assert 0 < told.index('mine: G_c(s) = ') < told.index('2 of 2, mine: ')
     evidence = json.loads((out / 'frequency.json').read_text(encoding='utf-8'))
     assert [entry['controller'] for entry in evidence['controllers']] == ['ls8', 'mine']
 

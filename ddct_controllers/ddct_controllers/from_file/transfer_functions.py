@@ -1,7 +1,6 @@
 """Linear controllers in a file: a transfer function in one of four forms, in s or in z."""
 
 import cmath
-import dataclasses
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -10,7 +9,7 @@ import numpy as np
 
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.linear import BILINEAR, HOLD, Given, linear_spec, sampled
+from ddct_controllers.linear import BILINEAR, HOLD, Given, in_z, linear_spec, sampled
 from ddct_plant.base.checks import require_choice, require_number
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
@@ -40,8 +39,7 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[Given, str]:
     try:
         given = FORMS[kind](kind, content[kind])
         if 'sample_time_s' in content:
-            form = given if isinstance(given, StateSpace) else given.to_state_space()
-            given = dataclasses.replace(form, period_s=PERIOD_S)
+            given = in_z(given)
         sampled(given, discretisation)
     except ParameterError as error:
         at = '' if line_of(str(error), file.lines) else f'{kind}: '

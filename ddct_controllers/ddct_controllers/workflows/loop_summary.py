@@ -1,0 +1,80 @@
+"""What a linear controller in a file is, and whether its loop is stable, told before it runs."""
+
+from collections.abc import Sequence
+
+from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
+from ddct_controllers.design.state_space import factored_form, scaled
+from ddct_controllers.linear import BILINEAR, LinearController
+from ddct_controllers.registry import controller_label, make_controller
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.cascade import Factor
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.program.table import text_or_dash
+from ddct_plant.scenario.settings import RunSettings
+
+_MARGINS = (
+    ('gain margin', 'gain_margin_db', '.1f', 'dB'),
+    ('phase margin', 'phase_margin_deg', '.0f', 'deg'),
+    ('delay margin', 'delay_margin_s', '.3f', 's'),
+)
+"""Words, key of `LoopMargins`, format and unit."""
+
+
+def loop_summary(name: str, settings: RunSettings) -> list[str]:
+    """Return lines for a terminal on the controller called `name`; none unless it is linear."""
+    controller = make_controller(name, settings)
+    if not isinstance(controller, LinearController):
+        return []
+    model, label = controller.linear_model(), controller_label(name)
+    lines = [f'{label}: G_c(z) = {formula(factored_form(model), "z")}']
+    given = controller.given
+    if isinstance(given, FactoredTransferFunction) or given.period_s is None:
+        factored = given if isinstance(given, FactoredTransferFunction) else factored_form(given)
+        way = 'bilinear rule' if controller.discretisation == BILINEAR else 'zero-order hold'
+        lines.insert(0, f'{label}: G_c(s) = {formula(factored, "s")}')
+        lines[1] += f', by {way}'
+    lines[-1] += f', every {1e3 * PERIOD_S:g} ms, from slip error in rpm to torque in N m'
+    return [*lines, f'{label}: {_stability(model, settings)}']
+
+
+def _stability(model: StateSpace, settings: RunSettings) -> str:
+    driveline, wear_gain = settings.scenario.driveline, settings.wear_gain
+    loop = sampled_loop(model, driveline, wear_gain)
+    where = f'the sampled loop with its hold and delay, at wear gain {wear_gain:g},'
+    if outside := unstable_poles(loop):
+        turned = sampled_loop(scaled(model, -1.0), driveline, wear_gain)
+        hint = '' if unstable_poles(turned) else '; -G_c is stable: is the sign wrong?'
+        count = 'pole' if outside == 1 else 'poles'
+        return (
+            f'UNSTABLE: {where} has {outside} {count} on or outside the unit circle{hint} '
+            '(the run goes on)'
+        )
+    margins = loop_margins(loop).plain()
+    told = (
+        f'{words} {text_or_dash(margins[key], form)} {unit}' for words, key, form, unit in _MARGINS
+    )
+    return f'{where} is stable: {", ".join(told)}'
+
+
+def formula(function: FactoredTransferFunction, variable: str) -> str:
+    """Return a transfer function as a reader writes it."""
+    gain = f'{function.gain:.6g}'
+    numerator, denominator = (
+        _product(side, variable) for side in (function.numerator, function.denominator)
+    )
+    above = f'{gain} {numerator}'.rstrip()
+    several = len(function.denominator) > 1
+    return f'{above} / {f"[{denominator}]" if several else denominator}' if denominator else above
+
+
+def _product(factors: Sequence[Factor], variable: str) -> str:
+    return ' '.join(_factor(factor, variable) for factor in factors)
+
+
+def _factor(factor: Factor, variable: str) -> str:
+    if isinstance(factor, tuple):
+        linear, constant = (f'{abs(x):.6g}' for x in factor)
+        signs = ['-' if x < 0.0 else '+' for x in factor]
+        return f'({variable}^2 {signs[0]} {linear} {variable} {signs[1]} {constant})'
+    return f'({variable} {"-" if factor < 0.0 else "+"} {abs(factor):.6g})' if factor else variable
