@@ -11,6 +11,7 @@ from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_plant.base.checks import require_finite
 from ddct_plant.base.errors import DdctError, ForeignError
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
@@ -61,7 +62,7 @@ class Architecture:
 
     def update(self, measurement: Measurement) -> TorqueRequest:
         """Return the request for the period that starts at the measurement's step."""
-        load_torque = self._load.torque(measurement.vehicle_speed)
+        load_torque = self._load.torque(measurement.vehicle_speed, time_of_step(measurement.step))
         open_loop = self._open_loop(measurement, load_torque)
         on = measurement.step >= self._start_step
         closing: Status = ()
@@ -172,7 +173,7 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     return Architecture(
         _make_open_loop(settings, static),
-        RoadLoad(scenario.load, scenario.vehicle),
+        RoadLoad(scenario.load, scenario.vehicle, scenario.slope),
         controller,
         scenario.control_start_step if settings.detailed else 0,
         ClosingStage(scenario.closing, static) if scenario.closing else None,

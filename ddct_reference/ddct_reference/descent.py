@@ -1,14 +1,17 @@
-"""How a slip reference runs from its value at control start to zero."""
+"""How a slip reference runs from control start on, most of them to zero."""
 
 import math
 from abc import ABC, abstractmethod
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.scenario.slip_profile import SlipProfile
 
 TANH_STEEPNESS = 3.0
 """kappa of the tanh; its end slopes, kappa sech^2 kappa / tanh kappa, are 3 % of the mean."""
 
 
 class Descent(ABC):
-    """A function of time that starts at any value, reaches zero and stays there."""
+    """A function of time; but for a given profile it starts at any value and ends at zero."""
 
     @abstractmethod
     def at(self, start: float, time_s: float) -> tuple[float, float]:
@@ -80,3 +83,18 @@ class PolynomialDescent(_TimedDescent):
 
     def _shape(self, x: float) -> tuple[float, float]:
         return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)
+
+
+class ProfileDescent(Descent):
+    """The slip speed that the scenario gives over time, whatever it is at control start."""
+
+    def __init__(self, profile: SlipProfile, start_s: float) -> None:
+        """Take the profile, and the scenario time of control start."""
+        self._profile = profile
+        self._start_s = start_s
+
+    def at(self, start: float, time_s: float) -> tuple[float, float]:
+        """Return the profile's value and its mean rate over the coming period."""
+        time = self._start_s + time_s
+        value = self._profile.at(time)
+        return value, (self._profile.at(time + PERIOD_S) - value) / PERIOD_S

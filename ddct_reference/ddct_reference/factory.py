@@ -1,9 +1,15 @@
 """The slip reference that a run's scenario and architecture ask for."""
 
 from ddct_plant.base.timebase import PERIOD_S, steps_in
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.settings import RunSettings
-from ddct_reference.descent import CrfRamp, Descent, PolynomialDescent, TanhDescent
+from ddct_reference.descent import (
+    CrfRamp,
+    Descent,
+    PolynomialDescent,
+    ProfileDescent,
+    TanhDescent,
+)
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.nominal_slip import nominal_slip
 from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference
@@ -34,6 +40,9 @@ def _make_descent(settings: RunSettings) -> Descent:
     reference = settings.scenario.reference
     if settings.reference_shape == 'ramp':
         return CrfRamp(reference.slope_rad_s2)
+    if settings.reference_shape == PROFILE:
+        scenario = settings.scenario
+        return ProfileDescent(scenario.slip_reference, scenario.control_start_s)
     shapes = {'tanh': TanhDescent, 'polynomial': PolynomialDescent}
     end_step = steps_in('reference.reference_end_s', reference.reference_end_s)
     return shapes[settings.reference_shape](

@@ -1,5 +1,6 @@
 """Slip speed before control starts of the nominal detailed run: a clutch without wear."""
 
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import Driveline
@@ -21,7 +22,8 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     settings = RunSettings(scenario, architecture='detailed')
     initial = initial_state(settings)
     driveline = Driveline(scenario.driveline, scenario.vehicle, initial)
-    engine, load = make_engine(settings), RoadLoad(scenario.load, scenario.vehicle)
+    engine = make_engine(settings)
+    load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     actuator, clutch = Actuator(initial.torque_request), LinearClutch()
     now = driveline.outputs()
@@ -29,7 +31,7 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     for step in range(scenario.control_start_step):
         engine_speed, shaft_speed = now.joint_speed[:2]
         engine_torque = engine.torque(step, speed=engine_speed)
-        load_torque = load.torque(now.vehicle_speed)
+        load_torque = load.torque(now.vehicle_speed, time_of_step(step))
         request = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
         transmitted = clutch.transmit(actuator.update(request))
         driveline.step(engine_torque, load_torque, transmitted)

@@ -133,7 +133,7 @@ class ClosedLoop:
             'vehicle_accel': now.vehicle_accel,
             'torque_demand': demand,
             'engine_torque': engine_torque,
-            'load_torque': self._load.torque(now.vehicle_speed),
+            'load_torque': self._load.torque(now.vehicle_speed, time_of_step(step)),
             'slip_reference': speeds,
             'slip_reference_rate': rates,
             'torque_request': request.torque,

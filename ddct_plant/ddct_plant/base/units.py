@@ -1,12 +1,27 @@
 """Conversions between SI and the units people read; nothing else converts."""
 
 import math
+from collections.abc import Mapping
 from typing import TypeVar
 
 import numpy as np
 
+from ddct_plant.base.errors import ParameterError
+
 RAD_S_PER_RPM = math.pi / 30.0
 RPM_PER_RAD_S = 30.0 / math.pi
+
+_GRADE = '%'
+"""Of a road: 100 times the tangent of its slope angle."""
+_IN_SI: Mapping[str, Mapping[str, float]] = {
+    's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9},
+    'rad': {'rad': 1.0, 'deg': math.pi / 180.0, _GRADE: math.nan},
+    'rad/s': {'rad/s': 1.0, 'rpm': RAD_S_PER_RPM, 'deg/s': math.pi / 180.0},
+    'N m': {'N m': 1.0, 'Nm': 1.0, 'kN m': 1e3},
+    'm/s': {'m/s': 1.0, 'km/h': 1.0 / 3.6},
+    'm/s^2': {'m/s^2': 1.0, 'g': 9.80665},
+}
+"""By SI unit what a user's file may have instead, and how much of the SI unit that is."""
 
 
 Speed = TypeVar('Speed', float, np.ndarray)
@@ -20,3 +35,11 @@ def rpm_from_rad_s(speed: Speed) -> Speed:
 def rad_s_from_rpm(speed_rpm: Speed) -> Speed:
     """Convert a speed (float or array) from rpm to rad/s."""
     return speed_rpm * RAD_S_PER_RPM
+
+
+def si_values(values: np.ndarray, unit: object, si_unit: str) -> np.ndarray:
+    """Return values of a user's file in `si_unit`; raise ParameterError for an unfit `unit`."""
+    units = _IN_SI[si_unit]
+    if not isinstance(unit, str) or unit not in units:
+        raise ParameterError(f'unit {unit!r}: choose from {", ".join(units)}')
+    return np.arctan(values / 100.0) if unit == _GRADE else values * units[unit]

@@ -1,6 +1,7 @@
 """Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
 import math
+from bisect import bisect_right
 from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
@@ -161,11 +162,11 @@ class Engine:
         time = time_of_step(step)
         if time <= times[0]:
             return torques[0]
-        for index in range(1, len(times)):
-            if time < times[index]:
-                share = (time - times[index - 1]) / (times[index] - times[index - 1])
-                return torques[index - 1] + share * (torques[index] - torques[index - 1])
-        return torques[-1]
+        if time >= times[-1]:
+            return torques[-1]
+        index = bisect_right(times, time)
+        share = (time - times[index - 1]) / (times[index] - times[index - 1])
+        return torques[index - 1] + share * (torques[index] - torques[index - 1])
 
     def torque(self, step: int, request: float | None = None, speed: float = 0.0) -> float:
         """

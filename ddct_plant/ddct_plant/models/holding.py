@@ -3,15 +3,14 @@
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from ddct_plant.base.options import OptionGroup, option
-from ddct_plant.models.load import LoadParameters, RoadLoad
+from ddct_plant.base.options import option
+from ddct_plant.base.profile import Profile
+from ddct_plant.models.load import LoadParameters, RoadLoad, SlopeProfile
 from ddct_plant.models.parameters import VehicleParameters
 
 
 @dataclass(frozen=True)
-class BrakeProfile(OptionGroup, prefix='brake.'):
+class BrakeProfile(Profile, prefix='brake.'):
     """The brake over scenario time, linear between its points; the ends hold outside."""
 
     time_s: tuple[float, ...] = option(
@@ -30,14 +29,9 @@ class BrakeProfile(OptionGroup, prefix='brake.'):
         at_most=1e5,
     )
 
-    def __post_init__(self) -> None:
-        """Check the points; raise ParameterError that names the first bad one."""
-        super().__post_init__()
-        self.require_pairs('time_s', 'torque_n_m')
-
     def torque(self, time_s: float) -> float:
         """Return the capacity in N m at a scenario time; the ends hold before and after."""
-        return float(np.interp(time_s, self.time_s, self.torque_n_m)) if self.time_s else 0.0
+        return self.at(time_s) if self.given else 0.0
 
 
 class HoldingTorque:
@@ -48,17 +42,32 @@ class HoldingTorque:
     """
 
     def __init__(
-        self, load: LoadParameters, vehicle: VehicleParameters, brake: BrakeProfile
+        self,
+        load: LoadParameters,
+        vehicle: VehicleParameters,
+        brake: BrakeProfile,
+        slope: SlopeProfile | None = None,
     ) -> None:
-        normal_force = vehicle.mass_kg * vehicle.gravity_m_s2 * math.cos(load.slope_rad)
-        self._rolling = normal_force * load.rolling_coefficient * vehicle.wheel_radius_m
-        self._brake = brake
+        """Take `slope` in place of the load's constant one where it has points."""
+        self._load, self._vehicle, self._brake = load, vehicle, brake
+        self._slope = slope if slope and slope.given else None
+        self._constant_rolling = self._rolling(load.slope_rad)
 
     def capacity(self, time_s: float) -> float:
         """Return it in N m, not negative, at a scenario time."""
-        return self._rolling + self._brake.torque(time_s)
+        rolling = self._constant_rolling
+        if self._slope:
+            rolling = self._rolling(self._slope.at(time_s))
+        return rolling + self._brake.torque(time_s)
+
+    def _rolling(self, slope_rad: float) -> float:
+        vehicle = self._vehicle
+        normal_force = vehicle.mass_kg * vehicle.gravity_m_s2 * math.cos(slope_rad)
+        return normal_force * self._load.rolling_coefficient * vehicle.wheel_radius_m
 
 
-def air_and_slope(load: LoadParameters, vehicle: VehicleParameters) -> RoadLoad:
+def air_and_slope(
+    load: LoadParameters, vehicle: VehicleParameters, slope: SlopeProfile | None = None
+) -> RoadLoad:
     """Return the road load that is left when rolling resistance is friction at the wheel."""
-    return RoadLoad(replace(load, rolling_coefficient=0.0), vehicle)
+    return RoadLoad(replace(load, rolling_coefficient=0.0), vehicle, slope)

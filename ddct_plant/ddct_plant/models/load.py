@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
+from ddct_plant.base.profile import Profile
 from ddct_plant.models.parameters import VehicleParameters
 
 
@@ -28,6 +29,27 @@ class LoadParameters(OptionGroup, prefix='load.'):
     )
 
 
+@dataclass(frozen=True)
+class SlopeProfile(Profile, prefix='slope.'):
+    """The slope of the road over scenario time, linear between its points."""
+
+    time_s: tuple[float, ...] = option(
+        (),
+        'scenario times of the points; none: the slope is `load.slope_rad` throughout',
+        's',
+        many=True,
+        rising=True,
+    )
+    slope_rad: tuple[float, ...] = option(
+        (),
+        'slope angle then, in place of `load.slope_rad`; positive uphill',
+        'rad',
+        many=True,
+        at_least=-0.6,
+        at_most=0.6,
+    )
+
+
 class RoadLoad:
     """
     Wheel torque that resists a vehicle at speed v_v (Section 1.4.4).
@@ -37,8 +59,16 @@ class RoadLoad:
     square loses for a tail wind stronger than the vehicle is fast.
     """
 
-    def __init__(self, parameters: LoadParameters, vehicle: VehicleParameters) -> None:
-        weight = vehicle.mass_kg * vehicle.gravity_m_s2
+    def __init__(
+        self,
+        parameters: LoadParameters,
+        vehicle: VehicleParameters,
+        slope: SlopeProfile | None = None,
+    ) -> None:
+        """Take `slope` in place of the constant one where it has points."""
+        self._weight = vehicle.mass_kg * vehicle.gravity_m_s2
+        self._rolling = parameters.rolling_coefficient
+        self._slope = slope if slope and slope.given else None
         self._drag = (
             0.5
             * parameters.air_density_kg_m3
@@ -46,15 +76,18 @@ class RoadLoad:
             * parameters.drag_coefficient
         )
         self._wind = parameters.wind_speed_m_s
-        self._constant_force = weight * (
-            parameters.rolling_coefficient * math.cos(parameters.slope_rad)
-            + math.sin(parameters.slope_rad)
-        )
+        self._constant_force = self._force(parameters.slope_rad)
         self._wheel_radius = vehicle.wheel_radius_m
 
-    def torque(self, vehicle_speed: float) -> float:
-        """Return C_load in N m, positive when it resists, at `vehicle_speed` in m/s."""
+    def torque(self, vehicle_speed: float, time_s: float = 0.0) -> float:
+        """
+        Return C_load in N m, positive when it resists.
+
+        `vehicle_speed` is in m/s; the scenario time matters to a slope that changes.
+        """
         air_speed = self._wind + vehicle_speed
-        return (
-            self._drag * air_speed * abs(air_speed) + self._constant_force
-        ) * self._wheel_radius
+        force = self._force(self._slope.at(time_s)) if self._slope else self._constant_force
+        return (self._drag * air_speed * abs(air_speed) + force) * self._wheel_radius
+
+    def _force(self, slope_rad: float) -> float:
+        return self._weight * (self._rolling * math.cos(slope_rad) + math.sin(slope_rad))

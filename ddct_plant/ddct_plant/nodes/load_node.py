@@ -26,10 +26,12 @@ class LoadNode(FollowerNode):
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return C_load at the vehicle speed of t_k, and what holds the wheels by friction."""
-        torque = self._torque.fill(stamp_ns, self._load.torque(inputs[VEHICLE_SPEED.name]))
+        time_s = time_of_step(step)
+        load = self._load.torque(inputs[VEHICLE_SPEED.name], time_s)
+        torque = self._torque.fill(stamp_ns, load)
         if not self.settings.stick_slip:
             return (torque,)
-        capacity = self._friction.capacity(time_of_step(step))
+        capacity = self._friction.capacity(time_s)
         return (torque, self._holding.fill(stamp_ns, capacity))
 
 

@@ -17,6 +17,7 @@ from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.schema_version import require_schema_version
 from ddct_plant.files.yaml_text import dump_yaml, line_of, parse_yaml, parse_yaml_with_lines
 from ddct_plant.scenario.consistency import FILE, SET, consistent
+from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
@@ -50,6 +51,7 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
     start_before = content.get('control_start_s')
     set_keys = [key for override in overrides for key in _apply(content, override)]
     try:
+        content = with_points(content, Path(name_or_file).parent, set_keys)
         scenario = scenario_from_mapping(content)
         origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
         return consistent(scenario, origins, _number(start_before))

@@ -15,7 +15,7 @@ def initial_state(settings: RunSettings) -> InitialState:
     scenario = settings.scenario
     driveline = scenario.driveline
     wheel_speed = scenario.initial.shaft_speed_rad_s / driveline.total_ratio
-    load_torque = RoadLoad(scenario.load, scenario.vehicle).torque(
+    load_torque = RoadLoad(scenario.load, scenario.vehicle, scenario.slope).torque(
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
     engine_speed = scenario.initial.engine_speed_rad_s

@@ -60,11 +60,11 @@ def make_load(settings: RunSettings) -> RoadLoad:
     """Return the load at the wheel, in stick-slip runs that of air and slope alone."""
     scenario = settings.scenario
     if settings.stick_slip:
-        return air_and_slope(scenario.load, scenario.vehicle)
-    return RoadLoad(scenario.load, scenario.vehicle)
+        return air_and_slope(scenario.load, scenario.vehicle, scenario.slope)
+    return RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
 
 
 def holding_torque(settings: RunSettings) -> HoldingTorque:
     """Return the friction at the wheel of a stick-slip run: rolling resistance and brake."""
     scenario = settings.scenario
-    return HoldingTorque(scenario.load, scenario.vehicle, scenario.brake)
+    return HoldingTorque(scenario.load, scenario.vehicle, scenario.brake, scenario.slope)

@@ -15,11 +15,12 @@ from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.engine_limits import EngineLimits
 from ddct_plant.models.friction_clutch import FrictionParameters
 from ddct_plant.models.holding import BrakeProfile
-from ddct_plant.models.load import LoadParameters
+from ddct_plant.models.load import LoadParameters, SlopeProfile
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
 from ddct_plant.scenario.closing import ClosingParameters
 from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.slip_profile import SlipProfile
 
 LONGEST_S = 3600.0
 """Of every time in a scenario."""
@@ -27,6 +28,8 @@ REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """How a slip reference can run to zero once control starts, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
 """Shape of a slip reference that follows from a wanted engine speed."""
+PROFILE = 'profile'
+"""Shape of a slip reference that is given over scenario time."""
 GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
 """Of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
@@ -37,6 +40,11 @@ _ADJUSTED = Option(
     kind=str,
     many=True,
 )
+
+
+def _left_out(default: OptionGroup) -> Any:
+    """Return a field that files and hashes leave out while it is the default."""
+    return field(default=default, metadata={'left_out': True})
 
 
 def _section(default: OptionGroup) -> Any:
@@ -101,9 +109,9 @@ class ReferenceParameters(OptionGroup, prefix='reference.'):
         'ramp',
         'how the reference runs to zero; the architecture `feedforward_tanh` makes the ramp a '
         'tanh; `engine_speed_target`, in `detailed` only, is `engine_speed_reference` less the '
-        'measured shaft speed',
+        'measured shaft speed; `profile` is `slip_reference`',
         source='Section 1.4.1',
-        choices=(*REFERENCE_SHAPES, ENGINE_SPEED_TARGET),
+        choices=(*REFERENCE_SHAPES, ENGINE_SPEED_TARGET, PROFILE),
     )
     reference_end_s: float = option(
         1.6,
@@ -173,6 +181,8 @@ class Scenario(OptionGroup):
     )
     initial: InitialSpeeds = InitialSpeeds()
     reference: ReferenceParameters = ReferenceParameters()
+    slip_reference: SlipProfile = _left_out(SlipProfile())
+    slope: SlopeProfile = _left_out(SlopeProfile())
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
@@ -202,6 +212,10 @@ class Scenario(OptionGroup):
         first, last = self.score_window_s
         if last <= first:
             raise ParameterError(f'score_window_s ends at {last:g} s, before {first:g} s')
+        if self.slope.given and self.load.slope_rad:
+            raise ParameterError(
+                f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one'
+            )
 
     @property
     def steps(self) -> int:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, Scenario
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE, Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Control architectures: those of Section 1.6, and CRF's detailed model (Section 1.4)."""
@@ -70,6 +70,11 @@ class RunSettings(OptionGroup):
     def _require_reference(self) -> None:
         start_s, end_s = self.scenario.control_start_s, self.scenario.reference.reference_end_s
         shape = self.scenario.reference.shape
+        if self.scenario.slip_reference.given != (shape == PROFILE):
+            raise ParameterError(
+                f'reference.shape is {shape!r}: give slip_reference.time_s and '
+                f'slip_reference.slip_rad_s with the shape {PROFILE}, and only with it'
+            )
         if shape == ENGINE_SPEED_TARGET:
             self._require_engine_speed_target()
             return
@@ -78,7 +83,7 @@ class RunSettings(OptionGroup):
                 f'reference.shape is {shape!r}, but the architecture {self.architecture} has a '
                 f'{self.reference_shape}: choose another architecture, such as feedforward'
             )
-        if self.reference_shape != 'ramp' and end_s <= start_s:
+        if self.reference_shape not in ('ramp', PROFILE) and end_s <= start_s:
             raise ParameterError(
                 f'reference.reference_end_s is {end_s:g} s: it must be after control_start_s, '
                 f'{start_s:g} s'

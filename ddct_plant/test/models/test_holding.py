@@ -6,7 +6,7 @@ import pytest
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.holding import BrakeProfile, HoldingTorque, air_and_slope
-from ddct_plant.models.load import LoadParameters, RoadLoad
+from ddct_plant.models.load import LoadParameters, RoadLoad, SlopeProfile
 from ddct_plant.models.parameters import VehicleParameters
 
 VEHICLE = VehicleParameters()
@@ -50,3 +50,16 @@ def test_the_brake_is_linear_between_its_points_and_holds_its_ends():
 def test_a_bad_brake_is_named(times, torques, complaint):
     with pytest.raises(ParameterError, match=complaint):
         BrakeProfile(times, torques)
+
+
+def test_a_slope_over_time_is_at_each_instant_the_constant_one():
+    slope = SlopeProfile((0.0, 2.0), (-0.1, 0.3))
+    there = LoadParameters(slope_rad=slope.at(1.5))
+    assert there.slope_rad == pytest.approx(0.2)
+    load = LoadParameters()
+    assert RoadLoad(load, VEHICLE, slope).torque(9.0, 1.5) == RoadLoad(there, VEHICLE).torque(9.0)
+    rest = air_and_slope(load, VEHICLE, slope).torque(9.0, 1.5)
+    assert rest == air_and_slope(there, VEHICLE).torque(9.0)
+    brake = BrakeProfile()
+    held = HoldingTorque(load, VEHICLE, brake, slope).capacity(1.5)
+    assert held == HoldingTorque(there, VEHICLE, brake).capacity(1.5)

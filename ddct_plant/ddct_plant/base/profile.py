@@ -1,0 +1,36 @@
+"""A value over scenario time, linear between points: of the brake, the road, a slip reference."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ddct_plant.base.options import OptionGroup, options_of
+
+TIME = 'time_s'
+
+
+@dataclass(frozen=True)
+class Profile(OptionGroup):
+    """Two fields: `time_s`, the scenario times, and the values there; the ends hold outside."""
+
+    def __post_init__(self) -> None:
+        """Check the points; raise ParameterError that names the first bad one."""
+        super().__post_init__()
+        self.require_pairs(TIME, value_name(type(self)))
+
+    @property
+    def given(self) -> bool:
+        """Whether it has points."""
+        return bool(getattr(self, TIME))
+
+    def at(self, time_s: float) -> float:
+        """Return the value at a scenario time; there must be points."""
+        values: Any = getattr(self, value_name(type(self)))
+        return float(np.interp(time_s, getattr(self, TIME), values))
+
+
+def value_name(group: type) -> str:
+    """Return the name of the option of a profile that is not its times."""
+    (name,) = (name for name in options_of(group) if name != TIME)
+    return name

@@ -1,0 +1,108 @@
+"""Read columns of numbers from a CSV file: of any tool, and with the line of what is wrong."""
+
+import csv
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import close_name
+from ddct_plant.files.input_file import read_text_file
+
+COMMENT = '#'
+_DELIMITERS = ',;\t'
+_EMPTY = ('', 'nan')
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """Columns by name, and where they are from."""
+
+    path: Path
+    lines: np.ndarray
+    """(n,) number of each row's line, from 1."""
+    columns: dict[str, np.ndarray]
+    """(n,) each; NaN where a cell is empty or says so."""
+
+    def place(self, row: int, column: str) -> str:
+        """Return how an error names a cell."""
+        return _place(self.path, int(self.lines[row]), column)
+
+
+def read_csv(path: Path, names: Iterable[str], *, most_bytes: int, most_rows: int) -> CsvTable:
+    """
+    Return the columns called `names`, each once.
+
+    The first line that is neither empty nor a comment (#) holds the names. Comma, semicolon or tab
+    part the cells, whichever parts that line most; beside the latter two a comma may be the
+    decimal mark. Raise ParameterError that names the file, and line and column where it can.
+    """
+    rows = _rows(_text(path, most_bytes))
+    _, header = next(rows, (0, []))
+    places = {name: _column(path, header, name) for name in names}
+    cells: dict[str, list[float]] = {name: [] for name in places}
+    lines: list[int] = []
+    for line, row in rows:
+        if len(lines) == most_rows:
+            raise ParameterError(f'{path}: line {line}: more than {most_rows} rows: give fewer')
+        if len(row) != len(header):
+            raise ParameterError(
+                f'{path}: line {line} has {len(row)} cells, the header {len(header)}: mend the row'
+            )
+        lines.append(line)
+        for name, place in places.items():
+            cells[name].append(_number(path, line, name, row[place]))
+    if not lines:
+        raise ParameterError(f'{path}: no row of numbers below the header: give at least one')
+    return CsvTable(path, np.array(lines), {name: np.array(each) for name, each in cells.items()})
+
+
+def _text(path: Path, most_bytes: int) -> str:
+    try:
+        return read_text_file(path, most_bytes).removeprefix('\ufeff')
+    except OSError as error:
+        raise ParameterError(f'{path}: cannot be read ({error.strerror})') from error
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield line number and cells of each row, decimal commas as dots; the header first."""
+    delimiter = ''
+    for line, content in enumerate(text.splitlines(), 1):
+        if not content.strip() or content.lstrip().startswith(COMMENT):
+            continue
+        first = not delimiter
+        delimiter = delimiter or max(_DELIMITERS, key=content.count)
+        cells = [cell.strip() for cell in next(csv.reader([content], delimiter=delimiter))]
+        if delimiter != ',' and not first:
+            cells = [cell.replace(',', '.') for cell in cells]
+        yield line, cells
+
+
+def _column(path: Path, header: list[str], name: str) -> int:
+    if (count := header.count(name)) != 1:
+        known = close_name(name, [each for each in header if each])
+        what = f'the column {name!r} is there {count} times' if count else f'no column {name!r}'
+        raise ParameterError(f'{path}: {what}: {known if not count else "rename one"}')
+    return header.index(name)
+
+
+def _number(path: Path, line: int, column: str, cell: str) -> float:
+    if cell.lower() in _EMPTY:
+        return math.nan
+    try:
+        number = float(cell)
+    except ValueError:
+        raise ParameterError(
+            f'{_place(path, line, column)}: {cell!r} is no number: mend it, or put # before the '
+            'line'
+        ) from None
+    if not math.isfinite(number):
+        raise ParameterError(f'{_place(path, line, column)}: {cell} is not finite: mend it')
+    return number
+
+
+def _place(path: Path, line: int, column: str) -> str:
+    return f'{path}: line {line}, column {column}'

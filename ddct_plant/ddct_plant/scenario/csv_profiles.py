@@ -1,0 +1,125 @@
+"""Profiles that a scenario takes from CSV files; what is loaded holds their points itself."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import REQUIRED, OptionGroup, close_name, options_of
+from ddct_plant.base.profile import TIME, value_name
+from ddct_plant.base.units import si_values
+from ddct_plant.files.csv_table import CsvTable, read_csv
+from ddct_plant.files.input_file import MOST_TEXT_BYTES
+from ddct_plant.models.engine import TorqueProfile
+from ddct_plant.models.holding import BrakeProfile
+from ddct_plant.models.load import SlopeProfile
+from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.slip_profile import SlipProfile
+
+MOST_ROWS = 2000
+"""Of one file: a scenario with all profiles of this size can still be read back from a bag."""
+_PROFILES: tuple[type[OptionGroup], ...] = (
+    TorqueProfile,
+    EngineSpeedReference,
+    BrakeProfile,
+    SlopeProfile,
+    SlipProfile,
+)
+_FILE = 'csv'
+_REQUIRED = (_FILE, 'time', 'value', 'unit')
+_DEFAULTS: Mapping[str, Any] = {'time_unit': 's', 'start_s': 0.0}
+
+
+def with_points(
+    content: Mapping[str, Any], folder: Path, set_keys: Iterable[str]
+) -> dict[str, Any]:
+    """
+    Return the content of a scenario with the points of its CSV files in place of their names.
+
+    A section may say `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
+    `start_s`, the file's time in s at scenario time 0. The file is relative to `folder`, that of
+    the scenario; one that `--set` names, as `set_keys` tell, is relative to the working directory.
+    Raise ParameterError that names file, line and column.
+    """
+    content, given = dict(content), set(set_keys)
+    for group in _PROFILES:
+        name = group.prefix.rstrip('.')
+        section = content.get(name)
+        if not isinstance(section, Mapping):
+            continue
+        section = _as_set(dict(section), name, value_name(group), given)
+        content[name] = section
+        if _FILE in section:
+            base = Path() if f'{name}.{_FILE}' in given else folder
+            content[name] = _points(section, group, base)
+    return content
+
+
+def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> dict[str, Any]:
+    """Return a section without its points or its file, where --set gives the other."""
+    points = {TIME, value}
+    if _FILE not in section or not points & set(section):
+        return section
+    if f'{name}.{_FILE}' in given:
+        return {key: item for key, item in section.items() if key not in points}
+    if any(f'{name}.{key}' in given for key in points):
+        of_file = {*_REQUIRED, *_DEFAULTS}
+        return {key: item for key, item in section.items() if key not in of_file}
+    raise ParameterError(f'{name} has points and {name}.{_FILE}: give one of them')
+
+
+def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
+    prefix = group.prefix
+    for key in section:
+        if key not in (*_REQUIRED, *_DEFAULTS):
+            known = close_name(key, (*_REQUIRED, *_DEFAULTS), prefix)
+            raise ParameterError(f'unknown key {prefix}{key} beside {prefix}{_FILE}: {known}')
+    for key in _REQUIRED:
+        if not isinstance(section.get(key), str):
+            raise ParameterError(
+                f'{prefix}{key} is {section.get(key, "missing")!r}: give text, such as '
+                '{csv: pedal.csv, time: t, value: torque, unit: N m}'
+            )
+    spec = {**_DEFAULTS, **section}
+    require_number(f'{prefix}start_s', spec['start_s'], unit='s')
+    try:
+        return _read(spec, group, base)
+    except ParameterError as error:
+        raise ParameterError(f'{prefix}{_FILE}: {error}') from error
+
+
+def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
+    """Return the points that a file holds as `spec` describes it, checked."""
+    names, value = [spec['time'], spec['value']], value_name(group)
+    table = read_csv(base / spec[_FILE], names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
+    times, values = (table.columns[name] for name in names)
+    times = si_values(times, spec['time_unit'], 's') - spec['start_s']
+    values = si_values(values, spec['unit'], options_of(group)[value].unit)
+    points = {TIME: times.tolist(), value: values.tolist()}
+    _check(table, dict(zip(points, names, strict=True)), points, group)
+    return points
+
+
+def _check(
+    table: CsvTable, columns: Mapping[str, str], points: Mapping[str, Any], group: type
+) -> None:
+    """Refuse values out of range, times that do not rise, and a late start, by their place."""
+    for name, described in options_of(group).items():
+        one = replace(described, many=False, default=REQUIRED)
+        for row, number in enumerate(points[name]):
+            one.checked(table.place(row, columns[name]), number)
+    times = points[TIME]
+    for row, (earlier, later) in enumerate(zip(times, times[1:], strict=False), 1):
+        if later <= earlier:
+            place = table.place(row, columns[TIME])
+            raise ParameterError(
+                f'{place}: the time goes from {earlier:g} to {later:g} s: it must rise'
+            )
+    if times[0] > 0.0:
+        place = table.place(0, columns[TIME])
+        raise ParameterError(
+            f'{place}: the profile begins at scenario time {times[0]:g} s: it must cover the '
+            'start, so give an earlier row or start_s'
+        )

@@ -1,0 +1,141 @@
+"""Profiles from CSV files become points of the scenario, or are refused by file, line, column."""
+
+import math
+
+import pytest
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.csv_profiles import MOST_ROWS
+from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
+
+HEAD = 'duration_s: 1.0\ncontrol_start_s: 0.6\nscore_window_s: [0.6, 1.0]\n'
+SPEC = 'engine: {csv: data/pedal.csv, time: t, value: torque, unit: N m}\n'
+PEDAL = '# of the bench\nt,other,torque\n0.0,x,100.0\n0.5,y,150.0\n'
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / 'data').mkdir()
+    (tmp_path / 'data' / 'pedal.csv').write_text(PEDAL)
+    return tmp_path
+
+
+def load(folder, text=HEAD + SPEC, overrides=()):
+    (folder / 'mine.yaml').write_text(text)
+    return load_scenario(str(folder / 'mine.yaml'), overrides)
+
+
+def test_a_file_beside_the_scenario_gives_its_points_and_other_columns_do_not_matter(folder):
+    engine = load(folder).engine
+    assert engine.time_s == (0.0, 0.5)
+    assert engine.torque_n_m == (100.0, 150.0)
+
+
+def test_what_is_written_for_the_nodes_and_the_bag_holds_the_points_itself(folder):
+    scenario = load(folder)
+    (folder / 'data' / 'pedal.csv').unlink()
+    written = folder / 'written.yaml'
+    written.write_text(scenario_to_yaml(scenario))
+    again = load_scenario(str(written))
+    assert again.engine == scenario.engine
+    assert scenario_digest(again) == scenario_digest(load(folder, scenario_to_yaml(scenario)))
+
+
+def test_another_value_in_the_file_is_another_digest(folder):
+    before = scenario_digest(load(folder))
+    (folder / 'data' / 'pedal.csv').write_text(PEDAL.replace('150.0', '150.1'))
+    assert scenario_digest(load(folder)) != before
+
+
+def test_a_file_that_set_names_is_relative_to_the_working_directory(folder, monkeypatch):
+    monkeypatch.chdir(folder / 'data')
+    changes = ['engine={csv: pedal.csv, time: t, value: torque, unit: N m}']
+    assert load_scenario('thesis', changes).engine.torque_n_m == (100.0, 150.0)
+    single = [f'engine.{pair}' for pair in ('csv=pedal.csv', 'time=t', 'value=torque', 'unit=N m')]
+    assert load_scenario('thesis', single).engine.torque_n_m == (100.0, 150.0)
+
+
+def test_points_that_set_gives_replace_the_file(folder):
+    changes = ['engine.time_s=[0.0]', 'engine.torque_n_m=[7.0]']
+    assert load(folder, overrides=changes).engine.torque_n_m == (7.0,)
+
+
+@pytest.mark.parametrize(
+    ('section', 'unit', 'cells', 'key', 'expected'),
+    [
+        ('engine_speed_reference', 'rpm', ('3000', '1500'), 'speed_rad_s', math.pi * 100.0),
+        ('brake', 'kN m', ('1.5', '0'), 'torque_n_m', 1500.0),
+        ('slope', '%', ('10', '-5'), 'slope_rad', math.atan(0.1)),
+        ('slope', 'deg', ('9', '-5'), 'slope_rad', math.pi / 20.0),
+        ('slip_reference', 'rad/s', ('-30', '0'), 'slip_rad_s', -30.0),
+    ],
+)
+def test_every_profile_takes_a_file_in_its_units(folder, section, unit, cells, key, expected):
+    (folder / 'p.csv').write_text(f'ms;x\n20000;{cells[0]}\n20600,5;{cells[1]}\n')
+    spec = f'{{csv: p.csv, time: ms, value: x, unit: {unit}, time_unit: ms, start_s: 20}}'
+    found = getattr(
+        load(folder, f'{HEAD}{SPEC}{section}: {spec.replace("%", repr("%"))}\n'), section
+    )
+    assert found.time_s == pytest.approx((0.0, 0.6005))
+    assert getattr(found, key)[0] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'complaint'),
+    [
+        ('0.5,y', '0.0,y', 'line 4, column t: the time goes from 0 to 0 s: it must rise'),
+        ('0.0,x', '0.1,x', 'line 3, column t: the profile begins at scenario time 0.1 s'),
+        ('150.0', 'nan', 'line 4, column torque is nan: give a finite number N m'),
+        ('150.0', '', 'line 4, column torque is nan'),
+        ('150.0', 'inf', 'line 4, column torque: inf is not finite'),
+        ('150.0', 'much', "line 4, column torque: 'much' is no number"),
+        ('150.0', '-1', 'line 4, column torque is -1 N m: it must be at least 0'),
+        (',150.0', '', 'line 4 has 2 cells, the header 3'),
+        ('t,other,torque', 't,other,torgue', "no column 'torque': did you mean torgue?"),
+        ('t,other,torque', 't,torque,torque', "the column 'torque' is there 2 times"),
+        ('0.0,x,100.0\n0.5,y,150.0\n', '', 'no row of numbers'),
+    ],
+)
+def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, complaint):
+    file = folder / 'data' / 'pedal.csv'
+    file.write_text(PEDAL.replace(old, new))
+    with pytest.raises(ParameterError) as raised:
+        load(folder)
+    assert complaint in str(raised.value)
+    assert f'mine.yaml: line 4: engine.csv: {file}: ' in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ('spec', 'complaint'),
+    [
+        ('{csv: none.csv, time: t, value: torque, unit: N m}', 'No such file'),
+        ('{csv: data/pedal.csv, time: t, value: torque}', "engine.unit is 'missing'"),
+        (SPEC[8:-2] + ', colour: red}', 'unknown key engine.colour beside engine.csv'),
+        (SPEC[8:-2].replace('N m', 'rpm') + '}', "unit 'rpm': choose from N m, Nm, kN m"),
+        (SPEC[8:-2] + ', time_unit: h}', "unit 'h': choose from s, ms"),
+        (SPEC[8:-2] + ', time_s: [0.0]}', 'engine has points and engine.csv: give one'),
+        (SPEC[8:-2] + ', start_s: soon}', "engine.start_s is 'soon': give a number s"),
+    ],
+)
+def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, complaint):
+    with pytest.raises(ParameterError) as raised:
+        load(folder, f'{HEAD}engine: {spec}\n')
+    assert complaint in str(raised.value)
+    assert 'mine.yaml: line 4: ' in str(raised.value)
+
+
+def test_a_file_with_too_many_rows_is_refused_and_the_most_survive_their_yaml(folder):
+    rows = [f'{k / 100!r},x,{100.0 + math.sin(k)!r}\n' for k in range(MOST_ROWS + 1)]
+    file = folder / 'data' / 'pedal.csv'
+    file.write_text('t,other,torque\n' + ''.join(rows[:-1]))
+    scenario = load(folder)
+    assert load(folder, scenario_to_yaml(scenario)).engine == scenario.engine
+    file.write_text('t,other,torque\n' + ''.join(rows))
+    with pytest.raises(ParameterError, match=f'line 2002: more than {MOST_ROWS} rows'):
+        load(folder)
+
+
+def test_a_slope_profile_and_a_constant_slope_do_not_go_together(folder):
+    text = f'{HEAD}{SPEC}slope: {{time_s: [0.0], slope_rad: [0.1]}}\n'
+    with pytest.raises(ParameterError, match='slope has points, and load.slope_rad is 0.2 rad'):
+        load(folder, text, ['load.slope_rad=0.2'])
