@@ -10,6 +10,7 @@ from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import PlantSight
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,27 @@ class Measurement:
     """C_load in N m computed from V_x and the slope; the architecture fills it in."""
     open_loop_torque: float = 0.0
     """What the architecture adds to the controller's clutch torque, in N m; it fills it in."""
+
+    @classmethod
+    def of_plant(
+        cls,
+        step: int,
+        sight: PlantSight,
+        slip_reference: Sequence[float],
+        slip_reference_rate: Sequence[float],
+    ) -> 'Measurement':
+        """Return what is measured of a plant at step k, beside the reference of that step."""
+        engine_speed, shaft_speed, wheel_speed = sight.now.joint_speed[:3]
+        return cls(
+            step=step,
+            engine_speed=engine_speed,
+            shaft_speed=shaft_speed,
+            wheel_speed=wheel_speed,
+            vehicle_speed=sight.now.vehicle_speed,
+            engine_torque=sight.told,
+            slip_reference=slip_reference,
+            slip_reference_rate=slip_reference_rate,
+        )
 
     @property
     def slip_speed(self) -> float:

@@ -172,7 +172,7 @@ class ExactLoop(ClosedLoop):
 
     def __init__(self, run, controller):
         super().__init__(run, controller)
-        start, request = self._driveline.outputs(), initial_state(run).torque_request
+        start, request = self.plant.driveline.outputs(), initial_state(run).torque_request
         self._exact = transmission_model(run.scenario.driveline)
         engine, shaft, wheel, _ = start.joint_speed
         twist = start.joint_position[3]
@@ -182,8 +182,8 @@ class ExactLoop(ClosedLoop):
         super().advance(reply)
         inputs = reply['torque_request'], reply['engine_torque'], reply['load_torque']
         self._state = self._exact.a @ self._state + self._exact.b @ inputs
-        assert isinstance(self._driveline, Driveline)
-        self._driveline._state_and_inputs[:4] = self._state[:4]
+        assert isinstance(self.plant.driveline, Driveline)
+        self.plant.driveline._state_and_inputs[:4] = self._state[:4]
 
 
 @pytest.mark.parametrize('name', ['mpc_offset_free', 'mpc_wear'])

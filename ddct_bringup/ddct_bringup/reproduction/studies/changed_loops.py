@@ -48,7 +48,7 @@ class LoopWithoutActuator(ClosedLoop):
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
-        self._actuator = _Direct()
+        self.plant.actuator = _Direct()
 
 
 class _Direct:
@@ -80,7 +80,9 @@ class LoopWithMeasuredState(ClosedLoop):
     def __init__(self, settings: RunSettings, controller: MpcController[MeasuredState]) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
-        controller.observer.twist = lambda: float(self._driveline.outputs().joint_position[TWIST])
+        controller.observer.twist = lambda: float(
+            self.plant.driveline.outputs().joint_position[TWIST]
+        )
 
 
 def slip_after_load_step(
