@@ -1,0 +1,153 @@
+"""Controllers as beginners get them wrong: one error each, in an otherwise sound proportional."""
+
+import random
+import time
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_plant.base.options import Option, Options
+
+GAIN = 0.1
+"""N m/rpm; crosses over at about 4 rad/s."""
+
+
+class Proportional(Controller):
+    """What the others get wrong in one place."""
+
+    options: ClassVar[Options | None] = {}
+
+    def __init__(self, context: ControllerContext) -> None:
+        pass
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * measurement.slip_error_rpm)
+
+
+class WrongType(Proportional):
+    def update(self, measurement: Measurement) -> Any:
+        return -GAIN * measurement.slip_error_rpm
+
+
+class NoAnswer(Proportional):
+    def update(self, measurement: Measurement) -> Any:
+        Command(-GAIN * measurement.slip_error_rpm)
+
+
+class NotANumber(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        slip = np.float64(measurement.slip_reference[0])
+        with np.errstate(invalid='ignore'):
+            relative = (slip - slip) / np.float64(0.0)
+        return Command(float(-GAIN * relative))
+
+
+class AnArray(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        torque: Any = np.array([[-GAIN]]) @ np.array([measurement.slip_error_rpm])
+        return Command(torque)
+
+
+class MissingReset(Proportional):
+    def __init__(self, context: ControllerContext) -> None:
+        self._integral = 0.0
+
+    def update(self, measurement: Measurement) -> Command:
+        self._integral += 0.01 * measurement.slip_error_rpm
+        return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self._integral))
+
+
+class SharedState(Proportional):
+    errors: ClassVar[list[float]] = []
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, measurement: Measurement) -> Command:
+        self.errors.append(measurement.slip_error_rpm)
+        return Command(-GAIN * (self.errors[-1] + 0.002 * sum(self.errors)))
+
+
+class Slow(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        time.sleep(0.012)
+        return super().update(measurement)
+
+
+class WrongSign(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        return Command(GAIN * measurement.slip_error_rpm)
+
+
+class RadiansTakenForRpm(Proportional):
+    """Its gain is meant for rpm, its error is in rad/s."""
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * (measurement.slip_reference[0] - measurement.slip_speed))
+
+
+class RpmTwice(Proportional):
+    """The error is in rpm already, and is converted once more."""
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * measurement.slip_error_rpm * 30.0 / np.pi)
+
+
+class FailsToBuild(Proportional):
+    def __init__(self, context: ControllerContext) -> None:
+        self._inverse = np.linalg.inv(np.zeros((2, 2)))
+
+
+class FailsInUpdate(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        ahead = measurement.slip_reference[5]
+        return Command(-GAIN * (ahead - measurement.slip_speed))
+
+
+class WrongStatus(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        status: Any = {'error_rpm': measurement.slip_error_rpm}
+        return Command(-GAIN * measurement.slip_error_rpm, status)
+
+
+class UnknownGain(Proportional):
+    options: ClassVar[Options | None] = {'gain': Option(GAIN, 'K_p', 'N m/rpm', at_least=0.0)}
+
+    def __init__(self, context: ControllerContext) -> None:
+        self._gain = context.gains.get('gian', GAIN)
+
+
+class UndeclaredGain(Proportional):
+    options: ClassVar[Options | None] = None
+
+    def __init__(self, context: ControllerContext) -> None:
+        self._gain = context.gains.get('gain', GAIN)
+
+
+class RandomNumbers(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * measurement.slip_error_rpm + random.gauss(0.0, 0.1))
+
+
+class WallClock(Proportional):
+    def __init__(self, context: ControllerContext) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        self._last, self._integral = time.monotonic(), 0.0
+
+    def update(self, measurement: Measurement) -> Command:
+        now = time.monotonic()
+        self._integral += (now - self._last) * measurement.slip_error_rpm
+        self._last = now
+        return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self._integral))
+
+
+class Prints(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        print('e =', measurement.slip_error_rpm)
+        return super().update(measurement)
