@@ -26,6 +26,7 @@ setup(
     version=ElementTree.parse('package.xml').findtext('version'),
     packages=find_packages(exclude=['test']),
     package_data={
+        f'{PACKAGE}.bag.file': ['*.yaml'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.thesis': ['admissible_scenarios/*'],
         f'{PACKAGE}.verdict': ['*.yaml'],

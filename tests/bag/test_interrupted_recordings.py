@@ -9,6 +9,7 @@ import sys
 import textwrap
 
 import pytest
+from mcap.reader import make_reader
 
 from ddct_bringup.bag import repair
 from ddct_bringup.bag.reader import mcap_of, read_bag
@@ -127,7 +128,10 @@ def test_repairing_restores_lost_metadata(source):
 def test_repair_keeps_what_is_before_the_damage(source):
     file = mcap_of(source)
     damaged = bytearray(file.read_bytes())
-    damaged[len(damaged) // 2] ^= 0xFF
+    with file.open('rb') as stream:
+        chunks = make_reader(stream).get_summary().chunk_indexes
+    middle = chunks[len(chunks) // 2]
+    damaged[middle.chunk_start_offset + middle.chunk_length // 2] ^= 0xFF
     file.write_bytes(damaged)
     expected = 100
     repair = repair_bag(source)

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 ROS = {
-    *('ament_index_python', 'builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs'),
+    *('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs'),
     *('rcl_interfaces', 'rclpy', 'rosgraph_msgs', 'sensor_msgs', 'std_msgs', 'trajectory_msgs'),
 }
 """Modules of ROS packages, which package.xml names as they are and PyPI does not have."""
@@ -94,7 +94,7 @@ def test_package_xml_names_exactly_what_is_imported_and_has_a_key(package: str) 
 
 def implied_by_ros(package: str) -> set[str]:
     """Return what is imported by a name that is made when the program runs."""
-    # `message_class` imports the package of each topic's type, `load_definition` finds its text.
+    # `ros_class` imports the package of each topic's type.
     if package not in ('ddct_plant', 'ddct_bringup'):
         return set()
     from ddct_plant.graph.topics import TOPICS

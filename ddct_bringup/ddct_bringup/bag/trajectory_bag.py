@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from rclpy.serialization import serialize_message
-
+from ddct_bringup.bag.file.plain_message import plain_class, serialiser
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order
 from ddct_bringup.bag.trajectory import Trajectory
@@ -31,15 +30,18 @@ def write_trajectory(
     run = RunFacts.from_custom_data(custom_data).kind(two_input=trajectory.two_input)
     topics = recorded_topics(run)
     with BagWriter(folder, name, topics, custom_data) as bag:
+        write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)
         for node in run_info_order(run_info):
-            message = RUN_INFO.message(START_NS, run_info[node], name=node)
-            bag.write(RUN_INFO.name, START_NS, serialize_message(message))
+            message = write_info(START_NS, run_info[node], name=node)
+            bag.write(RUN_INFO.name, START_NS, serialise_info(message))
         writers = [
-            (topic, topic.writer(), topic.signals_in(run)) for topic in topics if topic.every_tick
+            (topic, topic.writer(plain_class), serialiser(topic.type), topic.signals_in(run))
+            for topic in topics
+            if topic.every_tick
         ]
         for k in range(trajectory.steps + 1):
             stamp = stamp_of_step(k)
-            for topic, write, signals in writers:
+            for topic, write, serialise, signals in writers:
                 values = (trajectory.signals[signal.name][k] for signal in signals)
-                bag.write(topic.name, stamp, serialize_message(write(stamp, *values)))
+                bag.write(topic.name, stamp, serialise(write(stamp, *values)))
     return bag.path

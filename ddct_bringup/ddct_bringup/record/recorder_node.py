@@ -96,6 +96,7 @@ class RecorderNode(GraphNode):
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
         self._ack = self.create_publisher(RECORDER_ACK.message_class, RECORDER_ACK.name, LOOP_QOS)
+        self._write_ack = RECORDER_ACK.writer()
         self._acknowledged = 0
         self._second_node: DdctError | None = None
         self._subscribe_all()
@@ -215,7 +216,7 @@ class RecorderNode(GraphNode):
 
     def _acknowledge(self, stamp: int) -> bytes:
         """Publish the acknowledgement of a tick and return it, serialised."""
-        ack = serialize_message(RECORDER_ACK.message(stamp))
+        ack = serialize_message(self._write_ack(stamp))
         self._ack.publish(ack)
         self._acknowledged = stamp
         return ack

@@ -4,7 +4,11 @@ import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
-from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_bringup.bag.file.message_definitions import (
+    definition_in,
+    load_definition,
+    message_types,
+)
 from ddct_plant.base.errors import DdctError
 
 STAMP = {'sec': 3, 'nanosec': 70_000_000}
@@ -39,12 +43,34 @@ MESSAGES = {
             }
         ],
     },
-    # Fixed arrays, single bytes and eight-byte fields behind them.
-    'sensor_msgs/msg/NavSatFix': {
+    'made_msgs/msg/Fix': {
         'header': HEADER,
         'status': {'status': 1, 'service': 2},
-        'position_covariance': [float(i) for i in range(9)],
-        'position_covariance_type': 1,
+        'latitude': 1.0,
+        'covariance': [float(i) for i in range(9)],
+        'covariance_type': 1,
+        'few': [2.0],
+        'short': 'abc',
+    },
+}
+TYPES = {
+    **message_types(),
+    # Fixed and bounded arrays, single bytes and eight-byte fields behind them.
+    'made_msgs/msg/FixStatus': {
+        'hash': '',
+        'fields': ['int8 NO=-1', 'int8 status', 'uint16 service'],
+    },
+    'made_msgs/msg/Fix': {
+        'hash': '',
+        'fields': [
+            'std_msgs/Header header',
+            'made_msgs/FixStatus status',
+            'float64 latitude',
+            'float64[9] covariance',
+            'uint8 covariance_type',
+            'float64[<=3] few',
+            'string<=5 short',
+        ],
     },
 }
 
@@ -52,7 +78,7 @@ MESSAGES = {
 @pytest.fixture(params=MESSAGES)
 def case(request):
     """Return the type name, a serialiser's bytes and a decoder."""
-    definition = load_definition(request.param)
+    definition = definition_in(TYPES, request.param)
     serialise = serialize_dynamic(request.param, definition.schema_text)[request.param]
     decode = generate_dynamic(request.param, definition.schema_text)[request.param]
     return definition, serialise(MESSAGES[request.param]), decode

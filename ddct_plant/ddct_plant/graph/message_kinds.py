@@ -25,9 +25,11 @@ from ddct_plant.models.driveline import PHASE_CHANGES, PHASES, PhaseEvent
 NS_PER_S = 1_000_000_000
 Write = Callable[..., Any]
 """`write(stamp_ns, *values)` fills the one message that it keeps, and returns it."""
+ClassOf = Callable[[str], Any]
+"""What gives the class of messages by its type: `ros_class`, or one without ROS."""
 
 
-def message_class(type_name: str) -> Any:
+def ros_class(type_name: str) -> Any:
     """Return the ROS class of a type such as 'sensor_msgs/msg/JointState'."""
     package, kind, name = type_name.split('/')
     return getattr(importlib.import_module(f'{package}.{kind}'), name)
@@ -56,10 +58,10 @@ class MessageKind(ABC):
     type: str
     """Such as 'sensor_msgs/msg/JointState'."""
 
-    def writer(self) -> Write:
+    def writer(self, class_of: ClassOf = ros_class) -> Write:
         """Return a function that fills a message of its own; its values are those of `values`."""
-        message = message_class(self.type)()
-        time, fill = _time_of(message), self._filler(message)
+        message = class_of(self.type)()
+        time, fill = _time_of(message), self._filler(message, class_of)
 
         def write(stamp: int, *values: Any, **options: Any) -> Any:
             set_time(time, stamp)
@@ -69,8 +71,8 @@ class MessageKind(ABC):
         return write
 
     @abstractmethod
-    def _filler(self, message: Any) -> Callable[..., None]:
-        """Return what sets the values of `message`, which is new."""
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        """Return what sets the values of `message`, which is new; of its parts too."""
 
     @abstractmethod
     def values(self, message: Any) -> tuple[Any, ...]:
@@ -85,7 +87,7 @@ class MessageKind(ABC):
 class StampOnly(MessageKind):
     """No value: the message only says that its stamp has come."""
 
-    def _filler(self, message: Any) -> Callable[..., None]:
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         return lambda: None
 
     def values(self, message: Any) -> tuple[Any, ...]:
@@ -105,7 +107,7 @@ class Scalar(MessageKind):
     at_least: float | None = None
     """Lowest value that a node takes in."""
 
-    def _filler(self, message: Any) -> Callable[..., None]:
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
         holder = attrgetter(parent)(message) if parent else message
 
@@ -135,7 +137,7 @@ class Joints(MessageKind):
 
     names: tuple[str, ...]
 
-    def _filler(self, message: Any) -> Callable[..., None]:
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         message.name = list(self.names)
 
         def fill(
@@ -181,14 +183,18 @@ class Points(MessageKind):
     count: int | None = None
     """How many points; None leaves that to the first message of a writer."""
 
-    def _filler(self, message: Any) -> Callable[..., None]:
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         columns: list[tuple[int, list[Any]]] = []
 
         def fill(*values: Sequence[float]) -> None:
             if not columns:
                 joints = self.joints[: len(values) // len(self.fields)]
                 message.joint_names = list(joints)
-                message.points = self._points(self.count or len(values[0]), len(joints))
+                message.points = self._points(
+                    class_of('trajectory_msgs/msg/JointTrajectoryPoint'),
+                    self.count or len(values[0]),
+                    len(joints),
+                )
                 columns.extend(
                     (joint, [getattr(point, field) for point in message.points])
                     for field in self.fields
@@ -200,8 +206,7 @@ class Points(MessageKind):
 
         return fill
 
-    def _points(self, count: int, joints: int) -> list[Any]:
-        new = message_class('trajectory_msgs/msg/JointTrajectoryPoint')
+    def _points(self, new: Callable[..., Any], count: int, joints: int) -> list[Any]:
         points = [new(**{field: [0.0] * joints for field in self.fields}) for _ in range(count)]
         for i, point in enumerate(points):
             set_time(point.time_from_start, i * self.spacing_ns)
@@ -312,11 +317,11 @@ class Status(MessageKind):
     name: str = ''
     """Who says it, where that is always the same."""
 
-    def _filler(self, message: Any) -> Callable[..., None]:
-        new_status = message_class('diagnostic_msgs/msg/DiagnosticStatus')
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        new_status = class_of('diagnostic_msgs/msg/DiagnosticStatus')
         status = new_status(name=self.name)
         message.status = [status]
-        new_pair = message_class('diagnostic_msgs/msg/KeyValue')
+        new_pair = class_of('diagnostic_msgs/msg/KeyValue')
 
         def fill(pairs: Sequence[tuple[str, str]], *, name: str = '', error: str = '') -> None:
             if name:
@@ -346,8 +351,8 @@ class PhaseReport(MessageKind):
 
     _WORK: ClassVar[str] = 'friction_work_j'
 
-    def _filler(self, message: Any) -> Callable[..., None]:
-        fill_pairs = Status(self.type, 'clutch')._filler(message)
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        fill_pairs = Status(self.type, 'clutch')._filler(message, class_of)
 
         def fill(phase: float, work: float, events: Sequence[PhaseEvent]) -> None:
             changes = [(kind, repr(time_s)) for time_s, kind in events]

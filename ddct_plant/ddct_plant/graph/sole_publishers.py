@@ -7,7 +7,7 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.message_kinds import message_class
+from ddct_plant.graph.message_kinds import ros_class
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.topics import all_topics
@@ -34,7 +34,7 @@ class _Probe:
     def __init__(self, node: Node, topic: str, type_name: str) -> None:
         self.since = time.monotonic()
         self.subscription: Subscription = node.create_subscription(
-            message_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
+            ros_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
         )
         self._watch = SequenceWatch()
 

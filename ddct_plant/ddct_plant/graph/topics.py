@@ -11,6 +11,7 @@ from operator import itemgetter
 from typing import Any
 
 from ddct_plant.graph.message_kinds import (
+    ClassOf,
     ClutchPoints,
     Joints,
     MessageKind,
@@ -21,7 +22,7 @@ from ddct_plant.graph.message_kinds import (
     Status,
     TorquePoints,
     Write,
-    message_class,
+    ros_class,
 )
 from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 
@@ -94,7 +95,7 @@ class Topic:
     @property
     def message_class(self) -> Any:
         """The ROS class of its messages."""
-        return message_class(self.kind.type)
+        return ros_class(self.kind.type)
 
     @property
     def resolved_name(self) -> str:
@@ -118,9 +119,9 @@ class Topic:
         """Say whether the recording of a run has it."""
         return self.in_run(run) and not (run.lockstep and self.wall_clock)
 
-    def writer(self) -> Write:
+    def writer(self, class_of: ClassOf = ros_class) -> Write:
         """Return what fills one message again and again: `write(stamp_ns, *values)`."""
-        return self.kind.writer()
+        return self.kind.writer(class_of)
 
     def message(self, stamp: int, *values: Any, **options: Any) -> Any:
         """Return a new message; its values are those of `signals`."""

@@ -8,10 +8,8 @@ CDR aligns numbers with bytes that the ROS serialiser leaves as it finds them in
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain
-from typing import Any
 
-from ddct_bringup.bag.file.message_definitions import MessageDefinition
+from ddct_bringup.bag.file.message_definitions import PRIMITIVES, STRING, MessageDefinition
 from ddct_plant.base.errors import DdctError
 
 _HEADER = b'\x00\x01'
@@ -20,15 +18,6 @@ _BODY = 4
 
 _LAYOUTS_KEPT = 32
 """Layouts remembered per message size; numbers written as text have a few lengths each."""
-
-_NESTED = 1
-_STRING = 17
-_SIZES = {2: 1, 3: 1, 4: 2, 5: 2, 6: 4, 7: 4, 8: 8, 9: 8, 10: 4, 11: 8, 13: 1, 15: 1, 16: 1}
-"""Size of each primitive by its number in type_description_interfaces/msg/FieldType."""
-_KNOWN = {_NESTED, _STRING, *_SIZES}
-_SHAPE = 48
-"""Added to a primitive's number once for an array, more often for kinds of sequences."""
-_ARRAY = 1
 
 
 @dataclass(frozen=True)
@@ -56,21 +45,15 @@ class _Walk:
     def message(self, type_name: str) -> None:
         """Pass a message; raise ValueError or struct.error where the body holds none."""
         for field in self._fields[type_name]:
-            self._field(field['type'])
-
-    def _field(self, field: dict[str, Any]) -> None:
-        shape, element = divmod(field['type_id'], _SHAPE)
-        count = field['capacity'] if shape == _ARRAY else 1
-        if shape > _ARRAY:
-            count = self._length()
-        if element in _SIZES:
-            self._numbers(_SIZES[element], count)
-            return
-        for _ in range(count):
-            if element == _STRING:
-                self._string()
-            else:
-                self.message(field['nested_type_name'])
+            count = self._length() if field.count is None else field.count
+            if field.kind in PRIMITIVES:
+                self._numbers(PRIMITIVES[field.kind], count)
+                continue
+            for _ in range(count):
+                if field.kind == STRING:
+                    self._string()
+                else:
+                    self.message(field.kind)
 
     def _numbers(self, size: int, count: int) -> None:
         if count:
@@ -99,14 +82,7 @@ class CdrNormaliser:
     """Set the alignment bytes of one message type to zero and cut what follows the message."""
 
     def __init__(self, definition: MessageDefinition) -> None:
-        """Raise DdctError for a type with fields that this reader does not know."""
         self._definition = definition
-        for field in chain.from_iterable(definition.fields.values()):
-            if field['type']['type_id'] % _SHAPE not in _KNOWN:
-                raise DdctError(
-                    f'{definition.type_name}: field type {field["type"]["type_id"]} is not '
-                    'supported'
-                )
         self._layouts: dict[int, list[_Layout]] = {}
 
     def normalise(self, cdr: bytes) -> bytes:

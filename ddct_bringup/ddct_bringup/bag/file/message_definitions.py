@@ -1,17 +1,40 @@
-"""Message definitions of the ROS installation: schema text, type hash and field types."""
+"""Message definitions, without ROS: schema text, hash and fields of each type on the graph."""
 
-import json
-import sys
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
-
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.yaml_text import parse_yaml
+
+TYPES_FILE = Path(__file__).with_name('messages.yaml')
+
+STRING = 'string'
+PRIMITIVES = {
+    **dict.fromkeys(('bool', 'byte', 'char', 'int8', 'uint8'), 1),
+    **dict.fromkeys(('int16', 'uint16'), 2),
+    **dict.fromkeys(('int32', 'uint32', 'float32'), 4),
+    **dict.fromkeys(('int64', 'uint64', 'float64'), 8),
+}
+"""Size of each in bytes."""
 
 _SEPARATOR = '=' * 80
+_FIELD = re.compile(r'(?P<kind>[\w/]+)(?:<=\d+)?(?P<many>\[(?:<=\d+|(?P<count>\d*))\])? \w+')
+"""A line of a definition that is no constant."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a message type."""
+
+    kind: str
+    """One of PRIMITIVES, STRING, or a type such as 'std_msgs/msg/Header'."""
+    count: int | None
+    """How many values it has; None where each message has a number of its own."""
 
 
 @dataclass(frozen=True)
@@ -21,69 +44,54 @@ class MessageDefinition:
     type_name: str
     """Such as 'std_msgs/msg/Header'."""
     schema_text: str
-    """The .msg text, then that of each type inside it, once, depth first."""
+    """Its definition, then that of each type inside it, once, depth first."""
     type_hash: str
     """RIHS01 hash of the type."""
-    fields: dict[str, list[dict[str, Any]]]
-    """Fields of the type and of each type inside it, by type name, as the .json beside it."""
+    fields: Mapping[str, list[Field]]
+    """Fields of the type and of each type inside it, by type name."""
 
 
 @cache
 def load_definition(type_name: str) -> MessageDefinition:
-    """Read the definition of a type such as 'std_msgs/msg/Header'; raise DdctError without it."""
-    file = _definition_file(type_name, '.json')
-    try:
-        description = json.loads(file.read_text(encoding='utf-8'))
-        types = description['type_description_msg']
-        fields = {
-            entry['type_name']: entry['fields']
-            for entry in [types['type_description'], *types['referenced_type_descriptions']]
-        }
-        hashes = {entry['type_name']: entry['hash_string'] for entry in description['type_hashes']}
-        return MessageDefinition(
-            type_name, _schema_text(type_name, fields), hashes[type_name], fields
-        )
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise DdctError(
-            f'{file}: cannot read the definition of {type_name} ({error!r}): '
-            'install the ROS message packages again'
-        ) from error
+    """Return the definition of a type on the graph, such as 'std_msgs/msg/Header'."""
+    return definition_in(message_types(), type_name)
 
 
-def _schema_text(type_name: str, fields: dict[str, list[dict[str, Any]]]) -> str:
-    """Return the .msg text of the type followed by those of the types inside it."""
-    order: list[str] = []
+@cache
+def message_types() -> Mapping[str, Any]:
+    """Return the content of TYPES_FILE: by type name its hash, and its fields as text."""
+    return parse_yaml(read_text_file(TYPES_FILE))
+
+
+def definition_in(types: Mapping[str, Any], type_name: str) -> MessageDefinition:
+    """Return a definition out of such a content; raise DdctError where a type is not in it."""
+    fields: dict[str, list[Field]] = {}
+    text: list[str] = []
 
     def visit(name: str) -> None:
-        if name not in order:
-            order.append(name)
-            for field in fields[name]:
-                if nested := field['type']['nested_type_name']:
-                    visit(nested)
+        if name in fields:
+            return
+        if name not in types:
+            raise DdctError(f'{TYPES_FILE.name} does not define {name}: add it there')
+        lines = types[name]['fields']
+        if text:
+            text.extend(('', _SEPARATOR, f'MSG: {name.replace("/msg/", "/")}'))
+        text.extend(lines)
+        fields[name] = [_field(line) for line in lines if '=' not in line.replace('<=', '')]
+        for field in fields[name]:
+            if field.kind not in PRIMITIVES and field.kind != STRING:
+                visit(field.kind)
 
     visit(type_name)
-    text = _definition_file(type_name, '.msg').read_text(encoding='utf-8')
-    for name in order[1:]:
-        nested_text = _definition_file(name, '.msg').read_text(encoding='utf-8')
-        text += f'\n{_SEPARATOR}\nMSG: {name.replace("/msg/", "/")}\n{nested_text}'
-    return text
+    schema_text = '\n'.join((*text, ''))
+    return MessageDefinition(type_name, schema_text, types[type_name]['hash'], fields)
 
 
-def _definition_file(type_name: str, suffix: str) -> Path:
-    package, _, name = type_name.partition('/msg/')
-    return _share(package) / 'msg' / f'{name}{suffix}'
-
-
-def _share(package: str) -> Path:
-    """Return share/<package>: through the ament index, else of the environment Python runs in."""
-    try:
-        return Path(get_package_share_directory(package))
-    except (PackageNotFoundError, OSError):
-        # The ROS wheels set no AMENT_PREFIX_PATH; their prefix is Python's own.
-        share = Path(sys.prefix) / 'share' / package
-    if not share.is_dir():
-        raise DdctError(
-            f'no message definitions of {package} in AMENT_PREFIX_PATH or {sys.prefix}: '
-            'source the ROS setup file, or install ros-jazzy-common-interfaces'
-        )
-    return share
+def _field(line: str) -> Field:
+    found = _FIELD.fullmatch(line)
+    if found is None:
+        raise DdctError(f'{TYPES_FILE.name}: {line!r} is no field')
+    kind = found['kind'].replace('/', '/msg/')
+    if not found['many']:
+        return Field(kind, 1)
+    return Field(kind, int(found['count']) if found['count'] else None)
