@@ -12,7 +12,9 @@ class Rules:
     """Thresholds of the states, and what the criteria assume; their reasons stand in the file."""
 
     engaged_slip: float = _rule('rpm')
-    """Magnitude of w_d below which the plates count as one."""
+    """Magnitude of w_d below which the plates of a linear clutch count as one."""
+    locked_slip: float = _rule('rpm')
+    """The same of a clutch that sticks, where it has not locked."""
     settled_time: float = _rule('s')
     """How long the slip has to keep below it at the end of the run."""
     oscillation_turns: float = _rule('1', at_least=3.0)
@@ -21,6 +23,8 @@ class Rules:
     """Magnitude of w_d beyond which the plates have been driven apart."""
     runaway_growth: float = _rule('rpm/s')
     """Growth of the magnitude of w_d at the end from which they are being driven apart."""
+    runaway_swing: float = _rule('1', at_least=1.0)
+    """How far a swing reaches of what was reached before, from which they grow without end."""
     engagements_a_day: float = _rule('1')
     """For the daily vibration dose."""
 

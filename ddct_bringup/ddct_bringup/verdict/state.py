@@ -9,10 +9,14 @@ The state that a run reached: one word, by the rules of the limits file.
     invalid       the run does not count
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+from scipy.stats import linregress
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
+from ddct_bringup.verdict.lock import LOCKED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
@@ -20,6 +24,10 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 ENGAGED, NOT_ENGAGED, OSCILLATING = 'engaged', 'not_engaged', 'oscillating'
 RUNAWAY, INVALID = 'runaway', 'invalid'
 STATES = (ENGAGED, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
+FEWEST_SWINGS = 4
+"""Through whose middles a line says something: two cycles."""
+DOUBT = 2.0
+"""Standard errors of a slope: 95 % of what chance makes."""
 
 
 def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:
@@ -33,12 +41,13 @@ def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:
     if np.max(np.abs(whole)) > rules.runaway_slip:
         return RUNAWAY
     slip = whole[control_start:]
-    cycle = _cycle(slip, rules)
-    # A cycle leaves the band again before the longer half of it is over.
-    needed = max(rules.settled_time, cycle or 0.0)
-    if _time_within(slip, rules.engaged_slip) >= needed:
+    turns = turns_of(slip, 2.0 * rules.engaged_slip)
+    cycle = _cycle(slip, turns, rules)
+    if _together(trajectory.clutch_phase, slip, cycle, rules):
         return ENGAGED
-    if _driven_apart(trajectory, slip, cycle is not None, rules):
+    asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
+    apart = _driven_apart(slip, rules) if cycle is None else _swings_apart(slip, turns, rules)
+    if apart and asked <= rules.engaged_slip:
         return RUNAWAY
     return NOT_ENGAGED if cycle is None else OSCILLATING
 
@@ -64,20 +73,37 @@ def turns_of(values: np.ndarray, swing: float) -> list[int]:
     return turns
 
 
-def _cycle(slip: np.ndarray, rules: Rules) -> float | None:
+def _cycle(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> float | None:
     """
     Return the longer half in s of the last cycle of a slip that goes to and fro, else None.
 
-    It does when it has turned often enough, and last no longer ago than twice that.
+    It does when it has turned often enough, and last no longer ago than twice that. What lies
+    between its first turns may be the engagement itself and is no half of a cycle.
     """
-    turns = turns_of(slip, 2.0 * rules.engaged_slip)
     if len(turns) < rules.oscillation_turns:
         return None
-    first, second, third = turns[-3:]
-    longer_half = max(second - first, third - second)
-    if len(slip) - 1 - third > 2 * longer_half:
+    longer_half = max(np.diff(turns[1:])[-2:])
+    if len(slip) - 1 - turns[-1] > 2 * longer_half:
         return None
-    return longer_half * PERIOD_S
+    return float(longer_half * PERIOD_S)
+
+
+def _together(
+    phase: np.ndarray | None, slip: np.ndarray, cycle: float | None, rules: Rules
+) -> bool:
+    """
+    Say whether the plates turn as one at the end.
+
+    Those of a clutch that sticks do when they are locked, at once. A linear clutch cannot lock: it
+    runs through zero, where such plates would stay, and its slip may come back from beyond.
+    """
+    locked = phase is not None and phase[-1] == LOCKED
+    band = rules.engaged_slip if phase is None else rules.locked_slip
+    # A cycle leaves the band again before the longer half of it is over.
+    needed = max(0.0 if locked else rules.settled_time, cycle or 0.0)
+    if _time_within(slip, band) >= needed:
+        return True
+    return phase is None and cycle is None and _comes_back(slip, rules)
 
 
 def _time_within(slip: np.ndarray, band: float) -> float:
@@ -87,31 +113,77 @@ def _time_within(slip: np.ndarray, band: float) -> float:
     return float((len(slip) - 1 - first) * PERIOD_S)
 
 
-def _driven_apart(trajectory: Trajectory, slip: np.ndarray, cycles: bool, rules: Rules) -> bool:
+def _comes_back(slip: np.ndarray, rules: Rules) -> bool:
     """
-    Say whether the slip grows at the end although the reference asks for none.
+    Say whether a slip that has crossed zero is about to return there.
 
-    Of a slip that goes to and fro it must also be beyond all that was before. Of one that has
-    crossed zero the growth must not become less, as it does in an overshoot.
+    It has gone less far beyond than it was before, and at the rate at which it falls at the end it
+    is gone in less time than it has been beyond.
     """
-    window = round(rules.settled_time / PERIOD_S)
+    window, crossed = _window(rules), _crossing(slip)
     distance = np.abs(slip)
-    asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
-    if len(slip) <= window or distance[-1] <= rules.engaged_slip or asked > rules.engaged_slip:
+    beyond = distance[crossed:]
+    if not crossed or len(beyond) <= window or beyond.max() >= distance[:crossed].max():
+        return False
+    fall = -_growth(beyond[-1 - window :])
+    return bool(beyond[-1] < fall * (len(beyond) - 1) * PERIOD_S)
+
+
+def _driven_apart(slip: np.ndarray, rules: Rules) -> bool:
+    """
+    Say whether the slip grows at the end.
+
+    Of one that has crossed zero, and has not gone further than it was before, the growth must not
+    become less, as it does in an overshoot.
+    """
+    window = _window(rules)
+    distance = np.abs(slip)
+    if len(slip) <= window or distance[-1] <= rules.engaged_slip:
         return False
     growth = _growth(distance[-1 - window :])
     if growth < rules.runaway_growth:
         return False
-    if cycles:
-        before = np.max(distance[: -1 - window], initial=0.0)
-        return bool(distance[-1] > before + rules.engaged_slip)
-    other_side = np.flatnonzero(slip * slip[-1] < 0.0)
-    if not other_side.size:
+    crossed = _crossing(slip)
+    if distance[-1] > distance[:crossed].max(initial=0.0):
         return True
-    beyond = distance[other_side[-1] + 1 :]
+    beyond = distance[crossed:]
     if len(beyond) <= 2 * window:
         return False
     return growth > _growth(beyond[-1 - 2 * window : -window]) - rules.runaway_growth
+
+
+def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:
+    """
+    Say whether a slip that goes to and fro moves away from zero, or swings ever further.
+
+    The plates do not meet in the last cycle, and a straight line through the middles of the later
+    half of the swings grows by more than its doubt. The slip swings ever further when its last
+    cycle reaches `runaway_swing` times what was reached before.
+    """
+    before, cycle = slip[: turns[-3] + 1], slip[turns[-3] + 1 :]
+    if np.abs(cycle).max() >= rules.runaway_swing * np.abs(before).max():
+        return True
+    at = np.asarray(turns)
+    middles = ((slip[at[1:]] + slip[at[:-1]]) / 2.0)[(len(at) - 1) // 2 :]
+    times = ((at[1:] + at[:-1]) * PERIOD_S / 2.0)[(len(at) - 1) // 2 :]
+    if len(middles) < FEWEST_SWINGS or _met(cycle, rules.engaged_slip):
+        return False
+    line = linregress(times, np.sign(middles[-1]) * middles)
+    return bool(line.slope - DOUBT * line.stderr >= rules.runaway_growth)
+
+
+def _met(slip: np.ndarray, band: float) -> bool:
+    return bool(slip.min() <= band and slip.max() >= -band)
+
+
+def _window(rules: Rules) -> int:
+    return round(rules.settled_time / PERIOD_S)
+
+
+def _crossing(slip: np.ndarray) -> int:
+    """Return from which sample on the slip keeps the sign that it ends with, 0 for all."""
+    other_side = np.flatnonzero(slip * slip[-1:] < 0.0)
+    return int(other_side[-1]) + 1 if other_side.size else 0
 
 
 def _growth(values: np.ndarray) -> float:
