@@ -75,17 +75,21 @@ def turns_of(values: np.ndarray, swing: float) -> list[int]:
 
 def _cycle(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> float | None:
     """
-    Return the longer half in s of the last cycle of a slip that goes to and fro, else None.
+    Return the longest half in s of the last two cycles of a slip that goes to and fro, else None.
 
-    It does when it has turned often enough, and last no longer ago than twice that. What lies
-    between its first turns may be the engagement itself and is no half of a cycle.
+    It does when it has turned often enough and goes on. It has died down when it has not turned
+    for that long and since then moved less than half as far as in the swing before, or when it has
+    not turned for twice that long. What lies between its first turns may be the engagement itself
+    and is no half of a cycle; a bump halves a cycle, so one alone does not tell.
     """
     if len(turns) < rules.oscillation_turns:
         return None
-    longer_half = max(np.diff(turns[1:])[-2:])
-    if len(slip) - 1 - turns[-1] > 2 * longer_half:
+    longest_half = max(np.diff(turns[1:])[-4:])
+    since = len(slip) - 1 - turns[-1]
+    swing, moved = abs(slip[turns[-1]] - slip[turns[-2]]), np.ptp(slip[turns[-1] :])
+    if since > (2 if moved >= swing / 2.0 else 1) * longest_half:
         return None
-    return float(longer_half * PERIOD_S)
+    return float(longest_half * PERIOD_S)
 
 
 def _together(
@@ -99,7 +103,7 @@ def _together(
     """
     locked = phase is not None and phase[-1] == LOCKED
     band = rules.engaged_slip if phase is None else rules.locked_slip
-    # A cycle leaves the band again before the longer half of it is over.
+    # A cycle leaves the band again before the longest half of it is over.
     needed = max(0.0 if locked else rules.settled_time, cycle or 0.0)
     if _time_within(slip, band) >= needed:
         return True
