@@ -17,6 +17,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.verdict.limits_file import load_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 ENTRY_KEYS = [
@@ -74,7 +75,7 @@ def runs_in(text):
         raise AssertionError(f'{constant} is no JSON')
 
     document = json.loads(text, parse_constant=refuse)
-    assert list(document) == ['schema_version', 'runs']
+    assert list(document) == ['schema_version', 'limits', 'runs']
     assert document['schema_version'] == 2
     return document['runs']
 
@@ -139,7 +140,10 @@ def test_another_limits_file_judges_otherwise(bags, trajectory, tmp_path, capsys
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     mine.write_text(text[: text.index('limits:')] + 'limits: []\n', encoding='utf-8')
     assert main([bag, '--limits', str(mine), '--json', '-']) == 0
-    assert runs_in(capsys.readouterr().out)[0]['verdict']['limits'] == 'no_limit'
+    printed = capsys.readouterr().out
+    assert runs_in(printed)[0]['verdict']['limits'] == 'no_limit'
+    assert json.loads(printed)['limits'] == load_limits(mine).origin
+    assert json.loads(printed)['limits']['name'] == 'mine.yaml'
 
 
 def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):

@@ -1,16 +1,25 @@
 """`compare` leaves the report beside the bags, with the evidence it has just written."""
 
+import json
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
 from ddct_bringup.programs.compare import main
+from ddct_bringup.verdict.limits_file import load_limits
 
 
 def test_compare_ends_with_the_report(tmp_path: Path) -> None:
     pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     out = tmp_path / 'demo'
-    assert main(['--controllers', 'pi,ls8', '--headless', '--out', str(out)]) == 0
+    limits = tmp_path / 'mine.yaml'
+    limits.write_bytes((files('ddct_bringup.verdict') / 'limits.yaml').read_bytes())
+    arguments = ['--controllers', 'pi,ls8', '--headless', '--limits', str(limits)]
+    assert main([*arguments, '--out', str(out)]) == 0
     page = (out / 'report.html').read_text(encoding='utf-8')
     assert '<title>Clutch engagement, thesis: pi, ls8</title>' in page
     assert 'Computed for this page' not in page
+    assert 'Judged by the limits <b>mine.yaml</b>' in page
+    scores = json.loads((out / 'scores.json').read_text(encoding='utf-8'))
+    assert scores['limits'] == load_limits(limits).origin

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from ddct_bringup.programs.report import main
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.thesis.predictions import predicted_range
+from ddct_bringup.verdict.limits_file import load_limits
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -61,6 +63,24 @@ def test_a_predicted_figure_has_its_range_and_whether_it_is_a_hit(tmp_path: Path
     assert 'predicted' in text
     assert 'miss' in text
     assert 'a hit is within 25 % of the print' in text
+
+
+def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path) -> None:
+    mine, out = tmp_path / 'mine.yaml', tmp_path / 'report.html'
+    text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+    rules = text[: text.index('limits:')]
+    limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true}'
+    mine.write_text(f'{rules}limits:\n{limit}\n', encoding='utf-8')
+    assert main([str(demo), '--limits', str(mine), '--out', str(out)]) == 0
+    shown = read(out).text
+    assert f'Judged by the limits mine.yaml {load_limits(mine).origin["digest"]}' in shown
+    assert 'convention' in shown
+    assert 'ISO 2631-1:1997' not in shown
+
+
+def test_bad_limits_are_named_before_anything_is_read(tmp_path: Path, capsys) -> None:
+    assert main([str(tmp_path), '--limits', str(tmp_path / 'none.yaml')]) == 1
+    assert capsys.readouterr().err.startswith(f'report: limits {tmp_path / "none.yaml"}: cannot')
 
 
 def test_the_page_says_where_it_comes_from(page: Path) -> None:

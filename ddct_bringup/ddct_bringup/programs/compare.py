@@ -89,8 +89,8 @@ def _run_all(
         for index, plan in enumerate(plans, start=1)
     ]
     entries = [run.entry for run in runs]
-    write_json(str(folder.path / SCORES_FILE), scores_document(entries))
-    _report(entries, settings, options)
+    write_json(str(folder.path / SCORES_FILE), scores_document(entries, limits))
+    _report(entries, settings, options, limits)
     failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
     if len(failed) == len(plans):
         tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
@@ -99,7 +99,7 @@ def _run_all(
             f'recorded is in {folder.path}'
         )
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
-    write_report(in_order(runs), str(folder.path / REPORT_FILE))
+    write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
     folder.commit()
     tell_of_logs(PROGRAM, [folder.final / plan.name for plan in plans])
     print(
@@ -133,9 +133,11 @@ def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
     return read_run(bag, out, limits)
 
 
-def _report(entries: list[Entry], settings: RunSettings, options: argparse.Namespace) -> None:
+def _report(
+    entries: list[Entry], settings: RunSettings, options: argparse.Namespace, limits: Limits
+) -> None:
     if options.json:
-        write_json(options.json, scores_document(entries))
+        write_json(options.json, scores_document(entries, limits))
     stream = sys.stderr if options.json == STDOUT else sys.stdout
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)

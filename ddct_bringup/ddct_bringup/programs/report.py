@@ -17,7 +17,8 @@ from ddct_bringup.report.runs import (
 )
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bags_in, with_progress
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
@@ -30,6 +31,7 @@ examples:
   ddct report runs/demo                                 every bag in the folder and below it
   ddct report runs/new/ls8 runs/worn/ls8 --out ls8.html one controller in two conditions
   ddct report runs/demo --out -                         the page on standard output
+  ddct report runs/demo --limits mine.yaml              judged by other limits than the packaged ones
 
 The page needs no network and no other file. Bags are scored anew; frequency.json and
 timing.json are taken from beside them. All runs must be of one scenario. The exit code is 0
@@ -46,20 +48,21 @@ def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
     require_writable(options.out)
+    limits = load_limits(options.limits)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with held(*filter(is_ours, places)):
         bags = with_progress(bags_in(options.runs), 'reading')
-        runs = in_order([read_run(*bag, packaged_limits()) for bag in bags])
-        write_report(runs, options.out)
+        runs = in_order([read_run(*bag, limits) for bag in bags])
+        write_report(runs, options.out, limits)
     for run in runs:
         if not run.entry['valid']:
             complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')
     return 0 if all(run.entry['valid'] for run in runs) else 1
 
 
-def write_report(runs: Sequence[ReportRun], out: str) -> None:
+def write_report(runs: Sequence[ReportRun], out: str, limits: Limits) -> None:
     """
-    Write the page over the runs, in their order.
+    Write the page over the runs, in their order, which these limits judged.
 
     `require_chart_library` must hold. A bag that could not be read is on the page with its reason.
     Raise DdctError when none can be read, when they are of several scenarios, and when the page
@@ -74,7 +77,7 @@ def write_report(runs: Sequence[ReportRun], out: str) -> None:
     require_one_scenario(runs)
     with Console(file=sys.stderr).status('frequency evidence'):
         evidence = evidence_of(runs)
-    write_text(out, report_page(runs, evidence))
+    write_text(out, report_page(runs, evidence, limits))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -96,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar='FILE',
         help=f"the page, {REPORT_FILE} if not given; '-' is standard output",
     )
+    add_limits_option(parser)
     return parser
 
 

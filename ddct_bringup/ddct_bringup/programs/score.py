@@ -60,7 +60,7 @@ def _score(argv: list[str]) -> int:
     with held(*_run_folders(options, [bag for bag, _ in bags])):
         runs = _scored(bags, options, limits)
         if options.json:
-            write_json(options.json, scores_document(runs))
+            write_json(options.json, scores_document(runs, limits))
         if options.csv:
             write_text(options.csv, scores_csv(runs))
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout

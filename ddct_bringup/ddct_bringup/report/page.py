@@ -34,6 +34,7 @@ from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
+from ddct_bringup.verdict.limits import Limits
 from ddct_plant.program.command_line import package_version
 
 SHOWN_AT_FIRST = 12
@@ -41,8 +42,14 @@ SHOWN_AT_FIRST = 12
 _SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
 
 
-def report_page(runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence]) -> str:
-    """Return the HTML of a report over runs of one scenario, at least one of them readable."""
+def report_page(
+    runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence], limits: Limits
+) -> str:
+    """
+    Return the HTML of a report over runs of one scenario, at least one of them readable.
+
+    `limits` are those that judged them.
+    """
     shown = _page_runs(runs)
     thesis_rows = [run['thesis'] for run in shown]
     charted = [_chart_run(run) for run in shown if run['charted']]
@@ -61,6 +68,7 @@ def report_page(runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence]) -> 
         phases=OPACITY,
         verdict=verdict_rows(runs),
         not_judged=NOT_JUDGED,
+        limits=limits.origin,
         pareto=pareto,
         front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,

@@ -163,6 +163,6 @@ def _why_early(recording: Recording) -> str:
     return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
 
 
-def scores_document(runs: Sequence[Entry]) -> dict[str, Any]:
-    """Return the content of `scores.json`."""
-    return {'schema_version': SCHEMA_VERSION, 'runs': list(runs)}
+def scores_document(runs: Sequence[Entry], limits: Limits) -> dict[str, Any]:
+    """Return the content of `scores.json` of runs that these limits judged."""
+    return {'schema_version': SCHEMA_VERSION, 'limits': limits.origin, 'runs': list(runs)}

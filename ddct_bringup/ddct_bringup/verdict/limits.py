@@ -1,6 +1,7 @@
 """What a run is judged by: the rules of the states, and the limits of the criteria."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 
 def _rule(unit: str, at_least: float | None = None) -> float:
@@ -52,6 +53,8 @@ class Limits:
 
     rules: Rules
     limits: tuple[Limit, ...]
+    origin: dict[str, Any] = field(compare=False, default_factory=dict)
+    """`name`, `digest` and `schema_version` of the file, as `scores.json` has them."""
 
     def of(self, criterion: str, scenario: str) -> Limit | None:
         """Return the strictest limit of a criterion for a scenario, None without one."""

@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import hashlib
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -18,6 +19,8 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 SCHEMA_VERSION = 1
 """Of a limits file."""
+PACKAGED = 'packaged'
+"""What the limits that come with the package are called."""
 _RULE_KEYS = ('value', 'unit', 'reason')
 _LIMIT_KEYS = ('criterion', 'value', 'unit', 'applies_to')
 _CITATION = ('source', 'clause')
@@ -27,7 +30,7 @@ _CITATION = ('source', 'clause')
 def packaged_limits() -> Limits:
     """Return the limits that come with the package."""
     file = files('ddct_bringup.verdict') / 'limits.yaml'
-    return limits_of_text(file.read_text(encoding='utf-8'), 'limits.yaml')
+    return limits_of_text(file.read_text(encoding='utf-8'), PACKAGED)
 
 
 def add_limits_option(parser: argparse.ArgumentParser) -> None:
@@ -52,12 +55,20 @@ def load_limits(file: Path | None) -> Limits:
 
 
 def limits_of_text(text: str, name: str) -> Limits:
-    """Return the limits of a text, called `name`; raise ParameterError that names what is bad."""
+    """
+    Return the limits of a text, called `name`; raise ParameterError that names what is bad.
+
+    Their origin has the name without its folders, and a digest that tells two files of one name
+    apart.
+    """
     try:
         content, lines = parse_yaml_with_lines(text)
-        return _LimitsFile(lines).limits(content)
+        limits = _LimitsFile(lines).limits(content)
     except ParameterError as error:
         raise ParameterError(f'limits {name}: {error}') from error
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    origin = {'name': Path(name).name, 'digest': digest, 'schema_version': SCHEMA_VERSION}
+    return dataclasses.replace(limits, origin=origin)
 
 
 class _LimitsFile:

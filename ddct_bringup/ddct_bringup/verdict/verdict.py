@@ -5,7 +5,7 @@ from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERIA, JudgedRun, criterion_values
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.state import INVALID, slip_state
+from ddct_bringup.verdict.state import ENGAGED, INVALID, slip_state
 
 Verdict = dict[str, Any]
 """State, limits and criteria, as in `scores.json`."""
@@ -29,14 +29,16 @@ def verdict_of(
     """
     Return the verdict over a run of a scenario, of its state and the values of its criteria.
 
-    The run is beyond limits if one criterion is, within if one is and none beyond.
+    The run is beyond limits if one criterion is. It is within if it is engaged, one criterion is
+    and none beyond: what never engaged, or ended early, has no engagement to keep within limits.
     """
     criteria = [
         _judged(criterion.name, criterion.unit, values[criterion.name], limits, scenario)
         for criterion in CRITERIA
     ]
     found = {criterion['state'] for criterion in criteria}
-    overall = next((each for each in (BEYOND, WITHIN) if each in found), NO_LIMIT)
+    possible = (BEYOND, WITHIN) if state == ENGAGED else (BEYOND,)
+    overall = next((each for each in possible if each in found), NO_LIMIT)
     return {'state': state, 'limits': overall, 'criteria': criteria}
 
 

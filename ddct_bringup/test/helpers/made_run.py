@@ -1,7 +1,8 @@
-"""Trajectories made by hand, of zeros but for the signals that a test gives."""
+"""Trajectories and facts made by hand: zeros and those of `thesis`, but for what a test gives."""
 
 import numpy as np
 
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 
 RAD_S_PER_RPM = np.pi / 30.0
@@ -29,3 +30,20 @@ def made_run(slip_rpm: np.ndarray, **signals: object) -> Trajectory:
 def times(duration_s: float = 3.0) -> np.ndarray:
     """Return the scenario times in s of a run."""
     return np.arange(round(100 * duration_s) + 1) / 100.0
+
+
+def made_facts(**values: object) -> RunFacts:
+    """Return the facts of a run of `ls8` in `thesis`, but for these."""
+    facts = {
+        'controller': 'ls8',
+        'architecture': 'detailed',
+        'scenario': 'thesis',
+        'clutch': 'linear',
+        'wear_gain': 1.0,
+        'mode': 'lockstep',
+        'seed': 0,
+        'control_start_s': 0.6,
+        'score_window_s': (0.6, 1.7),
+        'duration_s': 3.0,
+    }
+    return RunFacts(**{**facts, **values})

@@ -8,8 +8,8 @@ import pytest
 from bokeh.document import Document
 from bokeh.models import ColumnDataSource
 from bokeh.models.renderers import GlyphRenderer
+from made_run import made_facts
 
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.charts import ChartRun, chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
@@ -36,17 +36,8 @@ STICKING = (
     'clutch_static_torque',
     'clutch_temperature',
 )
-FACTS = RunFacts(
-    controller='pi',
-    architecture='detailed',
-    scenario='thesis',
-    clutch='linear',
-    wear_gain=1.0,
-    mode='lockstep',
-    seed=0,
-    control_start_s=0.06,
-    score_window_s=(0.06, 0.18),
-    duration_s=0.2,
+FACTS = made_facts(
+    controller='pi', control_start_s=0.06, score_window_s=(0.06, 0.18), duration_s=0.2
 )
 
 

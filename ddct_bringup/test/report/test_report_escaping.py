@@ -2,14 +2,15 @@
 
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.page import report_page, symbols
 from ddct_bringup.report.runs import ReportRun
@@ -53,14 +54,8 @@ class Elements(HTMLParser):
 def recording(text: str) -> Recording:
     """Return a run whose bag holds `text` wherever it may hold any."""
     scenario = SETTINGS.scenario
-    facts = RunFacts(
+    facts = made_facts(
         controller='pi',
-        architecture='detailed',
-        scenario='thesis',
-        clutch='linear',
-        wear_gain=1.0,
-        mode='lockstep',
-        seed=0,
         control_start_s=scenario.control_start_s,
         score_window_s=scenario.score_window_s,
         duration_s=scenario.duration_s,
@@ -90,7 +85,8 @@ def html() -> str:
         ),
         ReportRun(unreadable_entry(Path(EVIL), DdctError(f'damaged {EVIL}'))),
     ]
-    return report_page(runs, [])
+    limits = replace(packaged_limits(), origin={**packaged_limits().origin, 'name': EVIL})
+    return report_page(runs, [], limits)
 
 
 def test_no_text_of_a_bag_becomes_an_element_or_an_attribute(html):
@@ -102,7 +98,7 @@ def test_no_text_of_a_bag_becomes_an_element_or_an_attribute(html):
 def test_the_text_is_shown_as_it_is(html):
     page = Elements(html)
     assert f'damaged {EVIL}' in page.text
-    assert page.text.count(EVIL) >= 6, 'commit, version, scenario, node, key and value'
+    assert page.text.count(EVIL) >= 7, 'limits, commit, version, scenario, node, key and value'
 
 
 def test_the_data_of_the_charts_come_back_whole(html):

@@ -4,10 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.realtime_run import realtime_summary
@@ -21,18 +21,6 @@ STEPS = 300
 TOLERATED = 3
 SETTINGS = RunSettings(load_scenario('thesis'))
 TRAJECTORY = run_headless(SETTINGS, 'ls8')
-FACTS = RunFacts(
-    controller='ls8',
-    architecture='detailed',
-    scenario='thesis',
-    clutch='linear',
-    wear_gain=1.0,
-    mode='realtime',
-    seed=0,
-    control_start_s=0.6,
-    score_window_s=(0.6, 3.0),
-    duration_s=3.0,
-)
 
 
 def facts(**values):
@@ -46,7 +34,7 @@ def recording(
     return Recording(
         path=path,
         trajectory=TRAJECTORY,
-        facts=replace(FACTS, mode=mode, duration_s=duration_s),
+        facts=made_facts(mode=mode, duration_s=duration_s, score_window_s=(0.6, 3.0)),
         custom_data={},
         run_info={},
         counts={},

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording
@@ -19,18 +19,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 TRAJECTORY = run_headless(SETTINGS, 'ls8')
-FACTS = RunFacts(
-    controller='ls8',
-    architecture='detailed',
-    scenario='thesis',
-    clutch='linear',
-    wear_gain=1.0,
-    mode='lockstep',
-    seed=0,
-    control_start_s=0.6,
-    score_window_s=(0.6, 1.7),
-    duration_s=3.0,
-)
+FACTS = made_facts()
 
 
 ENGINE_LIMITS = EngineLimits(stall_rad_s=52.0, over_rev_rad_s=785.0)

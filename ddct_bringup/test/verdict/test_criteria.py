@@ -7,6 +7,7 @@ from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 from ddct_bringup.scores.metrics import compute_metrics
 from ddct_bringup.verdict.criteria import CRITERION_UNITS, JudgedRun, criterion_values
 from ddct_bringup.verdict.limits_file import limits_of_text, packaged_limits
+from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of
 
 T = times()
@@ -193,18 +194,20 @@ limits:
         name: {'value': 3.0, 'unit': unit, 'reason': 'x'}
         for name, unit in [
             ('engaged_slip', 'rpm'),
+            ('locked_slip', 'rpm'),
             ('settled_time', 's'),
             ('oscillation_turns', '1'),
             ('runaway_slip', 'rpm'),
             ('runaway_growth', 'rpm/s'),
+            ('runaway_swing', '1'),
             ('engagements_a_day', '1'),
         ]
     }
     limits = limits_of_text(text.replace('RULES', repr(rules)), 'x')
     known = dict.fromkeys(CRITERION_UNITS)
 
-    def judged(scenario='thesis', **given):
-        verdict = verdict_of('engaged', {**known, **given}, limits, scenario)
+    def judged(scenario='thesis', state='engaged', **given):
+        verdict = verdict_of(state, {**known, **given}, limits, scenario)
         return verdict, {each['name']: each for each in verdict['criteria']}
 
     verdict, criteria = judged(slip_acceleration_at_lock=-41.0, peak_jerk=6.0)
@@ -221,6 +224,10 @@ limits:
     assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
     assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'within'
     assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
+    for state in STATES:
+        only = 'within' if state == 'engaged' else 'no_limit'
+        assert judged(state=state, slip_acceleration_at_lock=-40.0)[0]['limits'] == only
+        assert judged(state=state, slip_acceleration_at_lock=-41.0)[0]['limits'] == 'beyond'
     undefined = judged()[1]['judder']
     assert (undefined['value'], undefined['limit'], undefined['state']) == (None, 5.0, 'no_limit')
 

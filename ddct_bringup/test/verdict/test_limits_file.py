@@ -129,6 +129,15 @@ def test_only_the_word_true_makes_a_limit_a_convention(word):
         limits_of_text(text, 'x')
 
 
+def test_the_origin_is_the_name_without_folders_and_tells_two_files_of_one_name_apart():
+    mine = limits_of_text(TEXT, 'far/away/mine.yaml').origin
+    assert list(mine) == ['name', 'digest', 'schema_version']
+    assert (mine['name'], mine['schema_version']) == ('mine.yaml', 1)
+    assert packaged_limits().origin == {**mine, 'name': 'packaged'}
+    other = limits_of_text(TEXT.replace('value: 9.1', 'value: 9.2'), 'mine.yaml').origin
+    assert other['digest'] != mine['digest']
+
+
 def test_a_file_that_is_not_there_is_named(tmp_path):
     with pytest.raises(DdctError, match=r'limits .*none.yaml: cannot be read \(No such file'):
         load_limits(tmp_path / 'none.yaml')

@@ -5,6 +5,7 @@ import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
 from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.lock import LOCKED, SLIPPING
 from ddct_bringup.verdict.state import slip_state, turns_of
 
 T = times()
@@ -36,6 +37,78 @@ def test_a_slip_that_overshoots_and_comes_back_is_engaged():
 
 def test_plates_that_never_part_are_engaged():
     assert state(np.zeros(301)) == 'engaged'
+
+
+def sticking(slip_rpm, **signals):
+    """Return the state of a clutch that sticks, locked wherever it does not slip."""
+    phase = np.where(slip_rpm == 0.0, float(LOCKED), float(SLIPPING))
+    return state(slip_rpm, clutch_phase=phase, **signals)
+
+
+@pytest.mark.parametrize('end_s', [2.0, 2.02, 3.0])
+def test_plates_that_lock_are_engaged_at_once(end_s):
+    slip = falling(429.0)[: round(100 * end_s) + 1]
+    assert slip[-1] == 0.0
+    assert sticking(slip) == 'engaged'
+    assert state(slip) == ('engaged' if end_s > 2.02 else 'not_engaged')
+
+
+def test_a_small_slip_that_stays_is_engaged_only_where_plates_cannot_lock():
+    assert state(falling(700.0, lowest_rpm=35.0)) == 'engaged'
+    assert sticking(falling(700.0, lowest_rpm=35.0)) == 'not_engaged'
+    assert sticking(falling(700.0, lowest_rpm=5.0)) == 'engaged'
+
+
+def test_plates_that_lock_for_less_than_they_slip_in_a_cycle_oscillate():
+    beat = np.where(np.arange(301) % 40 < 28, 200.0, 0.0)
+    assert sticking(beat[:280]) == sticking(beat[:279]) == 'oscillating'
+
+
+def test_a_slip_of_the_linear_clutch_that_comes_back_from_beyond_zero_is_engaged():
+    # It crosses zero after 1.2 s and comes back with a time constant of 1 s.
+    beyond = np.maximum(T - 1.2, 0.0)
+    slip = falling(1000.0) - 300.0 * (np.exp(-beyond) - np.exp(-beyond / 0.2))
+    assert -100.0 < slip[-1] < -40.0
+    assert state(slip) == state(slip[:281]) == 'engaged'
+    assert state(slip[:151]) == 'not_engaged'  # still on its way out
+    assert sticking(slip) == 'not_engaged'
+
+
+def test_a_slip_that_goes_further_beyond_zero_than_it_was_has_not_engaged():
+    beyond = np.maximum(T - 1.2, 0.0)
+    slip = falling(1000.0) - 1500.0 * (np.exp(-beyond) - np.exp(-beyond / 0.2))
+    assert slip.min() < -600.0
+    assert state(slip) == 'not_engaged'
+
+
+def test_one_swing_beyond_zero_before_a_slip_that_stays_is_no_oscillation():
+    approach = np.interp(T, [0.6, 0.65, 0.85, 1.9, 2.0, 2.2], [800, 700, 1100, -47, 75, 75])
+    assert state(approach) == 'not_engaged'
+
+
+@pytest.mark.parametrize('end', range(250, 301, 5))
+def test_a_swinging_slip_whose_middle_grows_is_a_runaway(end):
+    swing = 200.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
+    assert state((600.0 + 200.0 * T + swing)[: end + 1]) == 'runaway'
+    assert state((600.0 + 30.0 * T + swing)[: end + 1]) == 'oscillating'
+
+
+def test_a_swinging_slip_that_the_reference_asks_for_is_no_runaway():
+    reference = np.full((len(T), 1), 300.0 * RAD_S_PER_RPM)
+    swing = 200.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
+    assert state(600.0 + 200.0 * T + swing, slip_reference=reference) == 'oscillating'
+
+
+def test_plates_that_meet_in_every_swing_are_not_driven_apart():
+    swing = 1500.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
+    assert state(300.0 * T + swing) == 'oscillating'
+
+
+@pytest.mark.parametrize('end', range(240, 301, 5))
+def test_a_cycle_with_a_bump_in_it_oscillates_wherever_the_run_ends(end):
+    t = T - 0.6
+    bumpy = 1500.0 * np.sin(2 * np.pi * t / 0.8) + 500.0 * np.sin(2 * np.pi * t / 0.1)
+    assert state(bumpy[: end + 1]) == 'oscillating'
 
 
 def test_a_slow_slip_that_has_not_arrived_is_not_engaged():

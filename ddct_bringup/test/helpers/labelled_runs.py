@@ -1,0 +1,84 @@
+"""The runs of `states_by_eye.yaml`, each made anew from its settings."""
+
+from collections import deque
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.state import slip_state
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.registry import make_controller
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+FILE = Path(__file__).parents[1] / 'verdict' / 'states_by_eye.yaml'
+
+
+class Spoiled(Controller):
+    """A controller whose clutch torque is multiplied and comes later."""
+
+    def __init__(self, controller: Controller, gain: float, delay_steps: int) -> None:
+        self._controller, self._gain, self._delay_steps = controller, gain, delay_steps
+        self.preview_steps = controller.preview_steps
+        self.commands_engine = controller.commands_engine
+        self.reset()
+
+    def reset(self) -> None:
+        self._controller.reset()
+        self._waiting = deque([0.0] * self._delay_steps)
+
+    def hold(self, measurement: Measurement) -> None:
+        self._controller.hold(measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        command = self._controller.update(measurement)
+        self._waiting.append(self._gain * command.clutch_torque)
+        return replace(command, clutch_torque=self._waiting.popleft())
+
+
+@dataclass(frozen=True)
+class LabelledRun:
+    """One entry of the file."""
+
+    state: str
+    """By eye."""
+    second: str | None
+    """The other state where the eye hesitates."""
+    controller: str
+    scenario: str
+    clutch: str
+    wear_gain: float
+    gain: float
+    delay_steps: int
+    set: tuple[str, ...]
+
+    def state_by_rules(self) -> str:
+        """Run it headless, and return the state that the packaged rules give it."""
+        scenario = load_scenario(self.scenario, self.set)
+        settings = RunSettings(scenario, clutch=self.clutch, wear_gain=self.wear_gain)
+        controller = make_controller(self.controller, settings)
+        if self.gain != 1.0 or self.delay_steps:
+            controller = Spoiled(controller, self.gain, self.delay_steps)
+        trajectory = run_headless(settings, controller)
+        return slip_state(trajectory, scenario.control_start_step, packaged_limits().rules)
+
+
+@cache
+def labelled_runs(part: str) -> list[LabelledRun]:
+    """Return the runs of a part of the file."""
+    entries = yaml.safe_load(FILE.read_text(encoding='utf-8'))[part]
+    return [_run(**entry) for entry in entries]
+
+
+def _run(**entry) -> LabelledRun:
+    return LabelledRun(
+        second=entry.pop('or', None),
+        gain=entry.pop('gain', 1.0),
+        delay_steps=entry.pop('delay_steps', 0),
+        set=tuple(entry.pop('set', ())),
+        **entry,
+    )
