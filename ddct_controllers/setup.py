@@ -8,8 +8,10 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_controllers'
 PROGRAMS = [
+    'check-controller = ddct_controllers.check.program:main',
     'controller = ddct_controllers.controller_node:main',
     'design = ddct_controllers.workflows.design_program:main',
+    'new-controller = ddct_controllers.template.new_controller:main',
 ]
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
@@ -18,7 +20,7 @@ setup(
     name=PACKAGE,
     version=ElementTree.parse('package.xml').findtext('version'),
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['mpc/export/c/*.c', 'mpc/export/c/*.h']},
+    package_data={PACKAGE: ['mpc/export/c/*.c', 'mpc/export/c/*.h', 'template/files/*.in']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

@@ -31,7 +31,7 @@ class NoIntegrator(Controller):
     def update(self, measurement: Measurement) -> Command:
         return Command(-self._gain * measurement.slip_error_rpm)
 
-    def linear_model(self) -> StateSpace:
+    def linear_model(self) -> StateSpace | None:
         none = np.zeros((0, 0))
         return StateSpace(
             none, np.zeros((0, 1)), np.zeros((1, 0)), np.array([[-self._gain]]), PERIOD_S

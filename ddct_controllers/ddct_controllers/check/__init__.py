@@ -1,0 +1,1 @@
+"""The conformance check of a controller: what `check-controller` tries and finds."""

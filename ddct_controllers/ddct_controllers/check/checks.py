@@ -1,0 +1,81 @@
+"""All checks in their order, and their run."""
+
+import contextlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ddct_controllers.check import conduct, installation, loops, signals
+from ddct_controllers.check.outcome import (
+    FAIL,
+    PASS,
+    SKIPPED,
+    CheckFailedError,
+    CheckSkippedError,
+    Outcome,
+)
+from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.watch import Printed
+from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True)
+class Check:
+    """A question, by the name that the report gives it."""
+
+    name: str
+    ask: Callable[[Subject], str]
+    """Return what was measured; raise CheckFailedError or CheckSkippedError."""
+    after: Sequence[str] = ()
+    """The checks that must have passed."""
+
+
+_MADE, _RUNS, _SAME = ('constructor',), ('answers', 'update time'), ('determinism',)
+CHECKS = (
+    Check('entry point', installation.entry_point),
+    Check('installation', installation.installation, ('entry point',)),
+    Check('constructor', installation.constructor, ('entry point',)),
+    Check('options', installation.options, _MADE),
+    Check('answers', conduct.answers, _MADE),
+    Check('update time', loops.update_time, ('answers',)),
+    Check('state', conduct.own_state, _RUNS),
+    Check('determinism', conduct.determinism, ('state',)),
+    Check('reset', conduct.reset, _SAME),
+    Check('NaN', signals.not_a_number, (*_SAME, 'reset')),
+    Check('spike', signals.spike, _SAME),
+    Check('saturation', signals.saturation, _SAME),
+    Check('preview', signals.preview, _SAME),
+    Check('sign', signals.sign, _RUNS),
+    Check('unit', loops.unit, _RUNS),
+    Check('rate', loops.rate, _RUNS),
+    Check('linear model', loops.linear_model, _RUNS),
+    Check('stability', loops.stability, _RUNS),
+    Check('prints', conduct.prints, _MADE),
+)
+
+
+def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
+    """Return an outcome per check of CHECKS for a controller of the registry or in a file."""
+    printed = Printed()
+    subject = Subject(name, settings, printed)
+    outcomes: dict[str, Outcome] = {}
+    with contextlib.redirect_stdout(printed):
+        for check in CHECKS:
+            missing = [each for each in check.after if outcomes[each].state != PASS]
+            state, detail = (
+                (SKIPPED, f'first the check {missing[0]!r} must pass')
+                if missing
+                else _asked(check, subject)
+            )
+            outcomes[check.name] = Outcome(check.name, state, detail)
+    return list(outcomes.values())
+
+
+def _asked(check: Check, subject: Subject) -> tuple[str, str]:
+    try:
+        return PASS, check.ask(subject)
+    except CheckSkippedError as reason:
+        return SKIPPED, str(reason)
+    except CheckFailedError as failure:
+        return FAIL, str(failure)
+    except Exception as error:  # the controller's own, whatever it is
+        return FAIL, str(subject.what_failed(error))

@@ -1,0 +1,138 @@
+"""Checks that an object is a function of what it is given: answers, prints, state, reset."""
+
+import sys
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from ddct_controllers.check.outcome import CheckFailedError, place_of_method
+from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.trial import more_slip, played
+from ddct_controllers.check.watch import watched
+from ddct_controllers.interface import Controller
+from ddct_plant.base.errors import DdctError, ForeignError
+
+PLAIN = (bool, int, float, str, list, tuple, dict, set, np.ndarray, np.generic, type(None))
+"""Kinds of values that are compared by their text."""
+
+
+def answers(subject: Subject) -> str:
+    """Check that every period has an answer that the loop can take."""
+    try:
+        closed = subject.closed
+    except DdctError as error:
+        if isinstance(error, ForeignError) or not subject.package:
+            raise
+        place = place_of_method(subject.make(), 'update')
+        raise CheckFailedError(f'{error}; its update is in {place}') from error
+    return f'{len(closed.update_s)} commands, each with finite torques and a status of text'
+
+
+def prints(subject: Subject) -> str:
+    """Check that nothing goes to standard output, which is for the results of programs."""
+    printed = subject.printed
+    if printed.text:
+        lines = printed.text.splitlines()
+        raise CheckFailedError(
+            f'{printed.place}: it printed {len(lines)} lines to standard output, which programs '
+            f'use for results, the first {lines[0]!r}: give it as a `status` of the Command'
+        )
+    return 'it printed nothing'
+
+
+def own_state(subject: Subject) -> str:
+    """Check that two objects at once do not disturb each other: all state is in the object."""
+    before = _shared(subject.make(), subject.package)
+    alone = subject.answers
+    changed = [
+        name
+        for name, value in _shared(subject.make(), subject.package).items()
+        if before.get(name) != value
+    ]
+    one, other = subject.make(), subject.make()
+    beside = np.zeros_like(alone)
+    for row, period in zip(beside, subject.measured, strict=True):
+        row[:] = played(one, [period])[0]
+        played(other, [period], more_slip)
+    if np.array_equal(alone, beside):
+        return 'a second object that runs beside it changes nothing'
+    if changed:
+        raise CheckFailedError(
+            f'a second object changes what it answers, as both share {", ".join(changed)}: '
+            f'make that an attribute of self, in __init__ or reset '
+            f'({place_of_method(subject.make(), "__init__")})'
+        )
+    if _same_again(subject, alone):
+        raise CheckFailedError(
+            'a second object that runs beside it changes what it answers: they share an object '
+            f'or a file; keep state in self ({place_of_method(one, "__init__")})'
+        )
+    return 'nothing seen that objects share'
+
+
+def determinism(subject: Subject) -> str:
+    """Check that the same measurements give the same torques, whatever the clock says."""
+    with watched(subject.package) as called:
+        again = played(subject.make(), subject.measured)
+    different = np.flatnonzero((again != subject.answers).any(axis=1))
+    if not different.size:
+        return f'{len(again)} answers again to the last bit, with the clock moved'
+    step = int(different[0])
+    places = '; '.join(f'it calls {what} in {place}' for what, place in called.items())
+    raise CheckFailedError(
+        f'a new object that is given the same again asks {again[step, 0]:.6g} in place of '
+        f'{subject.answers[step, 0]:.6g} N m at step {step}: use the measurement alone '
+        f'(its step is k, 10 ms each) and seeded random numbers; '
+        f'{places or "it calls no clock and no random number that is known here"}'
+    )
+
+
+def reset(subject: Subject) -> str:
+    """Check that after reset an object is as new."""
+    controller = subject.make()
+    played(controller, subject.measured)
+    controller.reset()
+    left = _differences(subject.make(), controller)
+    again = played(controller, subject.measured)
+    different = np.flatnonzero((again != subject.answers).any(axis=1))
+    if different.size:
+        step = int(different[0])
+        raise CheckFailedError(
+            f'after reset it asks {again[step, 0]:.6g} in place of '
+            f'{subject.answers[step, 0]:.6g} N m at step {step}'
+            f'{left}: set all state anew in {place_of_method(controller, "reset")}'
+        )
+    return 'after reset it answers as a new object'
+
+
+def _same_again(subject: Subject, answers: np.ndarray) -> bool:
+    return np.array_equal(answers, played(subject.make(), subject.measured))
+
+
+def _shared(controller: Controller, package: str) -> dict[str, str]:
+    """Return by name the plain values that objects of the controller's classes share."""
+    owners: dict[str, Any] = {}
+    for each in type(controller).__mro__:
+        if each.__module__.partition('.')[0] == package:
+            owners[each.__module__] = sys.modules[each.__module__]
+            owners[each.__qualname__] = each
+    found = {}
+    for owner_name, owner in owners.items():
+        for name, value in vars(owner).items():
+            if isinstance(value, FunctionType):
+                found[f'the defaults of {owner_name}.{name}'] = repr(value.__defaults__)
+            elif isinstance(value, PLAIN) and not name.startswith('__'):
+                found[f'{owner_name}.{name}'] = repr(value)
+    return found
+
+
+def _differences(new: Controller, after: Controller) -> str:
+    """Return which plain attributes differ, as a part of a sentence; '' if none does."""
+    old = vars(after)
+    changed = [
+        f'self.{name} is {old.get(name)!r}, of a new object {value!r}'
+        for name, value in vars(new).items()
+        if isinstance(value, PLAIN) and repr(old.get(name)) != repr(value)
+    ]
+    return f' ({"; ".join(changed)})' if changed else ''

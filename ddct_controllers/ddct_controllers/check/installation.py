@@ -1,0 +1,132 @@
+"""Checks before a controller runs: its entry point, its installation, its making, its options."""
+
+import importlib.metadata
+import inspect
+import json
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import unquote, urlparse
+
+from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, root_cause
+from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.watch import AskedGains
+from ddct_controllers.interface import Controller, ControllerContext
+from ddct_controllers.registry import ENTRY_POINT_GROUP
+from ddct_controllers.template.install_command import install_command
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import close_name
+
+NO_SUCH_GAIN = 'no_such_gain'
+
+
+def entry_point(subject: Subject) -> str:
+    """Check that its name leads to code that can be imported."""
+    if len(subject.points) > 1:
+        targets = ' and '.join(point.value for point in subject.points)
+        raise CheckFailedError(
+            f'two packages have a controller of this name, {targets}: rename one'
+        )
+    try:
+        spec = subject.spec
+    except DdctError as error:
+        raise CheckFailedError(f'{error}{_advice(subject, error)}') from error
+    if not subject.points:
+        return f'{spec.name} is one of ours or a file: it needs no entry point'
+    return f'{subject.points[0].value} can be imported'
+
+
+def _advice(subject: Subject, error: DdctError) -> str:
+    """Return what more there is to say of a name that leads nowhere."""
+    if not subject.points:
+        for folder, _, names in _installed_from_folders():
+            if subject.name in names:
+                return (
+                    f'; {folder}/pyproject.toml has it, but was not installed since: install it '
+                    f'again, {install_command(str(folder))}'
+                )
+        return f'; if it is your own, install its package: {install_command("DIR")}'
+    point, cause = subject.points[0], root_cause(error)
+    module = sys.modules.get(point.module)
+    if module and isinstance(cause, AttributeError):
+        classes = [
+            name
+            for name, value in vars(module).items()
+            if inspect.isclass(value) and issubclass(value, Controller) and value is not Controller
+        ]
+        return f'; {module.__file__} has {", ".join(classes) or "no Controller"}'
+    if isinstance(cause, ModuleNotFoundError) and cause.name and point.module == cause.name:
+        return (
+            f'; there is no module {cause.name}: it was renamed or moved after the package was '
+            'installed, or pyproject.toml names it wrongly: mend that, then '
+            f'{install_command("DIR")}'
+        )
+    return ''
+
+
+def installation(subject: Subject) -> str:
+    """Check that what is installed is what its folder holds now."""
+    if not subject.points:
+        raise CheckSkippedError('no package of its own')
+    spec = inspect.getmodule(subject.points[0].load())
+    file = Path(str(getattr(spec, '__file__', '')))
+    for folder, editable, names in _installed_from_folders():
+        if subject.name not in names:
+            continue
+        if editable:
+            return f'linked to {folder}: an edited file runs at once'
+        relative = Path(*file.parts[-subject.points[0].module.count('.') - 1 :])
+        for source in (folder / relative, folder / 'src' / relative):
+            if source.is_file() and source.read_bytes() != file.read_bytes():
+                raise CheckFailedError(
+                    f'{source} was edited after it was installed, and {file} is what runs: '
+                    f'install it linked, {install_command(str(folder))}'
+                )
+        return f'the same as in {folder}'
+    return f'{file}; not installed from a folder, so there is nothing to compare'
+
+
+def _installed_from_folders() -> Iterator[tuple[Path, bool, set[str]]]:
+    """Yield by distribution its folder, whether it is linked, and the controllers it has there."""
+    for distribution in importlib.metadata.distributions():
+        try:
+            origin = json.loads(distribution.read_text('direct_url.json') or '{}')
+            folder = Path(unquote(urlparse(origin['url']).path))
+            text = (folder / 'pyproject.toml').read_text(encoding='utf-8')
+            points = tomllib.loads(text)['project']['entry-points'][ENTRY_POINT_GROUP]
+        except (LookupError, OSError, ValueError, TypeError):
+            continue  # from an index, gone, or not one of this kind
+        yield folder, bool(origin.get('dir_info', {}).get('editable')), set(points)
+
+
+def constructor(subject: Subject) -> str:
+    """Check that an object can be made."""
+    try:
+        controller = subject.make()
+    except DdctError as error:
+        raise subject.what_failed(error) from error
+    return f'{type(controller).__name__} with {len(subject.spec.options or {})} options'
+
+
+def options(subject: Subject) -> str:
+    """Check that it takes the options that it declares and no others."""
+    declared = subject.spec.options or {}
+    given = subject.settings.scenario.controllers.get(subject.spec.name, {})
+    gains = AskedGains(subject.spec.values(given))
+    subject.spec.make(ControllerContext(subject.settings, gains))
+    for name, place in gains.asked.items():
+        if name not in declared:
+            known = close_name(name, declared) if declared else 'it declares none'
+            raise CheckFailedError(
+                f'{place}: asks for the gain {name!r}, which its `options` do not declare, so '
+                f'that no --set reaches it and no typing error is noticed ({known}): declare it'
+            )
+    try:
+        subject.spec(ControllerContext(subject.settings, {**given, NO_SUCH_GAIN: 1.0}))
+    except DdctError:
+        return f'{", ".join(declared) or "none"}; any other is refused'
+    raise CheckFailedError(
+        f'it was made with the gain {NO_SUCH_GAIN} as if that meant something: declare `options`, '
+        'a mapping of names to Option, empty if there are none'
+    )

@@ -1,0 +1,137 @@
+"""Checks in the closed loop: time, rate, unit, linear model, stability."""
+
+import math
+import statistics
+
+import numpy as np
+
+from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, place_of_method
+from ddct_controllers.check.subject import Subject
+from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+
+RPM_FACTOR = 30.0 / math.pi
+"""rpm in a rad/s."""
+LATE_SHARE = 0.05
+"""Of updates that may take longer than their period on a busy machine."""
+MOST_RATE_N_M_S = 3500.0
+"""Ten times per second from no clutch torque to all of it, 350 N m."""
+HALF = 0.5
+"""Of a step that slip follows within a second: engagements take one or two."""
+
+
+def update_time(subject: Subject) -> str:
+    """Check that an update takes less than its period."""
+    times_ms = sorted(1e3 * each for each in subject.closed.update_s)
+    median, slow = statistics.median(times_ms), times_ms[int((1.0 - LATE_SHARE) * len(times_ms))]
+    found = (
+        f'median {median:.3f} ms, {1.0 - LATE_SHARE:.0%} within {slow:.3f} ms, of {len(times_ms)} '
+        'updates'
+    )
+    if slow > 1e3 * PERIOD_S:
+        raise CheckFailedError(
+            f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; move what can '
+            f'be computed before to __init__, from {place_of_method(subject.make(), "update")}'
+        )
+    return found
+
+
+def rate(subject: Subject) -> str:
+    """Check that the request does not chatter."""
+    start = subject.settings.scenario.control_start_step
+    changes = np.abs(np.diff(subject.closed.request[start:]))
+    per_second = float(changes.mean()) / PERIOD_S
+    found = (
+        f'the request moves by {changes.max():.4g} N m per period at most, {per_second:.4g} N m '
+        'per second'
+    )
+    if per_second > MOST_RATE_N_M_S:
+        raise CheckFailedError(
+            f'{found}, more than {MOST_RATE_N_M_S:g}: the actuator does not follow that, and the '
+            f'driveline rings; smooth it in {place_of_method(subject.make(), "update")}'
+        )
+    return found
+
+
+def unit(subject: Subject) -> str:
+    """Check that no factor 30/pi makes the difference between a bad loop and a good one."""
+    response = subject.step_response(1.0)
+    found = f'a step of the reference is followed to {response.followed:.0%} after 1 s'
+    if response.diverges:
+        found, what, factor = 'the loop is unstable', '1/9.55', 1.0 / RPM_FACTOR
+    elif response.followed < HALF:
+        what, factor = '9.55', RPM_FACTOR
+    else:
+        return found
+    other = subject.step_response(factor)
+    if other.diverges or other.followed < HALF:
+        return f'{found}, and {what} of the torque would not mend it'
+    raise CheckFailedError(
+        f'{found}; with {what} of its torque the loop is stable and follows to '
+        f'{other.followed:.0%}. That is 30/pi, rpm in a rad/s: look at the units in '
+        f'{place_of_method(subject.make(), "update")}; slip_error_rpm is in rpm, the speeds and '
+        'slip_reference are in rad/s'
+    )
+
+
+def stability(subject: Subject) -> str:
+    """Check that the loop settles: in a run, and by its poles if the controller is linear."""
+    if subject.step_response(1.0).diverges:
+        raise CheckFailedError(
+            'in the closed loop the slip ends further from its reference than control found it, '
+            'or a step of the reference grows: lower the gain, after sign and unit are right '
+            f'({place_of_method(subject.make(), "update")})'
+        )
+    model = _linear_model(subject)
+    if model is None:
+        return 'the run settles, and so does a step of the reference; no linear_model'
+    # Only here: the mathematics of design takes a moment to load.
+    from ddct_controllers.design.analysis.loops import sampled_loop
+    from ddct_controllers.design.analysis.margins import loop_margins
+
+    margins = loop_margins(sampled_loop(model, subject.settings.scenario.driveline))
+    if not margins.stable:
+        raise CheckFailedError(
+            'the sampled loop of its linear_model has a pole on or outside the unit circle: lower '
+            'the gain (design margins has the figures)'
+        )
+    return (
+        f'all poles of the sampled loop are inside the unit circle; gain margin '
+        f'{margins.gain_margin_db:.1f} dB, phase margin {margins.phase_margin_deg:.0f} deg'
+    )
+
+
+def linear_model(subject: Subject) -> str:
+    """Check that update does what linear_model says."""
+    model = _linear_model(subject)
+    if model is None:
+        raise CheckSkippedError('linear_model returns None')
+    filtered = DiscreteFilter(model)
+    worst = 0.0
+    for (on, measurement), (torque, _) in zip(subject.measured, subject.answers, strict=True):
+        if on:
+            expected = filtered.update(measurement.slip_error_rpm)
+            worst = max(worst, abs(torque - expected))
+    largest = float(np.abs(subject.answers[:, 0]).max())
+    if worst > 1e-6 * max(largest, 1.0):
+        raise CheckFailedError(
+            f'its torque and that of its linear_model differ by up to {worst:.4g} of '
+            f'{largest:.4g} N m: mend {place_of_method(subject.make(), "linear_model")}, '
+            'or return None'
+        )
+    return f'update gives the torque of linear_model within {worst:.1g} N m'
+
+
+def _linear_model(subject: Subject) -> StateSpace | None:
+    controller = subject.make()
+    model = controller.linear_model()
+    if model is None:
+        return None
+    if not isinstance(model, StateSpace) or model.d.shape != (1, 1) or model.period_s != PERIOD_S:
+        raise CheckFailedError(
+            f'linear_model gives {type(model).__name__}, and not a StateSpace with one input, one '
+            f'output and a period of {PERIOD_S} s: mend '
+            f'{place_of_method(controller, "linear_model")}'
+        )
+    return model

@@ -1,0 +1,54 @@
+"""Program `check-controller`: find a controller's errors before its scores do."""
+
+import sys
+from dataclasses import asdict
+
+from ddct_controllers.check.checks import check_controller
+from ddct_controllers.check.outcome import FAIL
+from ddct_plant.base.printable import printable
+from ddct_plant.files.output_file import STDOUT, require_place, write_json
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.scenario.options import add_scenario_options, scenario_of
+from ddct_plant.scenario.settings import RunSettings
+
+PROGRAM = 'check-controller'
+_DESCRIPTION = """\
+Try a controller alone and in the closed loop, and say what is wrong with it: where, and what to
+do. The exit code is 1 when a check fails."""
+_EPILOG = """\
+examples:
+  check-controller mine                             a controller of an installed package
+  check-controller designs/mine.yaml --json -       one in a file
+  check-controller mine --set controllers.mine.gain=0.2"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _check, argv)
+
+
+def _check(argv: list[str]) -> int:
+    parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
+    parser.add_argument('controller', metavar='NAME|FILE')
+    add_scenario_options(parser, set_example='controllers.mine.gain=0.2')
+    parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
+    options = parser.parse_args(argv)
+    if options.json:
+        require_place('--json', options.json)
+    settings = RunSettings(scenario_of(options, options.overrides))
+    print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
+    outcomes = check_controller(options.controller, settings)
+    if options.json != STDOUT:
+        for each in outcomes:
+            print(f'{each.state:8} {each.name:14} {printable(each.detail)}')
+    if options.json:
+        checks = [asdict(each) for each in outcomes]
+        write_json(options.json, {'controller': options.controller, 'checks': checks})
+    failed = [each.name for each in outcomes if each.state == FAIL]
+    if failed:
+        complain(PROGRAM, f'{options.controller} fails: {", ".join(failed)}')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,131 @@
+"""Checks with measurements that are out of the ordinary, and of what a controller reacts to."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, place_of_method
+from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.trial import PROBE_RAD_S, more_slip, played
+from ddct_controllers.interface import Measurement
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+
+SPIKE_RAD_S = 200.0
+HARD_RAD_S = 300.0
+"""Of slip that stays for a second: no torque that a clutch has brings it down."""
+SETTLED_N_M = 1.0
+WITHIN_STEPS = 30
+"""In which a controller must have reacted to slip."""
+
+
+def not_a_number(subject: Subject) -> str:
+    """Check that a measurement of NaN is refused, ends the run, or is left out: never hidden."""
+    controller = subject.make()
+    first = subject.probe_step
+    try:
+        after = played(controller, subject.measured, _without_number, first, first + 1)
+    except DdctError as error:
+        found = f'it refuses NaN: {error}'
+    else:
+        found = _after_nan(subject, after - subject.answers)
+    controller.reset()
+    if not np.array_equal(played(controller, subject.measured), subject.answers):
+        raise CheckFailedError(
+            'after a measurement of NaN and a reset it answers otherwise than a new object: set '
+            f'all state anew in {place_of_method(controller, "reset")}'
+        )
+    return found
+
+
+def _after_nan(subject: Subject, change: np.ndarray) -> str:
+    if not np.isfinite(change).all():
+        return 'NaN leads to a torque of NaN, which ends the run with one line'
+    if (left := float(np.abs(change[-1]).max())) > SETTLED_N_M:
+        raise CheckFailedError(
+            f'one engine speed of NaN goes unnoticed and moves its torque by {left:.4g} N m '
+            f'for good: limits such as min(max(x, ...)) hide NaN; raise an error or leave such a '
+            f'measurement out, in {place_of_method(subject.make(), "update")}'
+        )
+    return 'NaN is left out'
+
+
+def spike(subject: Subject) -> str:
+    """Check that one wild speed is survived."""
+    torques = subject.played(lambda m: _faster(m, SPIKE_RAD_S), steps=1)
+    change = _finite(subject, torques, f'a spike of {SPIKE_RAD_S:g} rad/s in the engine speed')
+    return (
+        f'a spike of {SPIKE_RAD_S:g} rad/s moves the torque by up to {np.abs(change).max():.4g} '
+        f'N m, {np.abs(change[-1]).max():.4g} N m in the end'
+    )
+
+
+def saturation(subject: Subject) -> str:
+    """Check that slip that no torque brings down is survived."""
+    torques = subject.played(lambda m: _faster(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
+    change = _finite(subject, torques, f'{HARD_RAD_S:g} rad/s more slip over 0.5 s')
+    most = float(np.abs(change).max())
+    return (
+        f'{HARD_RAD_S:g} rad/s more slip over 0.5 s asks up to {most:.4g} N m more; 0.5 s later '
+        f'{np.abs(change[-1]).max():.4g} N m of it are left'
+    )
+
+
+def _finite(subject: Subject, torques: np.ndarray, what: str) -> np.ndarray:
+    """Return the change of the torques in N m; CheckFailedError where one is not finite."""
+    if not np.isfinite(torques).all():
+        raise CheckFailedError(
+            f'{what} makes the torque infinite or NaN: limit what grows in '
+            f'{place_of_method(subject.make(), "update")}'
+        )
+    return torques - subject.answers
+
+
+def preview(subject: Subject) -> str:
+    """Check that the reference ahead is used if it is asked for."""
+    steps = subject.make().preview_steps
+    if not steps:
+        raise CheckSkippedError('it declares no preview_steps')
+    changed = subject.played(_other_future)
+    if np.array_equal(changed, subject.answers):
+        raise CheckFailedError(
+            f'it declares preview_steps = {steps}, and a reference that is another from the next '
+            'step on changes no torque: use slip_reference[1:], or leave preview_steps out'
+        )
+    most = np.abs(changed - subject.answers).max()
+    return f'{steps} steps; another reference from the next step on moves the torque by {most:.4g}'
+
+
+def sign(subject: Subject) -> str:
+    """Check that more slip asks for more torque of the clutch, or less of the engine."""
+    change = subject.played(more_slip) - subject.answers
+    first = subject.probe_step
+    clutch, engine = change[first : first + WITHIN_STEPS].mean(axis=0)
+    rpm = PROBE_RAD_S * 30.0 / math.pi
+    found = f'{rpm:.0f} rpm more slip changes the clutch torque by {clutch:+.4g} N m'
+    if subject.make().commands_engine:
+        found += f' and the engine torque by {engine:+.4g} N m'
+    found += f', mean over {WITHIN_STEPS * PERIOD_S:g} s'
+    if clutch == 0.0 and engine == 0.0:
+        raise CheckSkippedError(f'{found}: it does not react to slip')
+    if clutch - engine < 0.0:
+        raise CheckFailedError(
+            f'{found}, which drives the slip further up: change the sign in '
+            f'{place_of_method(subject.make(), "update")}; the error is reference less slip, so a '
+            'positive error asks for less torque, -gain * measurement.slip_error_rpm'
+        )
+    return found
+
+
+def _without_number(measurement: Measurement) -> Measurement:
+    return replace(measurement, engine_speed=math.nan)
+
+
+def _faster(measurement: Measurement, by: float) -> Measurement:
+    return replace(measurement, engine_speed=measurement.engine_speed + by)
+
+
+def _other_future(measurement: Measurement) -> Measurement:
+    now, *ahead = measurement.slip_reference
+    return replace(measurement, slip_reference=[now, *(each + PROBE_RAD_S for each in ahead)])

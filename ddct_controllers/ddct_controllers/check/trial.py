@@ -1,0 +1,190 @@
+"""Try a controller: in the closed loop on the plant, or on measurements that are played to it."""
+
+import math
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import WholePlant
+
+RAMP_S = 0.8
+"""From the slip speed at control start to zero."""
+PROBE_S, AFTER_S = 0.5, 1.05
+"""From control start to where something is changed, and from there to the end of a trial."""
+PROBE_RAD_S = 50.0 * math.pi / 30.0
+"""Size of what is changed: 50 rpm of slip."""
+GROWTH = 1.05
+"""Of what is missing of a step from one half second to the next, above which it grows."""
+TIMED = 20
+"""Updates after which a controller that is slower than its period is stopped."""
+Change = Callable[[Measurement], Measurement]
+
+
+@dataclass
+class Heard:
+    """What went in and out of a controller in the closed loop."""
+
+    slip: list[float] = field(default_factory=list)
+    """w_d in rad/s at every step."""
+    measured: list[tuple[bool, Measurement]] = field(default_factory=list)
+    """Whether feedback was on, and what was measured."""
+    request: list[float] = field(default_factory=list)
+    """What the clutch was asked at every step, in N m."""
+    update_s: list[float] = field(default_factory=list)
+    """Wall time of each update."""
+
+    @property
+    def error(self) -> np.ndarray:
+        """(steps,) slip less its reference in rad/s."""
+        wanted = [measurement.slip_reference[0] for _, measurement in self.measured]
+        return np.array(self.slip) - wanted
+
+    @property
+    def too_slow(self) -> bool:
+        """Whether most updates take longer than their period."""
+        return len(self.update_s) >= TIMED and statistics.median(self.update_s) > PERIOD_S
+
+
+class _Listening(Controller):
+    """Passes all on to a controller and writes down what it hears; `scale` multiplies torques."""
+
+    def __init__(self, controller: Controller, heard: Heard, scale: float) -> None:
+        self._controller, self._heard, self._scale = controller, heard, scale
+        self.registered_name = controller.registered_name
+        self.preview_steps = controller.preview_steps
+        self.commands_engine = controller.commands_engine
+
+    def reset(self) -> None:
+        self._controller.reset()
+
+    def hold(self, measurement: Measurement) -> None:
+        self._heard.measured.append((False, measurement))
+        self._controller.hold(measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        self._heard.measured.append((True, measurement))
+        started = time.perf_counter()
+        command = self._controller.update(measurement)
+        self._heard.update_s.append(time.perf_counter() - started)
+        return self._scaled(command, measurement) if self._scale != 1.0 else command
+
+    def _scaled(self, command: Command, measurement: Measurement) -> Command:
+        engine = command.engine_torque
+        if engine is not None:
+            engine = measurement.engine_torque + self._scale * (engine - measurement.engine_torque)
+        return replace(
+            command, clutch_torque=self._scale * command.clutch_torque, engine_torque=engine
+        )
+
+
+def more_slip(measurement: Measurement) -> Measurement:
+    """Return a measurement with PROBE_RAD_S more slip."""
+    return replace(measurement, engine_speed=measurement.engine_speed + PROBE_RAD_S)
+
+
+def probe_step(settings: RunSettings) -> int:
+    """Return the step at which trials change something."""
+    return settings.scenario.control_start_step + round(PROBE_S / PERIOD_S)
+
+
+def closed_trial(
+    settings: RunSettings,
+    controller: Controller,
+    *,
+    reference_step: bool = False,
+    scale: float = 1.0,
+) -> Heard:
+    """
+    Run `controller` on the plant with a slip reference that falls to zero along a ramp.
+
+    `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Raise what the
+    controller raises, as a DdctError that names it.
+    """
+    heard = Heard()
+    plant = WholePlant(settings, two_input=controller.commands_engine)
+    architecture = make_architecture(settings, _Listening(controller, heard, scale))
+    start, probe = settings.scenario.control_start_step, probe_step(settings)
+    from_speed = 0.0
+    for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
+        sight = plant.look(step)
+        if step <= start:
+            from_speed = sight.now.slip_speed
+        ahead = np.arange(step, step + controller.preview_steps + 1)
+        left = 1.0 - np.maximum(ahead - start, 0) * PERIOD_S / RAMP_S
+        speeds = from_speed * np.maximum(left, 0.0)
+        if reference_step:
+            speeds -= PROBE_RAD_S * (ahead >= probe)
+        rates = np.where((left > 0.0) & (ahead >= start), -from_speed / RAMP_S, 0.0)
+        measurement = Measurement.of_plant(step, sight, speeds.tolist(), rates.tolist())
+        request = architecture.update(measurement)
+        heard.slip.append(sight.now.slip_speed)
+        heard.request.append(request.torque)
+        if heard.too_slow:
+            break
+        plant.advance(plant.reply(step, sight, request.torque, request.engine_torque))
+    return heard
+
+
+def played(
+    controller: Controller,
+    measured: Sequence[tuple[bool, Measurement]],
+    change: Change = lambda measurement: measurement,
+    from_step: int = 0,
+    to_step: int = 10**9,
+) -> np.ndarray:
+    """
+    Return the torques (steps, 2) in N m that are asked of clutch and engine, the latter 0 if none.
+
+    `measured` is what the controller is given, with `change` in steps `from_step` to `to_step`
+    less 1.
+    """
+    torques = np.zeros((len(measured), 2))
+    for row, (on, measurement) in zip(torques, measured, strict=True):
+        given = change(measurement) if from_step <= measurement.step < to_step else measurement
+        if on:
+            command = controller.update(given)
+            row[:] = command.clutch_torque, command.engine_torque or 0.0
+        else:
+            controller.hold(given)
+    return torques
+
+
+@dataclass(frozen=True)
+class StepResponse:
+    """How slip answers a step of its reference in the closed loop."""
+
+    followed: float
+    """Share of the step after 1 s."""
+    diverges: bool
+    """Whether the run, or its answer to the step, ends further off than it began."""
+
+
+def step_response(
+    settings: RunSettings, make: Callable[[], Controller], scale: float, plain: Heard | None = None
+) -> StepResponse:
+    """
+    Return the difference that a step of the reference makes, with all torques times `scale`.
+
+    `plain` is the run without the step, if it is there already. A loop that the controller itself
+    gives up, with a DdctError, counts as one that diverges.
+    """
+    try:
+        plain = plain or closed_trial(settings, make(), scale=scale)
+        stepped = closed_trial(settings, make(), scale=scale, reference_step=True)
+    except DdctError:
+        return StepResponse(0.0, True)
+    start, probe = settings.scenario.control_start_step, probe_step(settings)
+    response = (np.array(plain.slip) - stepped.slip)[probe:] / PROBE_RAD_S
+    missing = np.abs(1.0 - response)
+    half = len(missing) // 2
+    grows = missing[half:].max() > GROWTH * missing[:half].max()
+    runs_away = np.abs(plain.error[probe + half :]).max() > abs(plain.slip[start])
+    return StepResponse(float(response[round(1.0 / PERIOD_S)]), bool(grows or runs_away))

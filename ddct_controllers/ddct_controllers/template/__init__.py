@@ -1,0 +1,1 @@
+"""A package for a controller of one's own: what `new-controller` writes."""

@@ -1,0 +1,99 @@
+"""Program `new-controller`: write an installable package with a controller to start from."""
+
+import importlib.util
+import keyword
+import sys
+from pathlib import Path
+from string import Template
+
+from ddct_controllers.from_file.controller_file import require_name
+from ddct_controllers.registry import controller_names
+from ddct_controllers.template.install_command import install_command
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.output_file import write_text
+from ddct_plant.program.command_line import ProgramParser, run_program
+
+PROGRAM = 'new-controller'
+TEMPLATES = Path(__file__).parent / 'files'
+FILES = {
+    'pyproject.toml': 'pyproject.toml.in',
+    'README.md': 'README.md.in',
+    '{name}.py': 'controller.py.in',
+    'test_{name}.py': 'test_controller.py.in',
+}
+"""What is written, by its name, and the template of it."""
+_EPILOG = """\
+examples:
+  new-controller my_slip --out my_slip
+
+Then edit my_slip/my_slip.py; my_slip/README.md has the commands to install, check and score it."""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _write, argv)
+
+
+def _write(argv: list[str]) -> int:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Write a package with a controller, its entry point, test and README.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        'name', metavar='NAME', help='of the controller: lower-case letters, digits, underscores'
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='a folder that is not there yet; default: NAME'
+    )
+    options = parser.parse_args(argv)
+    require_free_name(options.name)
+    folder = (options.out or Path(options.name)).absolute()
+    write_package(options.name, folder)
+    print(
+        f'{folder} is written. Next:\n'
+        f'  {install_command(str(folder))}\n'
+        f'  ddct check-controller {options.name}\n'
+        f'  ddct compare --controllers pi,{options.name} --headless --out runs/{options.name}'
+    )
+    return 0
+
+
+def require_free_name(name: str) -> None:
+    """Raise ParameterError unless a new controller, and its module, can be called `name`."""
+    require_name(name)
+    if name in controller_names():
+        raise ParameterError(f'{name} is the name of another controller: choose another')
+    if keyword.iskeyword(name) or name in sys.builtin_module_names or _is_module(name):
+        raise ParameterError(f'{name} is a module or word of Python already: choose another')
+
+
+def _is_module(name: str) -> bool:
+    """Say whether Python finds a module of that name, other than a mere folder."""
+    found = importlib.util.find_spec(name)
+    return found is not None and found.origin is not None
+
+
+def write_package(name: str, folder: Path) -> None:
+    """Write the files of the controller `name` into the new `folder`; DdctError if it is taken."""
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError as error:
+        raise DdctError(f'{folder} exists already: choose another --out') from error
+    except OSError as error:
+        raise DdctError(f'--out {folder}: cannot be made ({error.strerror})') from error
+    values = {
+        'name': name,
+        'class_name': ''.join(word.capitalize() for word in name.split('_')),
+        'distribution': name.strip('_').replace('_', '-'),
+        'folder': str(folder),
+        'install_command': install_command(str(folder)),
+        'python': sys.executable,
+    }
+    for file, template in FILES.items():
+        text = Template((TEMPLATES / template).read_text(encoding='utf-8')).substitute(values)
+        write_text(str(folder / file.format(name=name)), text, 'give another --out')
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,204 @@
+"""`check-controller` names beginners' errors, and passes what is in order."""
+
+import inspect
+import json
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conformance import right_controllers
+from support.complaints import assert_one_line
+from support.third_party import install
+
+from ddct_controllers.check import program
+from ddct_controllers.check.checks import CHECKS, check_controller
+from ddct_controllers.check.outcome import FAIL, PASS, SKIPPED, Outcome
+from ddct_controllers.interface import Controller
+from ddct_controllers.registry import controller_names
+from ddct_controllers.template.install_command import install_command
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+HERE = Path(__file__).parent
+SETTINGS = RunSettings(load_scenario('thesis'))
+IN_UPDATE = ['wrong_controllers.py line']
+WRONG = {
+    'WrongType': ('answers', ['of type float', 'return a', *IN_UPDATE]),
+    'NoAnswer': ('answers', ['of type NoneType', *IN_UPDATE]),
+    'NotANumber': ('answers', ['torque at step 60 is nan', *IN_UPDATE]),
+    'AnArray': ('answers', ['array([0.])', 'give a number', *IN_UPDATE]),
+    'MissingReset': ('reset', ['self._integral is -53.7', *IN_UPDATE]),
+    'SharedState': ('state', ['both share SharedState.errors', *IN_UPDATE]),
+    'Slow': ('update time', ['its period of 10 ms', *IN_UPDATE]),
+    'WrongSign': ('sign', ['changes the clutch torque by -5 N m', *IN_UPDATE]),
+    'RadiansTakenForRpm': ('unit', ['with 9.55 of its torque', '30/pi', *IN_UPDATE]),
+    'RpmTwice': ('unit', ['unstable', 'with 1/9.55 of its torque', '30/pi', *IN_UPDATE]),
+    'FailsToBuild': ('constructor', ['LinAlgError: Singular matrix', *IN_UPDATE]),
+    'FailsInUpdate': ('answers', ['IndexError', 'preview_steps + 1 entries', *IN_UPDATE]),
+    'WrongStatus': ('answers', ["status at step 60 is {'error_rpm'", *IN_UPDATE]),
+    'UnknownGain': ('options', ["the gain 'gian'", 'did you mean gain?', *IN_UPDATE]),
+    'UndeclaredGain': ('options', ["the gain 'gain'", 'it declares none', *IN_UPDATE]),
+    'RandomNumbers': ('determinism', ['it calls random.gauss', *IN_UPDATE]),
+    'WallClock': ('determinism', ['it calls time.monotonic', *IN_UPDATE]),
+    'Prints': ('prints', ["the first 'e = 0.0'", *IN_UPDATE]),
+}
+"""By class the check that names its error, and words of the detail."""
+ALSO = {'WrongSign': {'stability'}, 'RpmTwice': {'rate', 'stability'}}
+"""What else those errors do."""
+RIGHT = [
+    name
+    for name, value in vars(right_controllers).items()
+    if inspect.isclass(value) and issubclass(value, Controller) and value is not Controller
+]
+POINTS = {
+    **{name: f'wrong_controllers:{name}' for name in WRONG},
+    **{name: f'right_controllers:{name}' for name in RIGHT},
+    'from_function': 'right_controllers:from_function',
+    'misspelt': 'wrong_controllers:Proportinal',
+    'moved': 'no_such_module:Moved',
+}
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    install(monkeypatch, tmp_path / 'site', HERE, POINTS)
+
+
+def outcomes_of(name: str) -> dict[str, Outcome]:
+    return {each.name: each for each in check_controller(name, SETTINGS)}
+
+
+def failed(outcomes: dict[str, Outcome]) -> dict[str, str]:
+    return {name: each.detail for name, each in outcomes.items() if each.state == FAIL}
+
+
+@pytest.mark.usefixtures('installed')
+@pytest.mark.parametrize(('name', 'check', 'words'), [(n, *each) for n, each in WRONG.items()])
+def test_an_error_is_named_with_its_place(name: str, check: str, words: list[str]) -> None:
+    found = failed(outcomes_of(name))
+    assert found.keys() == {check, *ALSO.get(name, ())}
+    for word in words:
+        assert word in found[check]
+
+
+@pytest.mark.usefixtures('installed')
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('misspelt', ["no attribute 'Proportinal'", 'wrong_controllers.py has Proportional, ']),
+        ('moved', ["No module named 'no_such_module'", install_command('DIR')]),
+        ('nobodys', ["unknown controller 'nobodys'", install_command('DIR')]),
+    ],
+)
+def test_a_name_that_leads_nowhere_is_explained(name: str, words: list[str]) -> None:
+    outcomes = outcomes_of(name)
+    assert {each.state for each in outcomes.values()} == {FAIL, SKIPPED}
+    found = failed(outcomes)
+    assert found.keys() == {'entry point'}
+    for word in words:
+        assert word in found['entry point']
+
+
+@pytest.mark.usefixtures('installed')
+@pytest.mark.parametrize('name', [*RIGHT, 'from_function'])
+def test_a_controller_in_order_fails_no_check(name: str) -> None:
+    assert failed(outcomes_of(name)) == {}
+
+
+def test_there_are_ten_controllers_in_order() -> None:
+    assert len(RIGHT) >= 10
+
+
+@pytest.mark.parametrize('name', controller_names())
+def test_a_packaged_controller_fails_no_check(name: str) -> None:
+    outcomes = outcomes_of(name)
+    assert failed(outcomes) == {}
+    skipped = {each.name for each in outcomes.values() if each.state == SKIPPED}
+    assert skipped <= {'installation', 'preview', 'linear model'}
+
+
+@pytest.fixture
+def from_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> tuple[Path, Path]:
+    """Install a copy of a package from a folder; return its module there, and in the copy."""
+    folder, copy = tmp_path / 'mine', tmp_path / 'copy'
+    for each in (folder, copy):
+        each.mkdir()
+        shutil.copy(HERE / 'right_controllers.py', each / 'copied_controllers.py')
+    project = '[project.entry-points."ddct.controllers"]\n' + ''.join(
+        f'{name} = "copied_controllers:NoIntegrator"\n' for name in ('copied', 'added_later')
+    )
+    (folder / 'pyproject.toml').write_text(project, encoding='utf-8')
+    install(monkeypatch, tmp_path / 'site', copy, {'copied': 'copied_controllers:NoIntegrator'})
+    origin = {'url': folder.as_uri(), 'dir_info': {}}
+    (tmp_path / 'site' / 'third_party-1.0.dist-info' / 'direct_url.json').write_text(
+        json.dumps(origin), encoding='utf-8'
+    )
+    monkeypatch.delitem(sys.modules, 'copied_controllers', raising=False)
+    return folder / 'copied_controllers.py', copy / 'copied_controllers.py'
+
+
+def test_a_module_that_was_edited_after_it_was_installed_is_named(
+    from_folder: tuple[Path, Path],
+) -> None:
+    source, copy = from_folder
+    assert outcomes_of('copied')['installation'].state == PASS
+    source.write_text(source.read_text(encoding='utf-8') + '\n', encoding='utf-8')
+    detail = failed(outcomes_of('copied'))['installation']
+    assert f'{source} was edited after it was installed, and {copy} is what runs' in detail
+    assert install_command(str(source.parent)) in detail
+
+
+def test_an_entry_point_that_was_added_after_the_installation_is_named(
+    from_folder: tuple[Path, Path],
+) -> None:
+    detail = failed(outcomes_of('added_later'))['entry point']
+    project = from_folder[0].parent / 'pyproject.toml'
+    assert f'{project} has it, but was not installed since: install it again' in detail
+
+
+def report_of(capfd: pytest.CaptureFixture[str], code: int, *arguments: str) -> Any:
+    assert program.main([*arguments, '--json', '-']) == code
+    output = capfd.readouterr()
+    return json.loads(output.out), output.err
+
+
+def test_the_program_reports_every_check_of_a_controller_in_a_file(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / 'lag.yaml'
+    file.write_text(
+        'format: ddct-linear-controller-1\nname: lag\n'
+        'units: {input: rpm, output: N m, frequency: rad/s}\n'
+        'transfer_function: {gain: -1.0, numerator: [], denominator: [10.0]}\n',
+        encoding='utf-8',
+    )
+    report, _ = report_of(capfd, 0, str(file))
+    assert report.keys() == {'controller', 'checks'}
+    assert report['controller'] == str(file)
+    assert [each['name'] for each in report['checks']] == [each.name for each in CHECKS]
+    assert all(each.keys() == {'name', 'state', 'detail'} for each in report['checks'])
+    states = {each['name']: each['state'] for each in report['checks']}
+    assert (states['linear model'], states['stability']) == (PASS, PASS)
+
+
+@pytest.mark.usefixtures('installed')
+def test_the_program_fails_with_one_line_that_names_the_checks(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    report, errors = report_of(capfd, 1, 'WrongSign')
+    states = {each['name']: each['state'] for each in report['checks']}
+    assert (states['sign'], states['stability'], states['reset']) == (FAIL, FAIL, PASS)
+    assert_one_line(
+        errors.partition('\n')[2], 'check-controller', 'WrongSign fails: sign, stability'
+    )
+
+
+@pytest.mark.usefixtures('installed')
+def test_options_of_a_controller_may_be_set_for_its_check(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    assert program.main(['NoIntegrator', '--set', 'controllers.NoIntegrator.gain=0.2']) == 0
+    (line,) = [line for line in capfd.readouterr().out.splitlines() if ' sign ' in line]
+    assert 'changes the clutch torque by +10 N m' in line
