@@ -1,0 +1,95 @@
+"""`new-controller` writes a package that installs, is found, runs and passes its own tests."""
+
+import shlex
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+
+from ddct_controllers.template import new_controller
+from ddct_controllers.template.install_command import install_command
+
+WITHIN_S = 120.0
+
+
+def write(folder: Path, name: str = 'my_slip') -> None:
+    assert new_controller.main([name, '--out', str(folder)]) == 0
+
+
+def python(site: Path, code: str) -> str:
+    """Return what Python prints where the packages in `site` are installed."""
+    done = subprocess.run(
+        [sys.executable, '-c', f'import site; site.addsitedir({str(site)!r})\n{code}'],
+        cwd=site,
+        capture_output=True,
+        text=True,
+        timeout=WITHIN_S,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_the_package_installs_by_its_own_command_and_its_tests_pass(tmp_path: Path) -> None:
+    folder, site = tmp_path / 'my_slip', tmp_path / 'site'
+    write(folder)
+    command = install_command(str(folder))
+    assert f'    {command}\n' in (folder / 'README.md').read_text(encoding='utf-8')
+    subprocess.run(
+        [*shlex.split(command), '--target', str(site)],
+        capture_output=True,
+        timeout=WITHIN_S,
+        check=True,
+    )
+    listing = "from ddct_bringup.programs.bringup import main\nmain(['--list'])"
+    assert 'lqi, my_slip' in python(site, listing).splitlines()[0]
+    tests = f'import pytest\nassert pytest.main(["-q", {str(folder)!r}, "-p", "no:cacheprovider"])'
+    assert '3 passed' in python(site, f'{tests} == 0')
+
+
+def test_what_it_prints_next_is_what_the_readme_says(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    write(tmp_path / 'other', 'other')
+    *_, install, check, compare = capfd.readouterr().out.splitlines()
+    readme = (tmp_path / 'other' / 'README.md').read_text(encoding='utf-8')
+    assert '\n'.join(f'  {line}' for line in (install, check, compare)) in readme
+    assert check.strip() == 'ddct check-controller other'
+
+
+def test_the_entry_point_leads_to_the_class(tmp_path: Path) -> None:
+    write(tmp_path / 'x', 'gain_2_high')
+    project = tomllib.loads((tmp_path / 'x' / 'pyproject.toml').read_text(encoding='utf-8'))
+    points = project['project']['entry-points']['ddct.controllers']
+    assert points == {'gain_2_high': 'gain_2_high:Gain2High'}
+    code = (tmp_path / 'x' / 'gain_2_high.py').read_text(encoding='utf-8')
+    assert 'class Gain2High(Controller):' in code
+
+
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('pi', 'pi is the name of another controller'),
+        ('numpy', 'numpy is a module or word of Python already'),
+        ('class', 'class is a module or word of Python already'),
+        ('My-Slip', "controller name 'My-Slip': use up to 40 lower-case letters"),
+        ('../up', "controller name '../up'"),
+    ],
+)
+def test_a_name_that_cannot_be_used_is_refused(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, name: str, words: str
+) -> None:
+    assert new_controller.main([name, '--out', str(tmp_path / 'new')]) == 1
+    assert_one_line(capfd.readouterr().err, 'new-controller', words)
+    assert not (tmp_path / 'new').exists()
+
+
+def test_a_folder_that_is_there_stays_as_it_is(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert new_controller.main(['mine', '--out', str(tmp_path)]) == 1
+    assert_one_line(capfd.readouterr().err, 'new-controller', f'{tmp_path} exists already')
+    assert list(tmp_path.iterdir()) == []
