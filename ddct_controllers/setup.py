@@ -20,13 +20,28 @@ setup(
     name=PACKAGE,
     version=ElementTree.parse('package.xml').findtext('version'),
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['mpc/export/c/*.c', 'mpc/export/c/*.h', 'template/files/*.in']},
+    package_data={
+        PACKAGE: [
+            *('mpc/export/c/*.c', 'mpc/export/c/*.h'),
+            'template/files/*.in',
+            *(f'from_file/c_library/template/*.{end}' for end in ('c', 'h', 'yaml')),
+        ]
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
-    install_requires=['setuptools', 'control', 'daqp', 'matplotlib', 'numpy', 'osqp', 'scipy'],
+    install_requires=[
+        'setuptools',
+        'cffi',
+        'control',
+        'daqp',
+        'matplotlib',
+        'numpy',
+        'osqp',
+        'scipy',
+    ],
     extras_require={'test': ['pytest'], 'lmi': ['clarabel']},
     zip_safe=False,
     maintainer='DDCT team',

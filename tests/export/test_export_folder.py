@@ -26,6 +26,8 @@ def test_the_same_controller_is_exported_to_the_same_bytes(tmp_path):
         'ddct_mpc.h',
         'ddct_mpc.c',
         'ddct_mpc_example.c',
+        'ddct_mpc_library.c',
+        'ddct_controller.h',
     ]
     contents = [[file.read_bytes() for file in files] for files in written]
     assert contents[0] == contents[1]

@@ -17,6 +17,7 @@ ROS = {
 """Modules of ROS packages, which package.xml names as they are and PyPI does not have."""
 FROM_PYPI = {
     'bokeh': ('bokeh', 'python3-bokeh-pip'),
+    'cffi': ('cffi', 'python3-cffi'),
     'clarabel': ('clarabel', None),
     'control': ('control', 'python-control-pip'),
     'daqp': ('daqp', None),

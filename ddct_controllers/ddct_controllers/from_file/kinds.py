@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
+from ddct_controllers.from_file.c_library.controller import c_library_spec
 from ddct_controllers.from_file.controller_file import (
     COMMON,
     ControllerFile,
@@ -21,6 +22,7 @@ is slow, such as loading a library, is left to `ControllerSpec.make`, inside of 
 """
 KINDS: Mapping[str, Loader] = {
     **LINEAR,
+    'c_library': c_library_spec,
 }
 """By the key that a file of the kind has."""
 

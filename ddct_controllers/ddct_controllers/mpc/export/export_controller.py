@@ -3,6 +3,8 @@
 import math
 from pathlib import Path
 
+from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
+from ddct_controllers.from_file.c_library.host import TEMPLATE
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.export.c_text import c_part, constants, macros, remark
 from ddct_controllers.mpc.export.controller_tables import (
@@ -19,6 +21,7 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import RunSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
+LIBRARY = 'ddct_mpc_library.c'
 _PREFIX = 'DDCT_MPC_'
 _MARK = 'Made by design mpc --export; make it again instead of editing it.'
 
@@ -32,9 +35,9 @@ def export_controller(
     overwrite: bool = False,
 ) -> list[Path]:
     """
-    Write header, source and example of `controller`, which `settings` built, into `folder`.
+    Write `controller`, which `settings` built, into `folder`, with what calls it.
 
-    Return their paths; docs/control_unit.md says what they are. Raise ParameterError when the C
+    Return the paths; docs/control_unit.md says what they are. Raise ParameterError when the C
     cannot do what the controller does, DdctError when the folder holds anything (with `overwrite`:
     a file in the way that is not such an export) or cannot be written.
     """
@@ -58,7 +61,7 @@ def _require_free(folder: Path, *, overwrite: bool) -> None:
             raise DdctError(
                 f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite'
             )
-        for file in {HEADER, SOURCE, EXAMPLE} & set(present):
+        for file in {HEADER, SOURCE, EXAMPLE, LIBRARY, INTERFACE} & set(present):
             if _MARK not in read_file(folder / file, MOST_TEXT_BYTES).decode(errors='replace'):
                 raise DdctError(
                     f'--export {folder}: {file} is no such export; choose another folder'
@@ -86,6 +89,8 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
             ]
         ),
         EXAMPLE: f'{note}\n{c_part("example.c")}',
+        LIBRARY: f'{note}\n{c_part("library.c")}',
+        INTERFACE: f'{note}\n{(TEMPLATE / INTERFACE).read_text(encoding="utf-8")}',
     }
 
 

@@ -1,0 +1,133 @@
+"""A controller in a shared library, and the loader of `c_library`."""
+
+import contextlib
+import json
+import signal
+import socket
+import subprocess
+import sys
+import weakref
+from pathlib import Path
+
+from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.c_library.host import (
+    ANSWER,
+    HOLD,
+    MOST_BYTES,
+    MOST_SECONDS,
+    RESET,
+    SCALARS,
+    UPDATE,
+    measurement_layout,
+)
+from ddct_controllers.from_file.controller_file import ControllerFile, mapping
+from ddct_controllers.interface import (
+    UNSTATED,
+    Command,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+    Measurement,
+)
+from ddct_plant.base.errors import DdctError, ParameterError
+
+KIND = 'c_library'
+_CALLS = {RESET: 'reset', UPDATE: 'update', HOLD: 'hold'}
+
+
+def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
+    """Return the controller behind `c_library: {file: libmine.so}`, a path from the YAML file."""
+    content = mapping(KIND, file.keys(KIND)[KIND], ('file',))['file']
+    if not isinstance(content, str) or not content:
+        raise ParameterError(f'{KIND}.file is {content!r}: give the path of a shared library')
+    path = file.folder / content
+
+    def make(context: ControllerContext) -> Controller:
+        with file.located():
+            if not path.is_file():
+                raise ParameterError(f'{KIND}.file: {path} is not there: compile it first')
+            return CLibraryController(path)
+
+    return ControllerSpec(file.name, make, {}, UNSTATED)
+
+
+class CLibraryController(Controller):
+    """Asks a process of its own, which has the library, at every step."""
+
+    def __init__(self, path: Path) -> None:
+        """Start the process; raise ParameterError when the library cannot be used."""
+        self._where = f'{KIND}.file: {path}'
+        self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, '-P', host.__file__, str(path.resolve()), str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=2,  # what C prints is no result of the program
+            )
+        self._end = weakref.finalize(self, _end, self._channel, self._process)
+        about = json.loads(self._received('it was loaded'))
+        if 'error' in about:
+            self._end()
+            raise ParameterError(f'{self._where}: {about["error"]}')
+        self.preview_steps, self.commands_engine = about['preview_steps'], about['two_input']
+        self._layout = measurement_layout(self.preview_steps)
+
+    def reset(self) -> None:
+        """Call ddct_controller_reset."""
+        self._ask(RESET)
+
+    def hold(self, measurement: Measurement) -> None:
+        """Call ddct_controller_hold, or reset where there is none."""
+        self._ask(HOLD, measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        """Call ddct_controller_update; raise DdctError when it fails, or says so."""
+        clutch, engine, status = self._ask(UPDATE, measurement)
+        said = (('c_status', str(status)),)
+        return Command(clutch, said, engine if self.commands_engine else None)
+
+    def _ask(self, call: int, measurement: Measurement | None = None) -> tuple[float, float, int]:
+        request, at = bytes([call]), f'{_CALLS[call]} was called'
+        if measurement is not None:
+            at += f' at step {measurement.step}'
+            request += self._packed(measurement)
+        with contextlib.suppress(OSError):  # it ended before; what follows says how
+            self._channel.send(request)
+        clutch, engine, status = ANSWER.unpack(self._received(at))
+        if status < 0:
+            self._end()
+            raise DdctError(f'{self._where}: it returned {status} when {at}: mend the C')
+        return clutch, engine, status
+
+    def _packed(self, measurement: Measurement) -> bytes:
+        scalars = (getattr(measurement, name) for name in SCALARS)
+        references = (*measurement.slip_reference, *measurement.slip_reference_rate)
+        return self._layout.pack(*scalars, measurement.step, *references)
+
+    def _received(self, at: str) -> bytes:
+        """Return an answer; raise DdctError when the process ended instead."""
+        try:
+            answer = self._channel.recv(MOST_BYTES)
+        except OSError:
+            answer = b''
+        if answer:
+            return answer
+        code = self._process.wait()
+        self._end()
+        how = f'it ended with exit code {code}'
+        if code == -signal.SIGALRM:
+            how = f'it gave no answer within {MOST_SECONDS} s'
+        elif code < 0:
+            how = f'it crashed ({signal.Signals(-code).name})'
+        raise DdctError(f'{self._where}: {how} when {at}: mend the C')
+
+
+def _end(channel: socket.socket, process: 'subprocess.Popen[bytes]') -> None:
+    """Let the process end by itself, which flushes what C has printed, or end it."""
+    channel.close()
+    try:
+        process.wait(timeout=1.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

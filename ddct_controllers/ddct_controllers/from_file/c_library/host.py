@@ -1,0 +1,144 @@
+"""
+The process around a controller's library: loads it and makes its calls.
+
+It is a process of its own because C may crash, loop for ever or print. Answers go over a socket, a
+message each; the process ends when the other end does.
+"""
+
+import json
+import re
+import signal
+import socket
+import struct
+import sys
+from pathlib import Path
+from typing import Any
+
+HEADER = 'ddct_controller.h'
+TEMPLATE = Path(__file__).parent / 'template'
+"""Folder of the header and of a controller to start from."""
+SCALARS = (
+    *('engine_speed', 'shaft_speed', 'wheel_speed', 'vehicle_speed'),
+    *('engine_torque', 'load_torque', 'open_loop_torque'),
+)
+"""Fields of a measurement in the order of the messages."""
+RESET, UPDATE, HOLD = b'ruh'
+"""First byte of a request; measurements follow the other two."""
+ANSWER = struct.Struct('ddi')
+"""Clutch torque, engine torque, and what the function returned."""
+MOST_BYTES = 1 << 16
+"""Of a message."""
+MOST_SECONDS = 10
+"""Of a call: the alarm then ends the process."""
+_EXAMPLE = 'start from the template in docs/c_controller.md'
+
+
+def measurement_layout(preview_steps: int) -> struct.Struct:
+    """Return how a measurement follows its byte: scalars, step, both references."""
+    return struct.Struct(f'{len(SCALARS)}dq{2 * (preview_steps + 1)}d')
+
+
+class LibraryError(Exception):
+    """The library is none that can be called."""
+
+
+class Library:
+    """A loaded library with the memory for one controller."""
+
+    def __init__(self, path: str) -> None:
+        """Load it; raise LibraryError when it is missing, no library, or of another interface."""
+        # Only here: the program at the other end need not wait for it.
+        import cffi
+
+        self._ffi = ffi = cffi.FFI()
+        header = (TEMPLATE / HEADER).read_text(encoding='utf-8')
+        # cffi reads declarations alone; a macro goes on in the next line after a backslash. An
+        # object that is const would be a constant of the compiler's, which it has none of.
+        declarations = re.sub(r'^#(.*\\\n)*.*\n', '', header, flags=re.MULTILINE)
+        ffi.cdef(declarations.replace('extern const ', 'extern '))
+        try:
+            self._library = ffi.dlopen(path)
+        except OSError as error:
+            raise LibraryError(f'it cannot be loaded ({error})') from error
+        (version,) = re.findall(r'define DDCT_INTERFACE_VERSION (\d+)', header)
+        about = self._symbol('ddct_controller')
+        self._require('interface_version', about.interface_version, int(version))
+        self._require('measurement_bytes', about.measurement_bytes, self._size('measurement'))
+        self._require('command_bytes', about.command_bytes, self._size('command'))
+        if min(about.state_bytes, about.preview_steps) < 0 or about.commands_engine not in (0, 1):
+            raise LibraryError('its ddct_controller is not filled in: use DDCT_DESCRIPTION')
+        self.preview_steps: int = about.preview_steps
+        self.commands_engine = bool(about.commands_engine)
+        self._calls = {
+            RESET: self._symbol('ddct_controller_reset'),
+            UPDATE: self._symbol('ddct_controller_update'),
+            HOLD: getattr(self._library, 'ddct_controller_hold', None),
+        }
+        # Of doubles, so that whatever the struct holds is aligned.
+        self._state = ffi.new('double[]', about.state_bytes // 8 + 1)
+        self._layout = measurement_layout(self.preview_steps)
+        self._measurement = ffi.new('ddct_measurement *')
+        self._references = [ffi.new('double[]', self.preview_steps + 1) for _ in range(2)]
+        self._measurement.slip_reference, self._measurement.slip_reference_rate = self._references
+
+    def answer(self, request: bytes) -> bytes:
+        """Carry out one request."""
+        kind = request[0]
+        if kind == RESET or (kind == HOLD and self._calls[HOLD] is None):
+            self._calls[RESET](self._state)
+            return ANSWER.pack(0.0, 0.0, 0)
+        self._take(request[1:])
+        if kind == HOLD:
+            return ANSWER.pack(0.0, 0.0, self._calls[HOLD](self._state, self._measurement))
+        command = self._ffi.new('ddct_command *')
+        status = self._calls[UPDATE](self._state, self._measurement, command)
+        return ANSWER.pack(command.clutch_torque, command.engine_torque, status)
+
+    def _take(self, measurement: bytes) -> None:
+        values = self._layout.unpack(measurement)
+        for name, value in zip((*SCALARS, 'step'), values, strict=False):
+            setattr(self._measurement, name, value)
+        entries = values[len(SCALARS) + 1 :]
+        half = len(entries) // 2
+        self._references[0][0:half], self._references[1][0:half] = entries[:half], entries[half:]
+
+    def _symbol(self, name: str) -> Any:
+        try:
+            return getattr(self._library, name)
+        except (AttributeError, KeyError) as error:  # of a function, of an object
+            raise LibraryError(f'it has no {name}: include {HEADER}, and {_EXAMPLE}') from error
+
+    def _size(self, name: str) -> int:
+        return self._ffi.sizeof(f'ddct_{name}')
+
+    def _require(self, name: str, found: int, expected: int) -> None:
+        if found != expected:
+            raise LibraryError(
+                f'its {name} is {found}, this ddct has {expected}: compile it with the '
+                f'{HEADER} of this version, for this machine'
+            )
+
+
+def main() -> None:
+    """Serve the library argv[1] on the socket with the file descriptor argv[2]."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program
+    path, descriptor = sys.argv[1:]
+    with socket.socket(fileno=int(descriptor)) as channel:
+        signal.alarm(MOST_SECONDS)
+        try:
+            library = Library(path)
+        except LibraryError as error:
+            channel.send(json.dumps({'error': str(error)}).encode())
+            return
+        about = {'preview_steps': library.preview_steps, 'two_input': library.commands_engine}
+        channel.send(json.dumps(about).encode())
+        signal.alarm(0)
+        while request := channel.recv(MOST_BYTES):
+            signal.alarm(MOST_SECONDS)
+            answer = library.answer(request)
+            signal.alarm(0)
+            channel.send(answer)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,223 @@
+"""Controllers written in C run from a file like any other; what is wrong with them is said."""
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from support.exported_mpc import STRICT, compile_c, run_settings
+
+from ddct_bringup.programs.bringup import main as bringup
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.from_file.c_library import host
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.mpc.export.export_controller import export_controller
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import DdctError
+
+TOLERANCE_N_M = 1e-6
+"""As between the C and Python of the same controller: both solvers leave about 1e-9."""
+SETTINGS = run_settings('duration_s=1')
+TEMPLATE = (host.TEMPLATE / 'my_controller.c').read_text()
+
+
+@pytest.fixture
+def library(tmp_path):
+    """Return what compiles C into the library of a YAML file, and gives that file."""
+
+    def make(source: str) -> str:
+        for name in (host.HEADER, 'my_controller.yaml'):
+            (tmp_path / name).write_bytes((host.TEMPLATE / name).read_bytes())
+        (tmp_path / 'my_controller.c').write_text(source)
+        unfinished = () if source == TEMPLATE else ('-w',)
+        flags = ('-shared', '-fPIC', *unfinished)
+        compile_c(tmp_path, *flags, 'my_controller.c', '-o', 'my_controller.so')
+        return str(tmp_path / 'my_controller.yaml')
+
+    return make
+
+
+@pytest.fixture
+def exported(tmp_path):
+    """Return what exports a controller, compiles it as the file says, and gives a YAML file."""
+
+    def make(name: str) -> str:
+        folder = tmp_path / name
+        export_controller(make_controller(name, SETTINGS), name, SETTINGS, folder)
+        sources = ('ddct_mpc.c', 'ddct_mpc_library.c')
+        compile_c(folder, '-O2', '-shared', '-fPIC', *sources, '-o', 'ddct_mpc.so')
+        file = folder / 'mpc.yaml'
+        file.write_text(f'name: {name}_in_c\nc_library: {{file: ddct_mpc.so}}\n')
+        return str(file)
+
+    return make
+
+
+def command(source: str) -> str:
+    """Return the template with another body of update."""
+    head, _, _ = TEMPLATE.partition('    const double slip =')
+    return f'{head}    {source} return 0;\n}}\n'
+
+
+@pytest.mark.parametrize('name', ['mpc3', 'mpc4', 'mpc_preview'])
+def test_the_exported_mpc_run_from_its_file_gives_the_torques_of_python(exported, name):
+    expected = run_headless(SETTINGS, name)
+    found = run_headless(SETTINGS, exported(name))
+    assert np.abs(found.torque_request - expected.torque_request).max() <= TOLERANCE_N_M
+    assert np.abs(found.engine_torque - expected.engine_torque).max() <= TOLERANCE_N_M
+    assert np.ptp(expected.torque_request[60:]) > 1.0, 'this run asks nothing of the controller'
+
+
+def test_the_template_is_the_pi_controller_that_it_says(library):
+    gains = {'proportional_gain': 0.1, 'integral_gain': 0.1}
+    expected = run_headless(SETTINGS, make_controller('pi', SETTINGS, gains))
+    found = run_headless(SETTINGS, library(TEMPLATE))
+    assert np.abs(found.torque_request - expected.torque_request).max() <= 1e-9
+
+
+def test_two_controllers_of_one_library_share_no_state(library):
+    file = library(TEMPLATE)
+    first, second = (make_controller(file, SETTINGS) for _ in range(2))
+    expected = run_headless(SETTINGS, second)
+    first.reset()
+    both = run_headless(SETTINGS, Interleaved(second, first))
+    assert both.sha256() == expected.sha256()
+
+
+class Interleaved(Controller):
+    """One controller, asked after another has been asked the same."""
+
+    def __init__(self, controller: Controller, other: Controller) -> None:
+        self._controller, self._other = controller, other
+
+    def reset(self) -> None:
+        self._controller.reset()
+
+    def update(self, measurement):
+        self._other.update(measurement)
+        return self._controller.update(measurement)
+
+
+def test_what_c_prints_and_returns_is_kept_apart_from_its_answer(library, capfd):
+    source = command('command->clutch_torque = -1.0; puts("hello"); return 7;')
+    run = run_headless(SETTINGS, library(f'#include <stdio.h>\n{source}'))
+    assert dict(run.status[-1])['c_status'] == '7'
+    assert dict(run.status[-1])['closed_loop_torque_n_m'] == '-1.0'
+    told = capfd.readouterr()
+    assert 'hello' in told.err
+    assert told.out == ''
+
+
+def test_the_reference_ahead_and_the_engine_are_those_that_the_library_asks_for(library):
+    source = command(
+        'command->clutch_torque = m->slip_reference[20] + m->slip_reference_rate[20];'
+        'command->engine_torque = m->engine_torque + 0.001 * (double)m->step;'
+    ).replace('(my_state, 0, 0)', '(my_state, 20, 1)')
+    in_c = make_controller(library(source), SETTINGS)
+    expected = run_headless(SETTINGS, InPython())
+    found = run_headless(SETTINGS, in_c)
+    assert found.torque_request.tobytes() == expected.torque_request.tobytes()
+    assert found.engine_torque.tobytes() == expected.engine_torque.tobytes()
+
+
+class InPython(Controller):
+    """What the C of the test above does."""
+
+    preview_steps = 20
+    commands_engine = True
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, m):
+        own = m.slip_reference[20] + m.slip_reference_rate[20]
+        return Command(own, (), m.engine_torque + 0.001 * m.step)
+
+
+@pytest.mark.parametrize(
+    ('source', 'complaint'),
+    [
+        ('int nothing;\n', 'it has no ddct_controller: include ddct_controller.h'),
+        (
+            TEMPLATE.replace('ddct_controller_update', 'update'),
+            'it has no ddct_controller_update: ',
+        ),
+        (
+            TEMPLATE.replace('DDCT_DESCRIPTION(my_state, 0, 0)', '{2, 80, 16, 8, 0, 0}'),
+            'its interface_version is 2, this ddct has 1: compile it with',
+        ),
+        (
+            TEMPLATE.replace('DDCT_DESCRIPTION(my_state, 0, 0)', '{1, 96, 16, 8, 0, 0}'),
+            'its measurement_bytes is 96, this ddct has 80',
+        ),
+        (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, -1, 0)'), 'is not filled in'),
+    ],
+)
+def test_a_library_of_another_interface_is_refused_in_one_line(library, source, complaint):
+    file = library(source)
+    with pytest.raises(DdctError) as caught:
+        make_controller(file, SETTINGS)
+    assert str(caught.value).startswith(f'controller file {file}: line 2: c_library.file: ')
+    assert complaint in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('body', 'complaint'),
+    [
+        ('volatile double *p = 0; *p = 1.0;', 'it crashed (SIGSEGV) when update was called at'),
+        ('__builtin_trap();', 'it crashed (SIGILL) when update was called at step 60'),
+        ('return -3;', 'it returned -3 when update was called at step 60'),
+        ('command->clutch_torque = 0.0 / (m->step * 0.0);', 'its torque at step 60 is '),
+    ],
+)
+def test_a_failure_in_c_ends_the_run_with_one_line(library, tmp_path, capsys, body, complaint):
+    file = library(command(body))
+    out = str(tmp_path / 'runs')
+    assert bringup(['--controller', file, '--headless', '--out', out]) == 1
+    (line,) = [each for each in capsys.readouterr().err.splitlines() if 'controller' in each]
+    assert complaint in line
+
+
+def test_a_loop_without_end_is_ended(library, monkeypatch, tmp_path):
+    code = Path(host.__file__).read_text().replace('MOST_SECONDS = 10', 'MOST_SECONDS = 1')
+    (tmp_path / 'host.py').write_text(code)
+    monkeypatch.setattr(host, '__file__', str(tmp_path / 'host.py'))
+    (tmp_path / 'template').symlink_to(host.TEMPLATE)
+    controller = make_controller(library(command('for (;;) {}')), SETTINGS)
+    with pytest.raises(DdctError, match='it gave no answer within'):
+        run_headless(SETTINGS, controller)
+
+
+@pytest.mark.parametrize(
+    ('content', 'complaint'),
+    [
+        ('{file: none.so}', 'none.so is not there: compile it first'),
+        ('{file: mine.yaml}', 'it cannot be loaded'),
+        ('{file: 3}', 'c_library.file is 3: give the path of a shared library'),
+        ('{path: a.so}', 'c_library: key file is missing'),
+        ('{file: a.so, gain: 2}', "unknown key 'c_library.gain'"),
+    ],
+)
+def test_a_file_without_a_library_is_refused(tmp_path, content, complaint):
+    file = tmp_path / 'mine.yaml'
+    file.write_text(f'name: mine\nc_library: {content}\n')
+    with pytest.raises(DdctError) as caught:
+        make_controller(str(file), SETTINGS)
+    assert str(caught.value).startswith(f'controller file {file}: line 2: ')
+    assert complaint in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+def test_no_process_is_left_behind(library):
+    controller: Any = make_controller(library(TEMPLATE), SETTINGS)
+    process = controller._process
+    del controller
+    assert process.poll() == 0
+
+
+def test_the_header_is_c_as_strict_as_the_export(tmp_path):
+    (tmp_path / 'one.c').write_text(f'#include "{host.HEADER}"\n')
+    command = ['cc', *STRICT, '-I', str(host.TEMPLATE), '-fsyntax-only', 'one.c']
+    subprocess.run(command, cwd=tmp_path, check=True)
