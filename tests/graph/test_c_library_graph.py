@@ -1,0 +1,30 @@
+"""A controller in C takes its place in the graph."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.exported_mpc import compile_c
+from support.runs import expected, plan, record
+
+from ddct_controllers.mpc.export.export_controller import export_controller
+from ddct_controllers.registry import make_controller
+
+TOLERANCE_N_M = 1e-6
+"""As tests/export has it between the C and Python of one controller."""
+
+
+@pytest.mark.compiler
+def test_the_exported_mpc_run_back_through_the_graph_is_that_of_python(tmp_path: Path) -> None:
+    original = plan('mpc3')
+    controller = make_controller('mpc3', original.settings)
+    folder = tmp_path / 'c'
+    export_controller(controller, 'mpc3', original.settings, folder)
+    sources = ('ddct_mpc.c', 'ddct_mpc_library.c')
+    compile_c(folder, '-O2', '-shared', '-fPIC', *sources, '-o', 'ddct_mpc.so')
+    (folder / 'mpc.yaml').write_text('name: mpc3_in_c\nc_library: {file: ddct_mpc.so}\n')
+    run = plan(str(folder / 'mpc.yaml'))
+    found = record(run, tmp_path / 'runs').trajectory
+    assert found.sha256() == expected(run).sha256()
+    error = found.torque_request - expected(original).torque_request
+    assert np.abs(error).max() <= TOLERANCE_N_M
