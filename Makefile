@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo test test-fast mutants lint bench lock clean
+.PHONY: help setup demo fmu test test-fast mutants lint bench lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -17,7 +17,7 @@ BIN := .venv/bin
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
-PEERS_INSTALLED := .venv/.peers
+EXTRAS_INSTALLED := .venv/.bench .venv/.fmu
 BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/config ddct_*/foxglove)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
@@ -26,7 +26,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | demo | test | test-fast | mutants | lint | bench | clean   (see docs/setup.md)'
+	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | bench | clean   (see docs/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -66,6 +66,9 @@ demo: setup
 	@$(SOURCED) ddct compare \
 	    --controllers pi,ls8,hinf1,mpc3,mpc4 --out runs/demo --overwrite
 
+# What runs a controller that is an FMU.
+fmu: setup .venv/.fmu
+
 # Both runs always take place. A package whose tests colcon did not find counts as a failure.
 TEST_FOLDERS := $(wildcard ddct_*/test tests)
 TOTAL := /pytest.xml: [1-9]/ { ran++ } \
@@ -73,7 +76,7 @@ TOTAL := /pytest.xml: [1-9]/ { ran++ } \
         $$2 - failed - $$8, failed, $$8 } \
     END { if (ran < folders) print "make: tests ran in " ran + 0 " of the folders: $(TEST_FOLDERS)"; \
         exit failed || ran < folders }
-test: setup
+test: fmu
 	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
 	$(BIN)/colcon test --executor sequential --event-handlers console_cohesion+ \
 	    --return-code-on-test-failure --pytest-args ' -n2' ' --dist=loadfile' || status=1; \
@@ -88,7 +91,7 @@ test-fast: setup
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
 # MUTANTS='--claim TEXT' or files of tests/mutants try only those.
-mutants: setup
+mutants: fmu
 	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
 
 lint: $(VENV_MADE)
@@ -98,12 +101,12 @@ lint: $(VENV_MADE)
 	$(BIN)/mypy || status=1; \
 	exit $$status
 
-# The peers are added to the environment that is there; a second sync would break it.
-$(PEERS_INSTALLED): requirements-bench.txt $(VENV_MADE)
-	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements-bench.txt
+# Added to the environment that is there; a second sync would break it.
+$(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
+	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
 	@touch $@
 
-bench: setup $(PEERS_INSTALLED)
+bench: setup .venv/.bench
 	@$(SOURCED) $(BIN)/python tests/bench/run.py
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
@@ -112,6 +115,7 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
 lock: $(VENV_MADE)
 	@$(COMPILE) requirements.in -o requirements.txt
 	@$(COMPILE) requirements-bench.in -c requirements.txt -o requirements-bench.txt
+	@$(COMPILE) requirements-fmu.in -c requirements.txt -o requirements-fmu.txt
 	@echo uv | $(COMPILE) - -o requirements-uv.txt
 
 clean:

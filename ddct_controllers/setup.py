@@ -42,7 +42,7 @@ setup(
         'osqp',
         'scipy',
     ],
-    extras_require={'test': ['pytest'], 'lmi': ['clarabel']},
+    extras_require={'test': ['pytest'], 'lmi': ['clarabel'], 'fmu': ['fmpy']},
     zip_safe=False,
     maintainer='DDCT team',
     maintainer_email='maintainers@ddct.invalid',

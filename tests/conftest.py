@@ -21,7 +21,7 @@ HERE = Path(__file__).parent
 MARKERS = dict.fromkeys(
     ('bag', 'docs', 'faults', 'foxglove', 'graph', 'live', 'programs', 'report'), 'graph'
 )
-MARKERS['export'] = 'compiler'
+MARKERS |= dict.fromkeys(('export', 'fmu'), 'compiler')
 """What the tests of a folder need, beyond Python."""
 
 

@@ -16,6 +16,9 @@ NOT_RUN_HERE = {
     '. /opt/ros': "needs apt's ROS 2",
     'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
     'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
+    'git clone': 'is how one comes here',
+    '.venv/bin/': 'stands on the page of FMUs alone; tests/fmu runs it',
+    'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
     'ddct bringup --mode realtime --controller ls8 --live': (
         'waits for a viewer; tests/live gives it one'

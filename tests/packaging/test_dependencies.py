@@ -21,6 +21,7 @@ FROM_PYPI = {
     'clarabel': ('clarabel', None),
     'control': ('control', 'python-control-pip'),
     'daqp': ('daqp', None),
+    'fmpy': ('fmpy', None),
     'foxglove': ('foxglove-sdk', None),
     'jinja2': ('jinja2', 'python3-jinja2'),
     'markupsafe': ('markupsafe', None),
@@ -124,6 +125,7 @@ def without_key(module: str) -> set[str]:
 
 
 def test_the_requirements_of_the_wheel_path_name_all_of_it() -> None:
-    lines = (ROOT / 'requirements.in').read_text(encoding='utf-8').splitlines()
+    files = [ROOT / name for name in ('requirements.in', 'requirements-fmu.in')]
+    lines = [line for file in files for line in file.read_text(encoding='utf-8').splitlines()]
     names = {re.split(r'[\[<=\s#]', line, maxsplit=1)[0] for line in lines}
     assert {name for name, _ in FROM_PYPI.values()} <= names

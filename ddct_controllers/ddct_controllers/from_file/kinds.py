@@ -9,6 +9,7 @@ from ddct_controllers.from_file.controller_file import (
     mapping,
     read_controller_file,
 )
+from ddct_controllers.from_file.fmu import fmu_spec
 from ddct_controllers.from_file.transfer_functions import LINEAR
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
@@ -23,6 +24,7 @@ is slow, such as loading a library, is left to `ControllerSpec.make`, inside of 
 KINDS: Mapping[str, Loader] = {
     **LINEAR,
     'c_library': c_library_spec,
+    'fmu': fmu_spec,
 }
 """By the key that a file of the kind has."""
 

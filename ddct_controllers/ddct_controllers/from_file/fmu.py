@@ -1,0 +1,236 @@
+"""Controllers in a functional mock-up unit (FMU), as Simulink and Modelica tools export them."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
+
+from ddct_controllers.from_file.controller_file import ControllerFile, mapping
+from ddct_controllers.from_file.fmu_unit import Fmu, RunningFmu
+from ddct_controllers.interface import (
+    UNSTATED,
+    Command,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+    Measurement,
+)
+from ddct_plant.base.checks import require_finite
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import REQUIRED, Option, close_name
+
+KIND = 'fmu'
+SCALARS = {
+    'slip_error_rpm': 'slip_error_rpm',
+    'slip_speed_rad_s': 'slip_speed',
+    'engine_speed_rad_s': 'engine_speed',
+    'shaft_speed_rad_s': 'shaft_speed',
+    'wheel_speed_rad_s': 'wheel_speed',
+    'vehicle_speed_m_s': 'vehicle_speed',
+    'engine_torque_n_m': 'engine_torque',
+    'load_torque_n_m': 'load_torque',
+    'open_loop_torque_n_m': 'open_loop_torque',
+}
+"""What an input may be given, with its unit, and the attribute of Measurement that holds it."""
+AHEAD = {
+    'slip_reference_rad_s': 'slip_reference',
+    'slip_reference_rate_rad_s2': 'slip_reference_rate',
+}
+"""The same for what is also known i periods ahead, as `slip_reference_rad_s[i]`."""
+CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
+"""What an output may be."""
+_UNITS = {
+    '_rpm': ('rpm', 'rev/min', 'r/min', '1/min'),
+    '_rad_s': ('rad/s',),
+    '_rad_s2': ('rad/s2',),
+    '_m_s': ('m/s',),
+    '_n_m': ('Nm',),
+}
+"""By the end of our name how a tool may write its unit, but for dots, stars, hats and spaces."""
+_KINDS = {'Real': float, 'Float64': float, 'Integer': int, 'Int32': int, 'Enumeration': int}
+_KINDS |= {'Boolean': bool, 'String': str}
+"""Types of variables that may be given a start value."""
+
+
+@dataclass(frozen=True)
+class _Fed:
+    """An input: the variable, and what it is given."""
+
+    variable: Any
+    read: Callable[[Measurement], float]
+    ahead: int = 0
+    """Periods."""
+
+
+class FmuController(Controller):
+    """
+    An FMU in the place of a controller's class.
+
+    In each period its inputs are set, it takes a step of 10 ms, and its outputs hold over that
+    period. Its own time is 0 when feedback begins.
+    """
+
+    def __init__(
+        self,
+        file: ControllerFile,
+        fmu: Fmu,
+        fed: list[_Fed],
+        outputs: Mapping[str, Any],
+        starts: list[tuple[Any, Any]],
+    ) -> None:
+        """Load `fmu`; `outputs` are its variables by CLUTCH and ENGINE."""
+        self.preview_steps = max((each.ahead for each in fed), default=0)
+        self.commands_engine = ENGINE in outputs
+        self._file, self._outputs = file, outputs
+        self._readers = [each.read for each in fed]
+        with file.located():
+            self._unit = RunningFmu(
+                fmu, starts, [each.variable for each in fed], list(outputs.values())
+            )
+
+    def reset(self) -> None:
+        """Load the FMU again, unless it has taken no step yet."""
+        with self._file.located():
+            self._unit.reset()
+
+    def update(self, measurement: Measurement) -> Command:
+        """Return the outputs of this period's step; raise DdctError when the FMU fails."""
+        with self._file.located():
+            found = self._unit.step([read(measurement) for read in self._readers])
+            torques = {
+                name: require_finite(
+                    f'fmu.outputs.{variable.name} at step {measurement.step}', torque
+                )
+                for (name, variable), torque in zip(self._outputs.items(), found, strict=True)
+            }
+        return Command(torques[CLUTCH], engine_torque=torques.get(ENGINE))
+
+
+def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
+    """Return the controller behind `fmu`; its options are the start values in `parameters`."""
+    keys = mapping(
+        KIND, file.keys(KIND)[KIND], ('file', 'inputs', 'outputs'), optional=('parameters',)
+    )
+    if not isinstance(keys['file'], str):
+        raise ParameterError(f'fmu.file is {keys["file"]!r}: give the path of the FMU')
+    try:
+        fmu = Fmu(file.folder / keys['file'])
+    except ParameterError as error:
+        raise ParameterError(f'fmu.file: {error}') from error
+    fed = [
+        _fed(_variable(fmu, 'inputs', name, 'input'), ours)
+        for name, ours in mapping('fmu.inputs', keys['inputs']).items()
+    ]
+    outputs = _outputs(fmu, mapping('fmu.outputs', keys['outputs']))
+    given = mapping('fmu.parameters', keys.get('parameters') or {})
+    started = [_variable(fmu, 'parameters', name) for name in given]
+    options = {
+        re.sub(r'\W+', '_', variable.name).strip('_'): _option(variable, given[variable.name])
+        for variable in started
+    }
+    if len(options) < len(started):
+        raise ParameterError(
+            'fmu.parameters: two names differ only in their dots and brackets: keep one'
+        )
+    _require_all_inputs(fmu, {each.variable.name for each in fed} | set(given))
+
+    def make(context: ControllerContext) -> Controller:
+        starts = [
+            (variable, context.gains[name])
+            for variable, name in zip(started, options, strict=True)
+        ]
+        return FmuController(file, fmu, fed, outputs, starts)
+
+    return ControllerSpec(file.name, make, options, UNSTATED)
+
+
+def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
+    """Return the variable that a section names; raise ParameterError unless it suits."""
+    key = f'fmu.{section}.{name}'
+    variable = fmu.variables.get(name)
+    if variable is None:
+        known = [each.name for each in fmu.variables.values() if each.causality == causality]
+        hint = close_name(name, known or fmu.variables)
+        raise ParameterError(f'{key}: {fmu.path.name} has no variable of this name: {hint}')
+    if causality and (variable.causality, variable.type) != (causality, fmu.real):
+        raise ParameterError(
+            f'{key}: it is {variable.causality} of type {variable.type}: choose an {causality} of '
+            f'type {fmu.real}'
+        )
+    if variable.shape:
+        raise ParameterError(f'{key}: it is an array: export its elements one by one')
+    return variable
+
+
+def _fed(variable: Any, ours: object) -> _Fed:
+    key = f'fmu.inputs.{variable.name}'
+    name, ahead = str(ours), 0
+    if found := re.fullmatch(r'(\w+)\[(\d{1,3})\]', name):
+        name, ahead = found[1], int(found[2])
+    known = AHEAD if found else SCALARS | AHEAD
+    if name not in known:
+        raise ParameterError(f'{key} is {ours!r}: {close_name(name, known)}')
+    _require_unit(key, variable, name)
+    if name in SCALARS:
+        return _Fed(variable, attrgetter(SCALARS[name]))
+
+    def read(measurement: Measurement) -> float:
+        value: float = getattr(measurement, AHEAD[name])[ahead]
+        return value
+
+    return _Fed(variable, read, ahead)
+
+
+def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:
+    outputs: dict[str, Any] = {}
+    for name, ours in section.items():
+        key = f'fmu.outputs.{name}'
+        variable = _variable(fmu, 'outputs', name, 'output')
+        if ours not in (CLUTCH, ENGINE) or ours in outputs:
+            raise ParameterError(f'{key} is {ours!r}: give {CLUTCH} or {ENGINE}, each once')
+        _require_unit(key, variable, ours)
+        outputs[ours] = variable
+    if CLUTCH not in outputs:
+        raise ParameterError(f'fmu.outputs: none is {CLUTCH}: map the clutch torque')
+    return outputs
+
+
+def _require_unit(key: str, variable: Any, ours: str) -> None:
+    """Raise ParameterError when the FMU states another unit than that of our name."""
+    stated = variable.unit or (variable.declaredType and variable.declaredType.unit) or '1'
+    end = max((end for end in _UNITS if ours.endswith(end)), key=len)
+    if stated != '1' and re.sub(r'[\s.*^·]', '', stated) not in _UNITS[end]:
+        raise ParameterError(
+            f'{key} is {ours}, but the FMU has it in {stated}: convert it there, or map another'
+        )
+
+
+def _option(variable: Any, value: object) -> Option:
+    """Return a start value as an option, `value` its default; raise ParameterError."""
+    key = f'fmu.parameters.{variable.name}'
+    settable = variable.initial in ('exact', 'approx') and variable.variability != 'constant'
+    if not settable or variable.type not in _KINDS or variable.causality == 'structuralParameter':
+        raise ParameterError(
+            f'{key}: {variable.causality} of type {variable.type} takes no start value: choose a '
+            'parameter'
+        )
+    kind = _KINDS[variable.type]
+    option = Option(
+        REQUIRED,
+        variable.description or 'start value in the FMU',
+        variable.unit or '',
+        kind=kind,
+        at_least=float(variable.min) if variable.min else None,
+        at_most=float(variable.max) if variable.max else None,
+    )
+    return replace(option, default=option.checked(key, value))
+
+
+def _require_all_inputs(fmu: Fmu, given: set[str]) -> None:
+    for variable in fmu.variables.values():
+        if variable.causality == 'input' and variable.name not in given:
+            raise ParameterError(
+                f'fmu.inputs: input {variable.name} of {fmu.path.name} is not among them: map it, '
+                'or give it a value under parameters'
+            )

@@ -1,0 +1,186 @@
+"""
+A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file, and how it is stepped.
+
+FMPy, an optional extra, reads the file and calls the binary in it; nothing else imports it.
+"""
+
+import contextlib
+import weakref
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
+
+_FATAL = 4
+"""Status after which nothing of an FMU may be called, not even to free it."""
+
+
+class Fmu:
+    """What a file says of the FMU in it, which is known to suit this machine and our period."""
+
+    def __init__(self, path: Path) -> None:
+        """Read the file; raise ParameterError, or DdctError without FMPy, with what to do."""
+        self.path = path
+        self.fmpy = _fmpy()
+        try:
+            self.description = self.fmpy.read_model_description(path, validate=False)
+            with zipfile.ZipFile(path) as file:
+                names = file.namelist()
+        except OSError as error:
+            raise ParameterError(f'{path} cannot be read ({error.strerror})') from error
+        except Exception as error:
+            raise ParameterError(f'{path} is no FMU ({_line(error)}): export it again') from error
+        version = self.description.fmiVersion
+        if not version.startswith(('2.', '3.')) or self.description.coSimulation is None:
+            raise ParameterError(
+                f'{path} is not for co-simulation by FMI 2.0 or 3.0 (FMI {version}): export it so'
+            )
+        self.is_fmi2 = version.startswith('2.')
+        self.real = 'Real' if self.is_fmi2 else 'Float64'
+        """Its type of inputs and outputs."""
+        self.variables: Mapping[str, Any] = {v.name: v for v in self.description.modelVariables}
+        """FMPy's `ModelVariable` by name."""
+        self._require_binary(names)
+        self._require_period()
+
+    def _require_binary(self, names: Sequence[str]) -> None:
+        platform = self.fmpy.platform if self.is_fmi2 else self.fmpy.platform_tuple
+        identifier = self.description.coSimulation.modelIdentifier
+        if f'binaries/{platform}/{identifier}{self.fmpy.sharedLibraryExtension}' in names:
+            return
+        parts = [name.split('/') for name in names]
+        there = sorted({part[1] for part in parts if part[0] == 'binaries' and len(part) > 2})
+        raise ParameterError(
+            f'{self.path} has no binary for {platform}, but for {", ".join(there) or "none"}: '
+            'export it for this platform, or compile the sources in it with `fmpy compile`'
+        )
+
+    def _require_period(self) -> None:
+        """Raise ParameterError when the FMU has a fixed step that does not go into our period."""
+        unit, experiment = self.description.coSimulation, self.description.defaultExperiment
+        stated = unit.fixedInternalStepSize or (experiment and experiment.stepSize)
+        if unit.canHandleVariableCommunicationStepSize or not stated:
+            return
+        step = float(stated)
+        if step > 1.5 * PERIOD_S or abs(PERIOD_S / step - round(PERIOD_S / step)) > 1e-6:
+            raise ParameterError(
+                f'{self.path} has a fixed step of {step:g} s: export it with {PERIOD_S} s, or a '
+                'step that goes into it'
+            )
+
+
+class RunningFmu:
+    """
+    An instance of an FMU, which takes one step of 10 ms per call, from its own time 0.
+
+    Its files live in a temporary folder. Binary and folder go with this object, at the latest when
+    Python ends. A call that fails raises DdctError with what the FMU says about it.
+    """
+
+    def __init__(
+        self, fmu: Fmu, starts: Sequence[tuple[Any, Any]], inputs: list[Any], outputs: list[Any]
+    ) -> None:
+        """Load `fmu`; `starts` are variables with their values, the others those of each step."""
+        self._fmu, self._starts = fmu, starts
+        self._inputs, self._outputs = (
+            [variable.valueReference for variable in each] for each in (inputs, outputs)
+        )
+        self._held = contextlib.ExitStack()
+        weakref.finalize(self, self._held.close)
+        self._load()
+
+    def reset(self) -> None:
+        """Go back to before the first step: not by FMI's reset, but with binary and files anew."""
+        if self._steps:
+            self._held.close()
+            self._load()
+
+    def step(self, inputs: Sequence[float]) -> list[float]:
+        """Set the inputs, go 10 ms ahead and return the outputs."""
+        time_s = time_of_step(self._steps)
+        with self._named(f'at its own time {time_s:g} s'):
+            if not self._steps:
+                self._initialise(inputs)
+            self._set(self._inputs, inputs)
+            ended = self._instance.doStep(time_s, PERIOD_S)
+            if ended and ended[1]:  # FMI 3.0 tells so; FMI 2.0 fails
+                raise DdctError('it asks for the end of the simulation')
+            found: list[float] = self._get(self._outputs)
+        self._steps += 1
+        return found
+
+    def _load(self) -> None:
+        self._steps = 0
+        self._said: list[str] = []
+        with contextlib.ExitStack() as held, self._named('when it is loaded'):
+            folder = held.enter_context(TemporaryDirectory(prefix='ddct_fmu_'))
+            self._fmu.fmpy.extract(self._fmu.path, folder)
+            # FMPy goes to the binary's folder, and stays there when it cannot be loaded.
+            with contextlib.chdir('.'):
+                self._instance = self._fmu.fmpy.instantiate_fmu(
+                    folder, self._fmu.description, 'CoSimulation', logger=_listener(self._said)
+                )
+            held.callback(_free, self._instance)
+            for variable, value in self._starts:
+                kind = variable.type
+                if kind == 'Enumeration':
+                    kind = 'Integer' if self._fmu.is_fmi2 else 'Int64'
+                getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
+            self._held.push(held.pop_all())
+        self._set = getattr(self._instance, f'set{self._fmu.real}')
+        self._get = getattr(self._instance, f'get{self._fmu.real}')
+
+    def _initialise(self, inputs: Sequence[float]) -> None:
+        if self._fmu.is_fmi2:
+            self._instance.setupExperiment(startTime=0.0)
+        self._instance.enterInitializationMode()
+        self._set(self._inputs, inputs)
+        self._instance.exitInitializationMode()
+
+    @contextlib.contextmanager
+    def _named(self, when: str) -> Iterator[None]:
+        """Raise whatever FMPy raises as a DdctError."""
+        self._said.clear()
+        try:
+            yield
+        except Exception as error:
+            if getattr(error, 'status', None) == _FATAL:
+                self._instance.component = None
+            said = f': {self._said[-1]}' if self._said else ''
+            raise DdctError(
+                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the FMU'
+            ) from error
+
+
+def _free(instance: Any) -> None:
+    if instance.component:
+        instance.freeInstance()
+
+
+def _listener(said: list[str]) -> Callable[..., None]:
+    """Return what an FMU calls to say something; text comes last in FMI 2.0 and 3.0."""
+
+    def listen(*message: Any) -> None:
+        said.append(_line(message[-1].decode('utf-8', 'replace')))
+
+    return listen
+
+
+def _line(text: object) -> str:
+    """Return the same on one line, without a full stop."""
+    return ' '.join(str(text).split()).rstrip('.')
+
+
+def _fmpy() -> Any:
+    try:
+        import fmpy
+    except ImportError as error:
+        raise DdctError(
+            'fmu: FMPy is not installed: `make fmu`, or `python -m pip install fmpy` where numpy '
+            'is 2.1 or newer'
+        ) from error
+    return fmpy

@@ -1,0 +1,107 @@
+"""A PI controller in an FMU is the PI controller: to the bit, in every way to run it."""
+
+import gc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.fmu import EVENTS, GAINS, VERSIONS, controller_file, write_fmu
+
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.registry import controller_label, controller_spec, make_controller
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+pytestmark = pytest.mark.usefixtures('folder')
+
+
+def settings(*changes: str) -> RunSettings:
+    return RunSettings(load_scenario('thesis', ['duration_s=1.5', GAINS, *changes]))
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_an_fmu_gives_the_torques_of_the_pi_to_the_bit(version: int) -> None:
+    found = run_headless(settings(), controller_file(version))
+    pi = run_headless(settings(), 'pi')
+    assert np.ptp(pi.torque_request[60:]) > 1.0, 'this run asks nothing of the controller'
+    assert np.array_equal(found.torque_request, pi.torque_request)
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_the_tests_fmu_is_one_by_the_standard(version: int) -> None:
+    import fmpy
+
+    fmu = write_fmu(Path('pi.fmu'), version)
+    assert fmpy.read_model_description(fmu, validate=True).fmiVersion == f'{version}.0'
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_a_second_run_begins_anew(version: int) -> None:
+    controller = make_controller(controller_file(version), settings())
+    first, second = (run_headless(settings(), controller) for _ in range(2))
+    assert first.sha256() == second.sha256()
+
+
+def test_two_controllers_of_one_file_know_nothing_of_each_other() -> None:
+    file = controller_file(2)
+    alone = run_headless(settings(), file)
+    one, other = (make_controller(file, settings()) for _ in range(2))
+    run_headless(settings('duration_s=1'), other)
+    assert run_headless(settings(), one).sha256() == alone.sha256()
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_every_instance_is_freed_and_no_file_stays(
+    version: int, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(EVENTS, str(folder / 'events'))
+    controller = make_controller(controller_file(version), settings())
+    assert len(list((folder / 'tmp').iterdir())) == 1
+    for _ in range(2):
+        run_headless(settings(), controller)
+    del controller
+    gc.collect()
+    assert list((folder / 'tmp').iterdir()) == []
+    assert (folder / 'events').read_text().split() == 2 * ['instantiated', 'freed']
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_its_parameters_are_options(version: int) -> None:
+    file = controller_file(version, ('pid.Ki: 0.3', 'pid.Ki: 0.9'))
+    assert controller_label(file) == 'mine'
+    found = run_headless(settings('controllers.mine.pid_Ki=0.3'), file)
+    assert np.array_equal(found.torque_request, run_headless(settings(), 'pi').torque_request)
+    assert controller_spec(file).options['pid_Ki'].default == 0.9
+    for change, complaint in (
+        ('pid_Kp=-1', 'controllers.mine.pid_Kp is -1: it must be at least 0'),
+        ('Kp=1', 'controllers.mine.Kp is not a key of mine'),
+    ):
+        with pytest.raises(ParameterError, match=complaint):
+            make_controller(file, settings(f'controllers.mine.{change}'))
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_start_values_of_every_type_reach_the_fmu(version: int) -> None:
+    typed = 'inverted: true, order: 2, fault: 0, remark: none, pid.Kp'
+    found = run_headless(settings(), controller_file(version, ('pid.Kp', typed)))
+    first, after = (dict(found.status[step])['closed_loop_torque_n_m'] for step in (60, 61))
+    assert float(first) == 0.0
+    error_rpm = (found.slip_reference[61, 0] - found.slip_speed[61]) * 30 / np.pi
+    assert float(after) == pytest.approx(0.2 * error_rpm + 0.3 * 0.01 * error_rpm, rel=1e-9)
+    assert error_rpm != 0.0
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_it_sees_the_reference_ahead_and_commands_the_engine(version: int) -> None:
+    file = controller_file(
+        version,
+        ('{e: slip_error_rpm}', "{e: slip_error_rpm, ahead: 'slip_reference_rad_s[4]'}"),
+        ('{u: clutch_torque_n_m}', '{u: clutch_torque_n_m, engine: engine_torque_n_m}'),
+        ('demand: 0.0, ahead: 0.0', 'order: 1'),
+        ('e: slip', 'demand: engine_torque_n_m, e: slip'),
+    )
+    found = run_headless(settings(), file)
+    assert found.slip_reference.shape[1] == 5
+    assert np.array_equal(found.engine_torque_request, found.torque_demand)
+    assert np.ptp(found.engine_torque_request) > 1.0

@@ -1,0 +1,57 @@
+"""What the page on FMUs shows works as it stands there."""
+
+import json
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.documented import ROOT, blocks
+from support.fmu import write_fmu
+
+from ddct_bringup.programs import compare
+from ddct_controllers.from_file.fmu import AHEAD, CLUTCH, ENGINE, SCALARS
+from ddct_controllers.from_file.kinds import load_spec
+
+PAGE = 'docs/fmu_controller.md'
+BLOCKS = [block for block in blocks() if block.page == PAGE]
+LINES = [line for block in BLOCKS for line in block.lines]
+PYTHON = '.venv/bin/python '
+FMPY = '.venv/bin/fmpy '
+
+
+@pytest.fixture
+def template(folder: Path) -> str:
+    (text,) = [block.text for block in BLOCKS if block.language == 'yaml']
+    Path('mine.yaml').write_text(text, encoding='utf-8')
+    return 'mine.yaml'
+
+
+def test_its_template_and_commands_run(template: str, folder: Path) -> None:
+    (make_one,) = [line for line in LINES if line.startswith(PYTHON)]
+    (look,) = [line for line in LINES if line.startswith(f'{FMPY}info')]
+    for python, line in (([], make_one), (['-m', 'fmpy'], look)):
+        words = shlex.split(line)[1:]
+        words[0] = str(ROOT / words[0]) if not python else words[0]
+        done = subprocess.run([sys.executable, *python, *words], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert 'rev/min' in done.stdout
+    first, _ = [line.removeprefix('ddct compare ') for line in LINES if line.startswith('ddct')]
+    assert compare.main(shlex.split(first)) == 0
+    pi, mine = json.loads((folder / 'runs' / 'mine' / 'scores.json').read_text())['runs']
+    assert (pi['controller'], mine['controller']) == ('pi', 'mine')
+    assert mine['valid']
+
+
+def test_the_option_that_it_changes_is_one(template: str) -> None:
+    write_fmu(Path('mine.fmu'), 3)
+    changed = shlex.split([line for line in LINES if '--set' in line][0])
+    key = changed[changed.index('--set') + 1].partition('=')[0]
+    assert key.removeprefix('controllers.mine.') in (load_spec(template).options or {})
+
+
+def test_it_lists_every_name() -> None:
+    text = (ROOT / PAGE).read_text(encoding='utf-8')
+    table = text.partition('## Names')[2].partition('## When')[0]
+    assert [name for name in (*SCALARS, *AHEAD, CLUTCH, ENGINE) if f'`{name}`' not in table] == []
