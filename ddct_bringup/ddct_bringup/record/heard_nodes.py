@@ -10,7 +10,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 class HeardNodes:
-    """Collect the `run_info` of every node that a recording needs, as pairs and as a message."""
+    """Collect the `run_info` of every node that a recording needs."""
 
     def __init__(self, settings: RunSettings, two_input: bool, expected: Collection[str]) -> None:
         """Take what the recorder itself runs with, and the names of the nodes to wait for."""
@@ -18,9 +18,8 @@ class HeardNodes:
         self._two_input = str(two_input).lower()
         self._expected = set(expected)
         self._said_by: RunInfoOfNodes = {}
-        self._messages: dict[str, bytes] = {}
 
-    def hear(self, node: str, pairs: Mapping[str, str], cdr: bytes) -> None:
+    def hear(self, node: str, pairs: Mapping[str, str]) -> None:
         """
         Keep what a node says of itself.
 
@@ -39,15 +38,14 @@ class HeardNodes:
                 'controller, as --ros-args -p two_input:=true when it commands the engine'
             )
         note_run_info(self._said_by, node, pairs)
-        self._messages.setdefault(node, cdr)
 
     def silent(self) -> list[str]:
         """Return the names of the nodes that have not been heard yet."""
         return sorted(self._expected - set(self._said_by))
 
-    def messages(self) -> list[bytes]:
-        """Return what was heard in the order in which it is recorded."""
-        return [self._messages[node] for node in run_info_order(self._messages)]
+    def said(self) -> RunInfoOfNodes:
+        """Return what each node said of itself, in the order in which it is recorded."""
+        return {node: self._said_by[node] for node in run_info_order(self._said_by)}
 
     @property
     def controller(self) -> str:

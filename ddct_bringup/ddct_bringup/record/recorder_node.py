@@ -164,7 +164,7 @@ class RecorderNode(GraphNode):
     def _on_run_info(self, cdr: bytes) -> None:
         node, pairs = RUN_INFO.read(_message(RUN_INFO, cdr))
         try:
-            self._nodes.hear(node, pairs, cdr)
+            self._nodes.hear(node, pairs)
         except DdctError as error:
             self._on_second_node(error)
         self._write_ticks([])
@@ -226,8 +226,10 @@ class RecorderNode(GraphNode):
             return False
         facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
         self._bag = BagWriter(self._folder, self._bag_name, self._topics, facts)
-        for cdr in self._nodes.messages():
-            self._bag.write(RUN_INFO.name, START_NS, cdr)
+        for node, pairs in self._nodes.said().items():
+            # Made anew: a node that is not ours may stamp it with the time of its wall clock.
+            message = RUN_INFO.message(START_NS, pairs.items(), name=node)
+            self._bag.write(RUN_INFO.name, START_NS, serialize_message(message))
         for topic, stamp, cdr in self._unordered:
             self._bag.write(topic, stamp, cdr)
         self._first_tick_at = time.monotonic()
