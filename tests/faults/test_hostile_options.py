@@ -83,7 +83,8 @@ def test_help_into_a_full_disk_is_one_line(module: str) -> None:
             check=False,
         )
     assert done.returncode == 1
-    program = module.rpartition('.')[2].removesuffix('_node').removesuffix('_program')
+    name = module.rpartition('.')[2].removesuffix('_program')
+    program = name.removesuffix('_node') if name.endswith('_node') else f'ddct {name}'
     assert_one_line(done.stderr, program, 'No space left on device')
 
 
