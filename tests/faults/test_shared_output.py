@@ -40,7 +40,7 @@ def test_a_second_compare_is_refused_while_the_first_one_lives(
     wait_until(under_way.exists, 'a compare under way', START_S)
     before = _files(compared.parent)
     assert compare.main([*again, *SHORT, '--wear-gain', '0.7']) == 1
-    words = ('compare', f'{compared}: process {first.process.pid} is writing there')
+    words = ('ddct compare', f'{compared}: process {first.process.pid} is writing there')
     assert_one_line(capfd.readouterr().err, *words)
     assert _files(compared.parent) == before
     first.send(signal.SIGKILL)
