@@ -52,7 +52,7 @@ setup(
         'scipy',
         'zstandard',
     ],
-    extras_require={'live': ['foxglove-sdk'], 'test': ['pytest']},
+    extras_require={'live': ['foxglove-sdk'], 'pandas': ['pandas'], 'test': ['pytest']},
     zip_safe=False,
     maintainer='DDCT team',
     maintainer_email='maintainers@ddct.invalid',

@@ -1,7 +1,7 @@
 """Controllers by name: our own, those that other packages add, and those in a file."""
 
 import importlib.metadata
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -30,6 +30,10 @@ ENTRY_POINT_GROUP = 'ddct.controllers'
 """Third parties add `name = module:factory` here; the factory takes a ControllerContext."""
 
 
+Chosen = str | ControllerSpec[Controller]
+"""A controller by its name or file, or how one is made that has neither."""
+
+
 def controller_names() -> list[str]:
     """Return every name that `make_controller` takes besides files, our own first."""
     own = list(_own_controllers())
@@ -37,16 +41,16 @@ def controller_names() -> list[str]:
 
 
 def make_controller(
-    name: str, settings: RunSettings, changes: Mapping[str, Any] | None = None
+    chosen: Chosen, settings: RunSettings, changes: Mapping[str, Any] | None = None
 ) -> Controller:
     """
-    Build the controller called `name`, or described by the YAML file `name`, for a run.
+    Build a controller for a run.
 
     `changes` go before the scenario's section `controllers.<name>`. Raise ParameterError for an
     unknown name or an option that the controller does not take, and DdctError when a file cannot
     be read or a third party's factory fails.
     """
-    spec = controller_spec(name)
+    spec = controller_spec(chosen)
     given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name
@@ -54,16 +58,20 @@ def make_controller(
     return controller
 
 
-def controller_spec(name: str) -> ControllerSpec[Controller]:
-    """Return how the controller called `name` is made and its options, as `make_controller`."""
-    if is_controller_file(name):
-        return _in_file(name)
-    return _own_controllers().get(name) or _third_party(name)
+def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
+    """Return how a controller is made and its options; raise the errors of `make_controller`."""
+    if isinstance(chosen, ControllerSpec):
+        return chosen
+    if is_controller_file(chosen):
+        return _in_file(chosen)
+    return _own_controllers().get(chosen) or _third_party(chosen)
 
 
-def controller_label(name: str) -> str:
+def controller_label(chosen: Chosen) -> str:
     """Return what a controller is called in bags and tables: a file gives its own name."""
-    return _in_file(name).name if is_controller_file(name) else name
+    if isinstance(chosen, str) and not is_controller_file(chosen):
+        return chosen
+    return controller_spec(chosen).name
 
 
 def _in_file(file: str) -> ControllerSpec[Controller]:
@@ -111,6 +119,18 @@ def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
             f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
         ) from error
 
+    return factory_spec(point.name, factory, point.value)
+
+
+def factory_spec(
+    name: str, factory: Callable[[ControllerContext], Any], source: str
+) -> ControllerSpec[Controller]:
+    """
+    Return how the controller of somebody's class, or other factory, is made.
+
+    `source` is where the factory is. Raise DdctError for what it declares and must not.
+    """
+
     def make(context: ControllerContext) -> Controller:
         try:
             controller = factory(context)
@@ -118,24 +138,24 @@ def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
             raise
         except Exception as error:
             raise DdctError(
-                f'controller {point.name!r}: {point.value} failed '
-                f'({type(error).__name__}: {error}): mend the package that adds it'
+                f'controller {name!r}: {source} failed '
+                f'({type(error).__name__}: {error}): mend its code'
             ) from error
         if not isinstance(controller, Controller):
             raise DdctError(
-                f'controller {point.name!r}: {point.value} returned '
+                f'controller {name!r}: {source} returned '
                 f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
             )
-        _require_plain(point.name, controller)
+        _require_plain(name, controller)
         return controller
 
     computed_from = getattr(factory, 'computed_from', UNSTATED)
     if computed_from not in (SCENARIO, THESIS, UNSTATED):
         raise DdctError(
-            f'controller {point.name!r}: its computed_from is {computed_from!r}: give '
+            f'controller {name!r}: its computed_from is {computed_from!r}: give '
             f'{SCENARIO!r} or {THESIS!r}'
         )
-    return ControllerSpec(point.name, make, _declared(point.name, factory), computed_from)
+    return ControllerSpec(name, make, _declared(name, factory), computed_from)
 
 
 def _declared(name: str, factory: object) -> Options | None:

@@ -64,7 +64,7 @@ def run_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[RunPlan, Pat
 
     def execute(plan: RunPlan, folder: Path, *_: object) -> None:
         settings = plan.settings
-        key = (plan.controller, scenario_to_yaml(settings.scenario), repr(settings))
+        key = (str(plan.controller), scenario_to_yaml(settings.scenario), repr(settings))
         if key not in folders or plan.controller not in own:
             folders[key] = tmp_path_factory.mktemp('run')
             original(plan, folders[key])

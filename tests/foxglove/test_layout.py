@@ -90,7 +90,6 @@ def _made_up_run() -> Trajectory:
 
 
 def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
-    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     run = _made_up_run()
@@ -130,7 +129,6 @@ def test_no_panel_is_empty_in_a_real_time_bag(record: Record) -> None:
 
 
 def test_no_panel_is_empty_in_the_bag_of_a_two_input_controller(tmp_path: Path) -> None:
-    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     trajectory = expected(plan('pi', duration_s=0.7))

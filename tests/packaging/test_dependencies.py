@@ -30,6 +30,7 @@ FROM_PYPI = {
     'mcap_ros2': ('mcap-ros2-support', 'mcap-ros2-support'),
     'numpy': ('numpy', 'python3-numpy'),
     'osqp': ('osqp', None),
+    'pandas': ('pandas', 'python3-pandas'),
     'rich': ('rich', 'python3-rich'),
     'scipy': ('scipy', 'python3-scipy'),
     'yaml': ('pyyaml', 'python3-yaml'),

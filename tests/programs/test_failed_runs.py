@@ -20,12 +20,11 @@ WHOLE = ['--headless', '--duration', str(SHORT_S)]
 
 def ended_early(run: RunPlan, folder: Path) -> None:
     """Leave a whole bag of half the length that the run should have."""
-    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from ddct_bringup.bag.trajectory_bag import write_trajectory
     from ddct_bringup.run.description import custom_data
     from ddct_bringup.run.headless import run_headless
 
-    half = plan(run.controller, 'headless', duration_s=SHORT_S / 2.0)
+    half = plan(run.name, 'headless', duration_s=SHORT_S / 2.0)
     trajectory = run_headless(half.settings, half.controller)
     data = custom_data(run.settings, run.name, run.steps)
     write_trajectory(trajectory, folder, run.name, data, {'load': (('version', '0.1.0'),)})

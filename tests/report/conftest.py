@@ -17,7 +17,6 @@ CONTROLLERS = ('pi', 'ls8', 'hinf1')
 @pytest.fixture(scope='session')
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with one whole run per controller, and their frequency evidence."""
-    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     folder = tmp_path_factory.mktemp('runs') / 'demo'
     for name in CONTROLLERS:
         record(plan(name, 'headless', duration_s=3.0), folder / name)

@@ -4,14 +4,11 @@ import json
 from importlib.resources import files
 from pathlib import Path
 
-import pytest
-
 from ddct_bringup.programs.compare import main
 from ddct_bringup.verdict.limits_file import load_limits
 
 
 def test_compare_ends_with_the_report(tmp_path: Path) -> None:
-    pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     out = tmp_path / 'demo'
     limits = tmp_path / 'mine.yaml'
     limits.write_bytes((files('ddct_bringup.verdict') / 'limits.yaml').read_bytes())

@@ -8,9 +8,9 @@ from pathlib import Path
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.execution import run_with_progress, tell_of_logs
-from ddct_bringup.run.folder_lock import held
+from ddct_bringup.run.folder_lock import run_folder
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
-from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.output_folder import StagedFolder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording
@@ -53,15 +53,12 @@ def _bringup(argv: list[str]) -> int:
     plan = RunPlan(settings, options.controller, options.layout)
     if options.live is not None and plan.layout != 'processes':
         raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-    with held(options.out, shared=True):
-        mark_folder(options.out)
-        with held(options.out / plan.name):
-            _run(plan, options, limits)
+    with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
+        _run(plan, folder, options, limits)
     return 0
 
 
-def _run(plan: RunPlan, options: argparse.Namespace, limits: Limits) -> None:
-    folder = StagedFolder(options.out / plan.name, overwrite=options.overwrite)
+def _run(plan: RunPlan, folder: StagedFolder, options: argparse.Namespace, limits: Limits) -> None:
     with nullcontext() if options.live is None else live_view(options.live) as live:
         run_with_progress(plan, folder.path, live=live)
     recording = read_bag(folder.path)

@@ -8,6 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
@@ -78,7 +83,7 @@ def execute(
 
 def _tell_of_the_loop(plan: RunPlan) -> None:
     """Say on standard error what a controller's file holds: its reader may have meant another."""
-    if not is_controller_file(plan.controller):
+    if not isinstance(plan.controller, str) or not is_controller_file(plan.controller):
         return
     # Only here: scipy's searches take long to import.
     from ddct_controllers.workflows.loop_summary import loop_summary
@@ -140,12 +145,32 @@ def _execute_single_process(
 
 
 def _execute_headless(plan: RunPlan, folder: Path) -> None:
-    from ddct_bringup.bag.trajectory_bag import write_trajectory
+    recording, timing = simulate(plan)
+    data = recording.custom_data
+    run_info = {node: tuple(pairs.items()) for node, pairs in recording.run_info.items()}
+    write_trajectory(recording.trajectory, folder, plan.name, data, run_info)
+    timing.write(folder)
 
+
+def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
+    """
+    Carry out a headless `plan` in memory; return what its bag would tell, and its timing.
+
+    The path of the recording is that of no file, and its counts of messages are empty.
+    """
     controller = make_controller(plan.controller, plan.settings)
     timing = RunTiming()
     trajectory = run_headless(plan.settings, controller, timing)
     run_info = run_info_of(plan.settings, plan.name, controller, plan.steps)
     data = custom_data(plan.settings, plan.name, plan.steps)
-    write_trajectory(trajectory, folder, plan.name, data, run_info)
-    timing.write(folder)
+    recording = Recording(
+        path=bag_file(Path(plan.name), plan.name),
+        trajectory=trajectory,
+        facts=RunFacts.from_custom_data(data),
+        custom_data=data,
+        run_info={node: dict(pairs) for node, pairs in run_info.items()},
+        counts={},
+        missed={},
+        realtime=RealtimeFacts(),
+    )
+    return recording, timing

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from ddct_bringup.run.output_folder import MARKER, PARTIAL
+from ddct_bringup.run.output_folder import MARKER, PARTIAL, StagedFolder, mark_folder
 from ddct_plant.base.errors import DdctError
 
 SUFFIX = '.ddct-lock'
@@ -31,6 +31,15 @@ def held(*folders: Path, shared: bool = False) -> Iterator[None]:
         for folder in sorted(own | around):
             locks.enter_context(_lock(folder, shared or folder in around))
         yield
+
+
+@contextmanager
+def run_folder(out: Path, name: str, *, overwrite: bool) -> Iterator[StagedFolder]:
+    """Hold the folder `name` in `out`, which is made if absent, and yield it staged."""
+    with held(out, shared=True):
+        mark_folder(out)
+        with held(out / name):
+            yield StagedFolder(out / name, overwrite=overwrite)
 
 
 def is_ours(folder: Path) -> bool:

@@ -14,7 +14,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
-from ddct_controllers.registry import make_controller
+from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
 from ddct_reference.factory import make_reference
@@ -58,15 +58,15 @@ class ClosedLoop:
 
 
 def run_headless(
-    settings: RunSettings, controller: str | Controller, timing: RunTiming | None = None
+    settings: RunSettings, controller: Chosen | Controller, timing: RunTiming | None = None
 ) -> Trajectory:
     """
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
-    `controller` is a registry name or an object. Raise ParameterError for what cannot be built,
-    DdctError when a controller commands a value that is not finite.
+    `controller` is what `make_controller` takes, or an object. Raise ParameterError for what
+    cannot be built, DdctError when a controller commands a value that is not finite.
     """
-    if isinstance(controller, str):
+    if not isinstance(controller, Controller):
         controller = make_controller(controller, settings)
     return run_loop(ClosedLoop(settings, controller), settings.scenario.steps, timing)
 

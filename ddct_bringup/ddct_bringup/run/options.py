@@ -1,7 +1,8 @@
 """Command-line options that `bringup` and `compare` share."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import controller_names, controller_spec
@@ -12,6 +13,7 @@ from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import scenario_names
 from ddct_plant.scenario.options import add_option, add_scenario_options, scenario_of
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 
@@ -48,7 +50,14 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
     overrides = list(options.overrides)
     if options.duration is not None:
         overrides.append(f'duration_s={options.duration!r}')
-    scenario = scenario_of(options, overrides)
+    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
+    return run_settings(scenario_of(options, overrides), labels, settings)
+
+
+def run_settings(
+    scenario: Scenario, labels: Sequence[str], settings: Mapping[str, Any]
+) -> RunSettings:
+    """Return the validated settings of a run in a scenario; as `settings_of` otherwise."""
     known = {*controller_names(), *labels}
     unknown = sorted(scenario.controllers.keys() - known)
     if unknown:
@@ -56,7 +65,6 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
             f'controllers.{unknown[0]}: there is no such controller: choose from '
             f'{", ".join(controller_names())}'
         )
-    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
     return RunSettings(scenario, **settings)
 
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 from ddct_controllers.architecture import make_architecture
-from ddct_controllers.registry import controller_label, make_controller
+from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import dump_yaml
-from ddct_plant.graph.domain import require_domain
+from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
@@ -19,8 +19,8 @@ class RunPlan:
     """A run that is known to be buildable."""
 
     settings: RunSettings
-    controller: str
-    """A name of the registry or the path of a controller's YAML file."""
+    controller: Chosen
+    """In a graph a name of the registry or the path of a controller's YAML file."""
     layout: str = 'processes'
     """'processes', one per node; 'single-process'; or 'headless', without any ROS graph."""
 
@@ -32,6 +32,12 @@ class RunPlan:
                 'mode realtime needs the graph, which --headless does without: drop one of them'
             )
         if self.layout != 'headless':
+            if not isinstance(self.controller, str):
+                raise ParameterError(
+                    f'controller {self.name!r} is known to this process alone: run it headless, '
+                    'or give a name or a file, which the nodes of a graph can find'
+                )
+            require_ros()
             require_domain()
 
     @property

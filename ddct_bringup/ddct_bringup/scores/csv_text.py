@@ -23,18 +23,30 @@ from ddct_plant.graph.topics import (
 
 def scores_csv(runs: Sequence[Entry]) -> str:
     """Return one row per run, its metrics and its verdict beside its facts."""
-    rows = [{**run, **run['metrics'], **_verdict(run)} for run in runs]
-    columns = [key for key in rows[0] if key not in ('metrics', 'verdict')]
-    return _csv(columns, ([_text(row[key]) for key in columns] for row in rows))
+    rows = [score_row(run) for run in runs]
+    return _csv(rows[0], ([_text(value) for value in row.values()] for row in rows))
+
+
+def score_row(run: Entry) -> dict[str, Any]:
+    """Return what a table says of a run, by column."""
+    row = {**run, **run['metrics'], **_verdict(run)}
+    return {key: value for key, value in row.items() if key not in ('metrics', 'verdict')}
 
 
 def signals_csv(recording: Recording) -> str:
+    """Return one row per tick, with the columns of `signal_columns`."""
+    columns = signal_columns(recording.trajectory)
+    # Python's floats print with the digits that give them back to the last bit.
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return _csv(columns, rows)
+
+
+def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     """
-    Return one row per tick, units in the names.
+    Return every signal that is a number, (N+1,), by its name with the unit in it; time first.
 
     Of previews and torques within the period it is the value at the tick.
     """
-    trajectory = recording.trajectory
     columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
     for signal in sorted(all_signals(), key=_place):
         if (
@@ -44,9 +56,7 @@ def signals_csv(recording: Recording) -> str:
         ):
             values = trajectory.signals[signal.name]
             columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
-    # Python's floats print with the digits that give them back to the last bit.
-    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    return _csv(columns, rows)
+    return columns
 
 
 def _verdict(run: Entry) -> dict[str, str]:

@@ -13,7 +13,7 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.failed_run import failed_run
-from ddct_bringup.run.run_timing import read_timing
+from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
@@ -50,14 +50,19 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
 
     What a failed run recorded has no score. Raise DdctError for timing that cannot be used.
     """
-    facts = recording.facts
     if failure := failed_run(recording.path.parent):
-        return _entry_without_score(bag, facts, failure.reason)
+        return _entry_without_score(bag, recording.facts, failure.reason)
+    return score_run(recording, bag, limits, read_timing(recording.path.parent))
+
+
+def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming | None) -> Entry:
+    """Score and judge a recording without looking beside its bag."""
+    facts = recording.facts
     computed = compute_metrics(
         recording.trajectory,
         control_start_s=facts.control_start_s,
         score_window_s=facts.score_window_s,
-        timing=read_timing(recording.path.parent),
+        timing=timing,
     )
     metrics = computed.as_dict()
     reason = why_invalid(recording)

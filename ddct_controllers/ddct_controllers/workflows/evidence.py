@@ -15,7 +15,7 @@ from ddct_controllers.design.analysis.worst_corner import (
     worst_corner,
 )
 from ddct_controllers.interface import Controller
-from ddct_controllers.registry import controller_label, make_controller
+from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
@@ -27,9 +27,9 @@ Evidence = dict[str, Any]
 """None where nothing limits a margin, or where the loop is unstable and has none."""
 
 
-def frequency_evidence(names: Sequence[str], settings: RunSettings) -> Evidence:
+def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> Evidence:
     """
-    Return `conditions` and one entry per controller, in the order of `names`.
+    Return `conditions` and one entry per controller, in their order.
 
     The driveline is the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3. A
     controller that is not linear has an entry that says so. Raise DdctError for one that cannot
@@ -47,13 +47,16 @@ def frequency_evidence(names: Sequence[str], settings: RunSettings) -> Evidence:
             'corner_spread': PARAMETER_SPREAD,
             'corner_parameters': corners.varied,
         },
-        'controllers': [_controller_evidence(name, settings, corners) for name in names],
+        'controllers': [_controller_evidence(each, settings, corners) for each in controllers],
     }
 
 
-def _controller_evidence(name: str, settings: RunSettings, corners: PlantCorners) -> Evidence:
-    model = _linear_model(name, make_controller(name, settings))
-    entry: Evidence = {'controller': controller_label(name), 'linear': model is not None}
+def _controller_evidence(
+    controller: Chosen, settings: RunSettings, corners: PlantCorners
+) -> Evidence:
+    name = controller_label(controller)
+    model = _linear_model(name, make_controller(controller, settings))
+    entry: Evidence = {'controller': name, 'linear': model is not None}
     if model is None:
         return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
     driveline = settings.scenario.driveline

@@ -1,11 +1,21 @@
-"""The ROS domain that the environment names, checked before any middleware sees it."""
+"""What a graph needs of ROS: its packages, and a domain; checked before any node starts."""
 
+import importlib.util
 import os
 
 from ddct_plant.base.errors import DdctError
 
 LAST_DOMAIN = 232
 """Beyond it DDS has no ports, and its middleware ends the process without a word."""
+
+
+def require_ros() -> None:
+    """Raise DdctError where ROS is not installed, which a headless run does without."""
+    if importlib.util.find_spec('rclpy') is None:
+        raise DdctError(
+            'a graph needs ROS 2, and its package rclpy is not installed: run headless, or set '
+            'ROS up as docs/setup.md tells'
+        )
 
 
 def require_domain() -> int | None:

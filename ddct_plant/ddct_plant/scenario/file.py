@@ -32,9 +32,13 @@ def scenario_names() -> list[str]:
     )
 
 
-def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
+def load_scenario(
+    name_or_file: str, overrides: Iterable[str] | Mapping[str, Any] = ()
+) -> Scenario:
     """
-    Return the scenario that a name or a YAML file describes, changed by `KEY=VALUE` overrides.
+    Return the scenario that a name or a YAML file describes, with overrides.
+
+    They are `KEY=VALUE` as text, or values by key, dotted ones.
 
     Values that belong together are kept so, as `consistency` tells.
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
@@ -49,7 +53,8 @@ def load_scenario(name_or_file: str, overrides: Iterable[str] = ()) -> Scenario:
         raise DdctError(f'scenario {name_or_file}: the file must be a mapping of keys to values')
     content.setdefault('name', default_name)
     start_before = content.get('control_start_s')
-    set_keys = [key for override in overrides for key in _apply(content, override)]
+    given = overrides.items() if isinstance(overrides, Mapping) else map(_parsed, overrides)
+    set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
     try:
         content = with_points(content, Path(name_or_file).parent, set_keys)
         scenario = scenario_from_mapping(content)
@@ -108,21 +113,24 @@ def _read(name_or_file: str) -> tuple[str, str]:
         raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
 
 
-def _apply(content: dict[str, Any], override: str) -> list[str]:
-    """Change one value, or a group of them; return the keys of what was given."""
+def _parsed(override: str) -> tuple[str, Any]:
     key, equals, text = override.partition('=')
     if not equals or not key:
         raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
     try:
-        value = parse_yaml(text)
+        return key, parse_yaml(text)
     except ParameterError as error:
         raise ParameterError(f'--set {override}: {error}') from error
+
+
+def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
+    """Change one value, or a group of them; return the keys of what was given."""
     *folders, leaf = key.split('.')
     target = content
     for folder in folders:
         target = target.setdefault(folder, {})
         if not isinstance(target, dict):
-            raise ParameterError(f'--set {override}: {folder} holds a value, not keys')
+            raise ParameterError(f'--set {key}: {folder} holds a value, not keys')
     target[leaf] = value
     return _leaves(value, key)
 

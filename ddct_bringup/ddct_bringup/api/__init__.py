@@ -1,0 +1,35 @@
+"""
+The stable interface for scripts and notebooks: run, judge, tabulate and draw; docs/python.md.
+
+    from ddct_bringup.api import run
+    print(run('pi', wear_gain=0.7).metrics['engagement_time_s'])
+
+Arguments are called as the options of `ddct bringup`. What cannot be used raises `DdctError`, or
+`ParameterError`, which is one. Nothing is printed; what a scenario moved by itself is warned of.
+"""
+
+from ddct_bringup.api.figures import figure
+from ddct_bringup.api.runs import Run, compare, load, run, table
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.registry import controller_names
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import Option
+from ddct_plant.scenario.file import scenario_names
+
+__all__ = [
+    'Command',
+    'Controller',
+    'ControllerContext',
+    'DdctError',
+    'Measurement',
+    'Option',
+    'ParameterError',
+    'Run',
+    'compare',
+    'controller_names',
+    'figure',
+    'load',
+    'run',
+    'scenario_names',
+    'table',
+]

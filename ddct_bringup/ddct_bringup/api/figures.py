@@ -1,0 +1,48 @@
+"""Draw runs as matplotlib figures."""
+
+from collections.abc import Iterable, Sequence
+
+from matplotlib.figure import Figure
+
+from ddct_bringup.api.runs import Run
+from ddct_bringup.report.quantities import Quantity, quantities_of
+from ddct_bringup.report.run_marks import run_labels
+from ddct_controllers.design.drawing.chart_style import chart_style, line_styles
+from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import close_name
+
+_WIDTH_IN, _CHART_IN = 8.0, 2.6
+
+
+def figure(
+    runs: Run | Iterable[Run], quantities: Sequence[str] = ('w_d', 'w_sr', 'A_x')
+) -> Figure:
+    """
+    Return a figure with a chart per quantity over time, all runs in each.
+
+    The quantities are the keys of the report's charts, such as w_d, error, w_sr, A_x, C_f_request;
+    `temperature` and others of a clutch that sticks too. Raise ParameterError for another.
+    """
+    shown = [runs] if isinstance(runs, Run) else list(runs)
+    if not shown or not quantities:
+        raise ParameterError('a figure needs a run and a quantity')
+    labels = run_labels([each.entry for each in shown])
+    end_s = max(each.trajectory.time_s[-1] for each in shown)
+    with chart_style():
+        drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities)))
+        charts = drawing.subplots(len(quantities), squeeze=False)[:, 0]
+        for axes, key in zip(charts, quantities, strict=True):
+            for each, label, style in zip(shown, labels, line_styles(), strict=False):
+                quantity = _quantity(each, key)
+                values = quantity.values(each.trajectory)
+                axes.plot(each.trajectory.time_s, values, label=label, **style)
+            label_time_axis(axes, f'{key}, {quantity.unit}', (0.0, end_s))
+    return drawing
+
+
+def _quantity(run: Run, key: str) -> Quantity:
+    known = {quantity.key: quantity for quantity in quantities_of(run.trajectory)}
+    if key not in known:
+        raise ParameterError(f'unknown quantity {key}: {close_name(key, known)}')
+    return known[key]

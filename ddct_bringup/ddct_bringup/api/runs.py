@@ -1,0 +1,225 @@
+"""Run controllers from Python, load bags, and what to ask of a run."""
+
+import tempfile
+import threading
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.bag.writer import bag_file
+from ddct_bringup.run.execution import execute, simulate
+from ddct_bringup.run.folder_lock import run_folder
+from ddct_bringup.run.options import run_settings
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.run_timing import RunTiming, read_timing
+from ddct_bringup.scores.csv_text import score_row, signal_columns
+from ddct_bringup.scores.scoring import Entry, score_recording, score_run
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import load_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_controllers.registry import Chosen, controller_label, controller_names
+from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import close_name, options_of
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+_ONE_GRAPH = threading.Lock()
+"""Held while a graph runs: its ROS domain is in the environment, which all threads share."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run, simulated, recorded from the graph, or loaded."""
+
+    recording: Recording
+    entry: Entry
+    """As in `scores.json`."""
+    timing: RunTiming | None
+    """None of a bag without `timing.json`."""
+    chosen: Chosen
+    """The controller, as the registry takes it."""
+
+    @property
+    def controller(self) -> str:
+        """What the controller is called."""
+        return self.recording.facts.controller
+
+    @property
+    def path(self) -> Path | None:
+        """The MCAP file, None of a run that was not kept."""
+        return self.recording.path if self.recording.path.is_file() else None
+
+    @property
+    def settings(self) -> RunSettings:
+        """What was simulated; raise DdctError for a bag whose scenario cannot be built here."""
+        if self.recording.settings is None:
+            raise DdctError(f'{self.recording.path}: its scenario cannot be built by this version')
+        return self.recording.settings
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """Every signal as an array, all SI."""
+        return self.recording.trajectory
+
+    @property
+    def metrics(self) -> dict[str, Any]:
+        """The metrics of `scores.json` by name, None where one is undefined."""
+        return self.entry['metrics']
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """`state`, `limits` and `criteria`, as docs/verdict.md tells."""
+        return self.entry['verdict']
+
+    @property
+    def valid(self) -> bool:
+        """Whether the run counts."""
+        return self.entry['valid']
+
+    @property
+    def reason(self) -> str:
+        """Why it does not count; empty if it does."""
+        return self.entry['reason']
+
+    def dataframe(self) -> Any:
+        """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
+        return _pandas().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
+
+    def frequency(self) -> Evidence:
+        """
+        Return the controller's entry of `frequency.json`: margins of its sampled loop.
+
+        Its `linear` is false, and the rest None, for a controller without a frequency response.
+        Raise DdctError where the controller of a loaded run is not known here.
+        """
+        return frequency_evidence([self.chosen], self.settings)['controllers'][0]
+
+
+def run(
+    controller: Any = 'pi',
+    *,
+    name: str = '',
+    scenario: str | Path = 'thesis',
+    set: Mapping[str, Any] | None = None,
+    duration: float | None = None,
+    headless: bool = True,
+    out: str | Path | None = None,
+    overwrite: bool = False,
+    limits: str | Path | None = None,
+    beside: Iterable[str] = (),
+    **settings: Any,
+) -> Run:
+    """
+    Run one controller in the closed loop and judge the run.
+
+    `controller` and `name` are what `chosen_from` takes: a name, a file, a class, a factory, an
+    object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the options
+    of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those of
+    `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
+    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; of a run that is not
+    valid, whose `reason` says why, as `<out>/<name>.partial/`. `beside` names other controllers
+    whose options `set` may hold too.
+    """
+    chosen = chosen_from(controller, name)
+    changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
+    described = _scenario(str(scenario), changes)
+    ready = _settings(described, [controller_label(chosen), *beside], settings)
+    plan = RunPlan(ready, chosen, 'headless' if headless else 'processes')
+    judged_by = load_limits(None if limits is None else Path(limits))
+    if out is not None:
+        return _kept(plan, Path(out), overwrite, judged_by)
+    if headless:
+        recording, timing = simulate(plan)
+        return Run(recording, score_run(recording, plan.name, judged_by, timing), timing, chosen)
+    with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
+        _execute(plan, Path(folder))
+        return _read(Path(folder), plan.name, judged_by, chosen)
+
+
+def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> list[Run]:
+    """
+    Return a run of each controller, all with the same options of `run`.
+
+    A mapping gives their names; 'all' stands for every name of `controller_names()`.
+    """
+    if controllers == 'all':
+        controllers = controller_names()
+    if isinstance(controllers, Mapping):
+        chosen = [chosen_from(each, name) for name, each in controllers.items()]
+    else:
+        chosen = [chosen_from(each) for each in controllers]
+    labels = [controller_label(each) for each in chosen]
+    return [run(each, beside=labels, **options) for each in chosen]
+
+
+def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
+    """Return the run that a bag holds, a folder or an .mcap file, scored anew."""
+    path = Path(bag)
+    judged_by = load_limits(None if limits is None else Path(limits))
+    return _read(path, path.as_posix(), judged_by)
+
+
+def table(runs: Iterable[Run]) -> Any:
+    """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
+    return _pandas().DataFrame([score_row(each.entry) for each in runs])
+
+
+def _scenario(name_or_file: str, changes: Mapping[str, Any]) -> Scenario:
+    scenario = load_scenario(name_or_file, {key: _plain(changes[key]) for key in changes})
+    for line in scenario.adjusted:
+        warnings.warn(f'scenario {scenario.name}: {line}', stacklevel=3)
+    return scenario
+
+
+def _settings(scenario: Scenario, labels: list[str], given: Mapping[str, Any]) -> RunSettings:
+    known = options_of(RunSettings)
+    if unknown := sorted(given.keys() - known.keys()):
+        raise ParameterError(f'unknown option {unknown[0]}: {close_name(unknown[0], known)}')
+    return run_settings(scenario, labels, {key: _plain(given[key]) for key in given})
+
+
+def _plain(value: Any) -> Any:
+    """Return a number or list of numpy as Python's, which bags say in the same words."""
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def _kept(plan: RunPlan, out: Path, overwrite: bool, limits: Limits) -> Run:
+    with run_folder(out, plan.name, overwrite=overwrite) as folder:
+        _execute(plan, folder.path)
+        kept = _read(folder.path, plan.name, limits, plan.controller)
+        if not kept.valid:
+            return kept
+        folder.commit()
+    path = bag_file(folder.final, plan.name)
+    return replace(kept, recording=replace(kept.recording, path=path))
+
+
+def _execute(plan: RunPlan, folder: Path) -> None:
+    if plan.layout == 'headless':
+        execute(plan, folder)
+        return
+    with _ONE_GRAPH:
+        execute(plan, folder)
+
+
+def _read(bag: Path, name: str, limits: Limits, chosen: Chosen = '') -> Run:
+    recording = read_bag(bag)
+    entry = score_recording(recording, name, limits)
+    timing = read_timing(recording.path.parent)
+    return Run(recording, entry, timing, chosen or recording.facts.controller)
+
+
+def _pandas() -> Any:
+    try:
+        import pandas
+    except ImportError as error:
+        raise DdctError(f'a DataFrame needs pandas ({error}): pip install pandas') from error
+    return pandas

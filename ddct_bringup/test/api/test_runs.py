@@ -1,0 +1,194 @@
+"""The interface for Python: runs, what can be asked of them, and what is refused."""
+
+import json
+import threading
+import warnings
+
+import numpy as np
+import pytest
+
+from ddct_bringup import api
+from ddct_bringup.programs.bringup import main as bringup
+from ddct_bringup.programs.score import main as score
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SHORT_S = 2.0
+
+
+class Soft(api.Controller):
+    """A controller with one option and a state that a run must reset."""
+
+    options = {'gain': api.Option(0.1, 'torque per slip error', 'N m/rpm')}
+
+    def __init__(self, context):
+        self._gain = context.gains['gain']
+        self.updates = 0
+
+    def reset(self):
+        self.updates = 0
+
+    def update(self, measurement):
+        self.updates += 1
+        return api.Command(-self._gain * measurement.slip_error_rpm)
+
+
+class Failing(Soft):
+    def update(self, measurement):
+        return api.Command(float('nan'))
+
+
+@pytest.fixture(scope='module')
+def worn():
+    return api.run('ls8', wear_gain=0.7, duration=3.0)
+
+
+def test_a_run_is_that_of_the_headless_loop(worn):
+    settings = RunSettings(load_scenario('thesis', ['duration_s=3.0']), wear_gain=0.7)
+    assert worn.trajectory.sha256() == run_headless(settings, 'ls8').sha256()
+    assert (worn.settings, worn.controller, worn.path) == (settings, 'ls8', None)
+
+
+def test_metrics_and_verdict_are_those_of_the_programs(worn, tmp_path, capsys):
+    options = ['--wear-gain', '0.7', '--duration', '3', '--headless', '--out', str(tmp_path)]
+    assert bringup(['--controller', 'ls8', *options]) == 0
+    capsys.readouterr()
+    assert score([str(tmp_path / 'ls8'), '--json', '-']) == 0
+    (entry,) = json.loads(capsys.readouterr().out)['runs']
+    timed = {name for name in worn.metrics if name.startswith(('update_time', 'wall_time'))}
+    ours, theirs = (
+        {name: value for name, value in each.items() if name not in timed}
+        for each in (worn.metrics, entry['metrics'])
+    )
+    assert ours == theirs
+    assert json.loads(json.dumps(worn.verdict)) == entry['verdict']
+    assert (worn.valid, worn.reason) == (entry['valid'], entry['reason']) == (True, '')
+
+
+def test_a_kept_run_is_the_bag_of_bringup_and_loads_to_an_equal_run(worn, tmp_path):
+    kept = api.run('ls8', wear_gain=0.7, duration=3.0, out=tmp_path / 'ours')
+    options = ['--wear-gain', '0.7', '--duration', '3', '--headless']
+    assert bringup(['--controller', 'ls8', *options, '--out', str(tmp_path / 'theirs')]) == 0
+    assert kept.path == tmp_path / 'ours' / 'ls8' / 'ls8_0.mcap'
+    theirs = (tmp_path / 'theirs' / 'ls8' / 'ls8_0.mcap').read_bytes()
+    assert kept.path.read_bytes() == theirs
+    loaded = api.load(kept.path.parent)
+    assert loaded.trajectory.sha256() == worn.trajectory.sha256()
+    assert loaded.metrics == kept.metrics
+    assert loaded.settings == worn.settings
+    assert loaded.chosen == worn.chosen == 'ls8'
+    with pytest.raises(api.DdctError, match='already holds a result'):
+        api.run('ls8', out=tmp_path / 'ours')
+
+
+def test_frequency_evidence_is_that_of_the_loop_and_says_who_has_none(worn):
+    evidence = worn.frequency()
+    assert evidence['controller'] == 'ls8'
+    assert [point['wear_gain'] for point in evidence['wear']] == [0.7, 1.0, 1.3]
+    assert evidence['nominal']['stable']
+    assert api.run(Soft, duration=SHORT_S).frequency()['linear'] is False
+
+
+def test_a_dataframe_has_the_signals_by_time(worn):
+    pytest.importorskip('pandas', reason='the extra pandas')
+    frame = worn.dataframe()
+    assert frame.index.name == 'time_s'
+    assert frame.index.tolist() == worn.trajectory.time_s.tolist()
+    assert frame['slip_speed_rad_s'].tolist() == worn.trajectory.slip_speed.tolist()
+    assert frame['wheel_speed_rad_s'].tolist() == worn.trajectory.joint_speed[:, 2].tolist()
+
+
+def test_a_table_has_a_row_per_run_with_metrics_and_verdict(worn):
+    pytest.importorskip('pandas', reason='the extra pandas')
+    rows = api.table([worn, worn])
+    assert rows['controller'].tolist() == ['ls8', 'ls8']
+    assert rows['slip_final_rpm'].tolist() == 2 * [worn.metrics['slip_final_rpm']]
+    assert rows['verdict_state'].tolist() == 2 * [worn.verdict['state']]
+
+
+def test_without_pandas_an_error_says_what_to_install(worn, monkeypatch):
+    monkeypatch.setitem(__import__('sys').modules, 'pandas', None)
+    with pytest.raises(api.DdctError, match='pip install pandas'):
+        worn.dataframe()
+
+
+def test_a_figure_has_a_line_per_run_in_each_chart(worn):
+    other = api.run('pi', duration=3.0)
+    charts = api.figure([worn, other], quantities=['w_d', 'C_m']).axes
+    assert [axes.get_ylabel() for axes in charts] == ['w_d, rpm', 'C_m, N m']
+    labels = [line.get_label() for line in charts[0].lines]
+    assert labels == ['ls8, wear 0.7', 'pi, wear 1']
+    drawn = np.asarray(charts[1].lines[0].get_ydata())
+    assert drawn.tolist() == worn.trajectory.engine_torque.tolist()
+    with pytest.raises(api.ParameterError, match='unknown quantity w_x: did you mean w_'):
+        api.figure(worn, quantities=['w_x'])
+
+
+def test_controllers_are_compared_with_the_options_of_each():
+    runs = api.compare(['pi', Soft], duration=SHORT_S, set={'controllers.Soft.gain': 0.3})
+    assert [each.controller for each in runs] == ['pi', 'Soft']
+    alone = api.run(Soft, duration=SHORT_S, set={'controllers.Soft.gain': 0.3})
+    assert runs[1].trajectory.sha256() == alone.trajectory.sha256()
+    assert alone.trajectory.sha256() != api.run(Soft, duration=SHORT_S).trajectory.sha256()
+
+
+def test_a_mapping_names_the_controllers():
+    soft = Soft(type('Context', (), {'gains': {'gain': 0.2}})())
+    runs = api.compare({'first': soft, 'second': Soft}, duration=SHORT_S)
+    assert [each.controller for each in runs] == ['first', 'second']
+    again = api.run(soft, duration=SHORT_S, name='first')
+    assert again.trajectory.sha256() == runs[0].trajectory.sha256()
+
+
+def test_numbers_of_numpy_are_taken_as_pythons(worn):
+    same = api.run('ls8', wear_gain=np.float64(0.7), duration=np.float64(3.0), seed=np.int64(0))
+    assert same.recording.run_info == worn.recording.run_info
+    assert same.recording.custom_data == worn.recording.custom_data
+
+
+def test_what_a_scenario_moves_by_itself_is_warned_of_and_nothing_is_printed(capfd):
+    with pytest.warns(UserWarning, match='scenario thesis: '):
+        api.run('pi', duration=SHORT_S, set={'vehicle.mass_kg': 1400.0})
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        api.run('pi', duration=SHORT_S)
+    assert capfd.readouterr() == ('', '')
+
+
+def test_runs_in_threads_are_those_of_the_main_one(worn):
+    found = []
+
+    def simulate():
+        found.append(api.run('ls8', wear_gain=0.7, duration=3.0).trajectory.sha256())
+
+    threads = [threading.Thread(target=simulate) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == 2 * [worn.trajectory.sha256()]
+
+
+@pytest.mark.parametrize(
+    ('options', 'text'),
+    [
+        ({'wear': 0.7}, 'unknown option wear: did you mean wear_gain'),
+        ({'wear_gain': -1.0}, 'wear_gain'),
+        ({'scenario': 'thesys'}, 'unknown scenario'),
+        ({'set': {'load.slop_rad': 0.1}}, 'load.slop_rad'),
+        ({'set': {'controllers.nobody.gain': 0.1}}, 'controllers.nobody: there is no such'),
+        ({'controller': 'nobody'}, "unknown controller 'nobody'"),
+        ({'controller': Failing}, 'Failing'),
+        ({'controller': Soft, 'headless': False}, 'known to this process alone'),
+        ({'mode': 'realtime'}, 'realtime needs the graph'),
+        ({'limits': 'no_such.yaml'}, 'no_such.yaml'),
+    ],
+)
+def test_what_cannot_be_used_is_an_error_that_names_it(options, text):
+    with pytest.raises(api.DdctError, match=text):
+        api.run(**{'controller': 'pi', 'duration': SHORT_S, **options})
+
+
+def test_everything_public_is_there():
+    assert [name for name in api.__all__ if not hasattr(api, name)] == []

@@ -1,0 +1,83 @@
+"""Controllers out of Python objects: names, classes, factories, controllers, linear systems."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
+from ddct_controllers.linear import HOLD, Given, linear_spec
+from ddct_controllers.registry import Chosen, controller_names, factory_spec
+from ddct_plant.base.checks import require_name
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+
+_LINEAR = 'linear'
+"""What a linear system is called that was given no name."""
+
+
+def chosen_from(controller: Any, name: str = '') -> Chosen:
+    """
+    Return a controller as `make_controller` takes it.
+
+    `controller` is a name or file of the registry; a `Controller` class, or another factory that
+    takes a `ControllerContext`; a `Controller`, which each run resets; or G_c, from slip error in
+    rpm to torque in N m, as a system of scipy.signal or python-control, continuous (then held over
+    10 ms) or with a period of 10 ms. `name` is what bags and tables call one that has no name of
+    the registry, by default the name of the class. Raise ParameterError for anything else, and for
+    a name that is taken.
+    """
+    if isinstance(controller, (str, Path, ControllerSpec)):
+        if name:
+            raise ParameterError(f'name is {name!r}, but {controller!r} keeps the name it has')
+        return controller if isinstance(controller, ControllerSpec) else str(controller)
+    if isinstance(controller, Controller):
+        name = _free(name or type(controller).__name__)
+        return replace(factory_spec(name, _same(controller), name), options={})
+    if (model := _linear_system(controller, name or _LINEAR)) is not None:
+        return linear_spec(_free(name or _LINEAR), model, HOLD)
+    if callable(controller):
+        source = getattr(controller, '__name__', type(controller).__name__)
+        return factory_spec(_free(name or source), controller, source)
+    raise ParameterError(
+        f'{controller!r} is no controller: give a name, a file, a Controller or its class'
+    )
+
+
+def _free(name: str) -> str:
+    require_name('controller name', name)
+    if name in controller_names():
+        raise ParameterError(f'the name {name!r} is taken by another controller: give name=...')
+    return name
+
+
+def _same(controller: Controller) -> Any:
+    def make(context: ControllerContext) -> Controller:
+        controller.reset()
+        return controller
+
+    return make
+
+
+def _linear_system(system: Any, name: str) -> Given | None:
+    """Return a linear system in our form, None for what is none."""
+    if isinstance(system, (StateSpace, FactoredTransferFunction)):
+        return system
+    library = type(system).__module__.partition('.')[0]
+    if library not in ('scipy', 'control') or not hasattr(system, 'dt'):
+        return None
+    try:
+        if library == 'control':
+            import control
+
+            system = control.ss(system)
+        else:
+            system = system.to_ss()
+    except Exception as error:  # each library has errors of its own, and numpy's
+        raise ParameterError(f'controller {name!r}: it has no state space ({error})') from error
+    if system.dt is True:
+        raise ParameterError(
+            f'controller {name!r}: it does not say its period: give dt={PERIOD_S}'
+        )
+    period_s = float(system.dt) if system.dt else None
+    return StateSpace(system.A, system.B, system.C, system.D, period_s)
