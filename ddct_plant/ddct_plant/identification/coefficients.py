@@ -20,6 +20,17 @@ FITTED = (
     'vehicle_inertia',
 )
 """The seven parameters that the coefficients determine; c_m is 0, as P1 = 4/s shows."""
+SYMBOLS_AND_UNITS = {
+    'engine_inertia': ('J_m', 'kg m^2'),
+    'engine_damping': ('c_m', 'N m s/rad'),
+    'shaft_inertia': ('J_p', 'kg m^2'),
+    'shaft_damping': ('c_prim', 'N m s/rad'),
+    'halfshaft_damping': ('c_sa', 'N m s/rad'),
+    'halfshaft_stiffness': ('k_sa', 'N m/rad'),
+    'total_ratio': ('tau', '1'),
+    'vehicle_inertia': ('J_v', 'kg m^2'),
+}
+"""Of every parameter, for tables."""
 _STEP = 1e-5
 """Central-difference step in the logarithm of a parameter: relative error about 1e-10."""
 

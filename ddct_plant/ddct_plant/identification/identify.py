@@ -1,4 +1,4 @@
-"""Program `identify`: the driveline parameters behind the thesis's transfer functions."""
+"""Program `identify`: the driveline behind the thesis's transfer functions, or of a log."""
 
 from typing import Any
 
@@ -7,35 +7,30 @@ import numpy as np
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
 from ddct_plant.identification.checks import IdentificationCheck, check_identification
-from ddct_plant.identification.coefficients import FITTED, PrintedCoefficients
+from ddct_plant.identification.coefficients import FITTED, SYMBOLS_AND_UNITS, PrintedCoefficients
 from ddct_plant.identification.fit import Identification, identify_driveline
+from ddct_plant.identification.log_command import add_log_options, identify_log
 from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
 from ddct_plant.models.printed import CLUTCH_TO_SLIP, CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP
 from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.table import Table, print_table, text_or_dash
 
-SYMBOLS_AND_UNITS = {
-    'engine_inertia': ('J_m', 'kg m^2'),
-    'engine_damping': ('c_m', 'N m s/rad'),
-    'shaft_inertia': ('J_p', 'kg m^2'),
-    'shaft_damping': ('c_prim', 'N m s/rad'),
-    'halfshaft_damping': ('c_sa', 'N m s/rad'),
-    'halfshaft_stiffness': ('k_sa', 'N m/rad'),
-    'total_ratio': ('tau', '1'),
-    'vehicle_inertia': ('J_v', 'kg m^2'),
-}
 PROGRAM = 'ddct identify'
 _DESCRIPTION = """\
 Derive the driveline parameters from the nine printed coefficients of P2 and P3
 (thesis, Section 1.6.2) by least squares weighted by the rounding of the print.
 P1 and the zero pair of P2 are checks. A residual is computed less printed, in
 half-units of the last printed digit; std follows from the rounding alone, and
-lowest and highest are the ends of what the printed digits allow."""
+lowest and highest are the ends of what the printed digits allow.
+With --from it is the driveline of a measured car instead, from the speeds and torques
+of a log, with intervals and a prediction of data that took no part."""
 _EXAMPLES = """\
 examples:
   ddct identify
   ddct identify --json parameters.json
-  ddct identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)"""
+  ddct identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)
+  ddct identify --from runs/demo/pi --check runs/demo/ls8 --out mycar.yaml
+  ddct identify --from drive.csv --columns columns.yaml --fix total_ratio"""
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -55,7 +50,14 @@ def _run(argv: list[str]) -> int:
     parser.add_argument(
         '--as-printed', action='store_true', help='keep the 334.4 that Section 1.6.2 prints in P2'
     )
+    add_log_options(parser)
     options = parser.parse_args(argv)
+    if options.log:
+        if options.as_printed:
+            raise DdctError('--as-printed is about the thesis, --from about a log: give one')
+        return identify_log(options)
+    if options.columns or options.check or options.fix or options.out or options.overrides:
+        raise DdctError('--columns, --check, --fix, --set and --out need a log: give --from LOG')
     p2 = CLUTCH_TO_SLIP_AS_PRINTED if options.as_printed else CLUTCH_TO_SLIP
     identification = identify_driveline(p2)
     checks = check_identification(identification, p2)
@@ -117,10 +119,10 @@ def _print_tables(content: dict[str, Any]) -> None:
                 (
                     row['name'],
                     row['symbol'],
-                    _text(row['value'], 7),
-                    _text(row['std'], 2),
-                    _text(row['lowest'], 5),
-                    _text(row['highest'], 5),
+                    text_or_dash(row['value'], '.7g'),
+                    text_or_dash(row['std'], '.2g'),
+                    text_or_dash(row['lowest'], '.5g'),
+                    text_or_dash(row['highest'], '.5g'),
                     row['unit'],
                 )
                 for row in content['parameters']
@@ -136,7 +138,7 @@ def _print_tables(content: dict[str, Any]) -> None:
                     row['transfer_function'],
                     row['coefficient'],
                     row['printed'],
-                    _text(row['computed'], 7),
+                    text_or_dash(row['computed'], '.7g'),
                     f'{round(row["residual_half_units"], 2) + 0.0:+.2f}',
                 )
                 for row in content['coefficients']
@@ -150,7 +152,7 @@ def _print_tables(content: dict[str, Any]) -> None:
             [
                 (
                     row['name'],
-                    *(_text(row[key], 6) for key in ('value', 'lowest', 'highest')),
+                    *(text_or_dash(row[key], '.6g') for key in ('value', 'lowest', 'highest')),
                     'yes' if row['passed'] else 'no',
                 )
                 for row in content['checks']
@@ -163,8 +165,3 @@ def _print_tables(content: dict[str, Any]) -> None:
     )
     print(f'Condition number {content["fit"]["condition"]:.0f}; least determined together:')
     print(f'  {weakest} (relative changes)')
-
-
-def _text(value: float | None, digits: int) -> str:
-    """Return `digits` significant digits, or a dash for what is fixed or does not exist."""
-    return '-' if value is None else f'{value:.{digits}g}'

@@ -14,7 +14,7 @@ SET_EXAMPLE = 'load.slope_rad=0.05'
 
 
 def add_scenario_options(
-    parser: argparse.ArgumentParser, *, set_example: str = SET_EXAMPLE
+    parser: argparse._ActionsContainer, *, set_example: str = SET_EXAMPLE
 ) -> None:
     """Add --scenario, and --set as `overrides`; `load_scenario` takes both."""
     parser.add_argument(

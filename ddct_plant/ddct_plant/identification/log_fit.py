@@ -1,0 +1,144 @@
+"""The driveline of a measured car from its log, with intervals; what it does not show is named."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.log_model import Stretch, residuals_of
+from ddct_plant.identification.log_noise import NoiseModel
+from ddct_plant.identification.log_problem import DAMPINGS, LogProblem
+from ddct_plant.identification.log_stretches import (
+    stretches_of,
+    torques_are_noisy,
+    with_more_torque_noise,
+)
+from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.models.parameters import DrivelineParameters
+
+PARAMETERS = tuple(vars(DrivelineParameters()))
+SIGMAS_95 = 1.96
+DETERMINED = 0.25
+"""Largest relative standard deviation of a parameter that a log determines."""
+DAMPING_DETERMINED = 0.05
+"""The same of a damping, over the torque per speed of the log."""
+RATIOS = (1.0, 60.0)
+"""Total ratios that gearbox and final drive of a car or truck can have."""
+_ROLLING = 1.0
+"""Wheel speed in rad/s from which the ratio of the speeds says something."""
+_MORE_NOISE = 4
+"""How often the noise of the torques is doubled to see what it does to the fit."""
+KnownLoad = Callable[[np.ndarray], np.ndarray]
+"""Returns what is known of C_load in N m, (n,), at wheel speeds in rad/s."""
+
+
+@dataclass(frozen=True)
+class LogFit:
+    """What a log says of the driveline."""
+
+    values: dict[str, float]
+    """Of every parameter: fitted ones, and those held. A fitted damping may be below 0."""
+    std: dict[str, float]
+    """Standard deviation of each fitted one: of the value of a damping, else relative."""
+    undetermined: tuple[str, ...]
+    """Those that the log does not determine; they keep the value of the start."""
+    noise: NoiseModel
+    load_torque: float | None
+    """Mean of the constants that were fitted as C_load, in N m; None where it was measured."""
+
+    @property
+    def parameters(self) -> DrivelineParameters:
+        """The values, dampings below 0 as 0."""
+        return DrivelineParameters(**{name: max(each, 0.0) for name, each in self.values.items()})
+
+    def interval(self, name: str) -> tuple[float, float] | None:
+        """Return the ends of the 95 % interval of a fitted parameter, None of one that is held."""
+        if name not in self.std:
+            return None
+        value, reach = self.values[name], SIGMAS_95 * self.std[name]
+        if name in DAMPINGS:
+            return value - reach, value + reach
+        return value * float(np.exp(-reach)), value * float(np.exp(reach))
+
+
+def fit_log(
+    log: MeasuredLog,
+    start: DrivelineParameters,
+    known_load: KnownLoad,
+    fixed: Sequence[str] = (),
+) -> LogFit:
+    """
+    Fit the driveline to a log; `fixed` parameters keep the value of `start`.
+
+    White noise of the torques pulls a fit aside, as it is no torque of the car. So it is fitted
+    again with that noise doubled; what moves is moved back, and counts as a deviation (simulation
+    and extrapolation, Cook and Stefanski 1994). What the log does not determine is held, and
+    named. Raise DdctError when that is all, or when the fit does not converge.
+    """
+    stretches = stretches_of(log, known_load)
+    if 'total_ratio' not in fixed:
+        start = replace(start, total_ratio=_ratio(log, stretches))
+    noisier = [
+        stretches_of(with_more_torque_noise(log, seed), known_load)
+        for seed in range(_MORE_NOISE)
+        if torques_are_noisy(log)
+    ]
+    free = [name for name in PARAMETERS if name not in fixed]
+    weak: list[str] = []
+    while len(weak) < len(free):
+        problem = LogProblem(stretches, start, [name for name in free if name not in weak])
+        x, covariance = problem.solve()
+        moved = problem.moved_by(x, noisier) if noisier else np.zeros(len(x))
+        std = np.sqrt(np.diag(covariance) + moved**2)
+        found = [name for name, each in zip(problem.free, std, strict=True) if _weak(name, each)]
+        if not found:
+            return _result(problem, x - moved, std, weak, stretches)
+        weak += found
+    raise DdctError(
+        f'{log.path}: the log determines none of {", ".join(free)}: take one in which torques and '
+        'speeds change'
+    )
+
+
+def _ratio(log: MeasuredLog, stretches: Sequence[Stretch]) -> float:
+    """Return w_p over w_r; raise DdctError where no gearbox has that."""
+    speeds = np.vstack([each.speeds for each in stretches])
+    rolling = speeds[np.abs(speeds[:, 2]) > _ROLLING]
+    ratio = float(np.median(rolling[:, 1] / rolling[:, 2])) if len(rolling) else math.nan
+    if not RATIOS[0] <= ratio <= RATIOS[1]:
+        raise DdctError(
+            f'{log.path}: shaft_speed over wheel_speed is {ratio:.4g} as a rule, a car has '
+            f'{RATIOS[0]:g} to {RATIOS[1]:g}: check both units, or give --fix total_ratio'
+        )
+    return ratio
+
+
+def _weak(name: str, std: float) -> bool:
+    return std > (DAMPING_DETERMINED if name in DAMPINGS else DETERMINED)
+
+
+def _result(
+    problem: LogProblem,
+    x: np.ndarray,
+    std: np.ndarray,
+    weak: Sequence[str],
+    stretches: Sequence[Stretch],
+) -> LogFit:
+    """Return the fit with deviations in the units of the parameters."""
+    values = problem.values(x)
+    scales = {name: problem.damping if name in DAMPINGS else 1.0 for name in problem.free}
+    return LogFit(
+        values=values,
+        std={n: scales[n] * each for n, each in zip(problem.free, std.tolist(), strict=True)},
+        undetermined=tuple(weak),
+        noise=problem.noise,
+        load_torque=_load_torque(values, stretches),
+    )
+
+
+def _load_torque(values: Mapping[str, float], stretches: Sequence[Stretch]) -> float | None:
+    loads = [residuals_of(values, each)[1][-1] for each in stretches if not each.load_known]
+    lengths = [len(each.time_s) for each in stretches if not each.load_known]
+    return float(np.average(loads, weights=lengths)) if loads else None

@@ -1,0 +1,92 @@
+"""One fit of driveline parameters to the stretches of a log."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.log_model import NUISANCE, Stretch, residuals_of, responses
+from ddct_plant.identification.log_noise import NoiseModel, fit_noise
+from ddct_plant.models.parameters import DrivelineParameters
+
+DAMPINGS = ('engine_damping', 'shaft_damping')
+"""May be zero, so their sizes are fitted; of all other parameters the logarithms."""
+_PRIOR_STD = float(np.log(10.0))
+"""Of a logarithm around its start, so that what the log does not show stays where it was."""
+_BOUND = float(np.log(1000.0))
+_MOST_ROUNDS = 5
+_SETTLED = 0.05
+"""Change of every estimate, over its deviation, after which no further round is made."""
+
+
+class LogProblem:
+    """
+    One fit of the parameters called `free`.
+
+    x holds ln(value / start), of a damping the change over torque per speed. The nuisances are
+    linear, so they are projected out of the whitened residuals.
+    """
+
+    def __init__(
+        self, stretches: Sequence[Stretch], start: DrivelineParameters, free: Sequence[str]
+    ) -> None:
+        self._stretches, self.free = stretches, free
+        self._start: dict[str, float] = dict(vars(start))
+        torques = np.concatenate([each.torques[:, :2].ravel() for each in stretches])
+        speeds = np.concatenate([each.speeds[:, :2].ravel() for each in stretches])
+        self.damping = float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
+        self.noise = NoiseModel(np.zeros((3, 0)), np.eye(3))
+
+    def values(self, x: np.ndarray) -> dict[str, float]:
+        """Return every parameter by name."""
+        found = dict(self._start)
+        for name, change in zip(self.free, x.tolist(), strict=True):
+            if name in DAMPINGS:
+                found[name] += change * self.damping
+            else:
+                found[name] *= float(np.exp(change))
+        return found
+
+    def solve(self) -> tuple[np.ndarray, np.ndarray]:
+        """Fit, and model the noise, in turn; return x and its covariance."""
+        x = np.zeros(len(self.free))
+        for _ in range(_MOST_ROUNDS):
+            left = [residuals_of(self.values(x), each)[0] for each in self._stretches]
+            self.noise = fit_noise(left, len(x) + NUISANCE * len(left))
+            before = x
+            x, covariance = self._fitted(x, self._stretches)
+            if np.all(np.abs(x - before) < _SETTLED * np.sqrt(np.diag(covariance))):
+                break
+        return x, covariance
+
+    def moved_by(self, x: np.ndarray, others: Sequence[Sequence[Stretch]]) -> np.ndarray:
+        """Return how far the fits to other stretches of the same noise are from x on average."""
+        return np.mean([self._fitted(x, each)[0] for each in others], axis=0) - x
+
+    def _fitted(
+        self, x: np.ndarray, stretches: Sequence[Stretch]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        answer = least_squares(
+            self._residuals,
+            x,
+            bounds=(-_BOUND, _BOUND),
+            x_scale='jac',
+            ftol=1e-7,
+            xtol=1e-7,
+            args=(stretches,),
+        )
+        if not answer.success:
+            raise DdctError(f'the fit to the log does not converge: {answer.message}')
+        return answer.x, np.linalg.inv(answer.jac.T @ answer.jac)
+
+    def _residuals(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
+        """Return what is left of the whitened residuals of all stretches, and x over its prior."""
+        parts = []
+        values = self.values(x)
+        for stretch in stretches:
+            forced, basis = responses(values, stretch)
+            left = self.noise.white(stretch.speeds - forced).ravel()
+            directions = np.linalg.qr(self.noise.white(basis).reshape(len(left), NUISANCE))[0]
+            parts.append(left - directions @ (directions.T @ left))
+        return np.concatenate([*parts, x / _PRIOR_STD])

@@ -1,0 +1,125 @@
+"""Cut a log into stretches without gaps, with the torques on one grid."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.log_model import Stretch
+from ddct_plant.measured.log import MeasuredLog
+
+SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
+TORQUES = ('engine_torque', 'clutch_torque')
+LOAD = 'load_torque'
+FEWEST_SAMPLES = 40
+"""Of a stretch: 0.4 s at 100 Hz, a little more than a period of the locked driveline."""
+_GAP = 5.0
+"""Times the usual step of a signal: a longer one is a gap."""
+_UNEVEN = 0.02
+"""Share of the usual step up to which steps count as equal."""
+_FINEST = 20
+"""Grid steps in one step of the speeds at most."""
+_NOISY = 1e-3
+"""White noise of a torque over its deviation, below which a fit does not feel it."""
+_FOR_UNEVEN = 4
+"""Grid steps in the usual step of the speeds where their steps are not equal."""
+
+
+def stretches_of(
+    log: MeasuredLog, known_load: Callable[[np.ndarray], np.ndarray]
+) -> list[Stretch]:
+    """
+    Return the stretches of a log; raise DdctError when none is long enough.
+
+    A sample is a row with all three speeds. Each torque has its own rows. A gap of any of them
+    ends a stretch. Where C_load was not measured `known_load` gives what is known of it.
+    """
+    speeds = np.column_stack([log.signals[name] for name in SPEEDS])
+    rows = np.isfinite(speeds).all(axis=1)
+    if rows.sum() < FEWEST_SAMPLES:
+        raise DdctError(
+            f'{log.path}: {rows.sum()} rows have all of {", ".join(SPEEDS)}: give at least '
+            f'{FEWEST_SAMPLES}'
+        )
+    time_s, speeds = log.time_s[rows], speeds[rows]
+    torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
+    part = _parts(time_s, [time_s, *(times for times, _ in torques.values())])
+    stretches = [
+        _stretch(log, time_s[part == number], speeds[part == number], known_load)
+        for number in np.unique(part[part >= 0])
+        if np.sum(part == number) >= FEWEST_SAMPLES
+    ]
+    if not stretches:
+        raise DdctError(
+            f'{log.path}: no {FEWEST_SAMPLES} samples in a row without a gap: give a log with '
+            'fewer holes'
+        )
+    return stretches
+
+
+def with_more_torque_noise(log: MeasuredLog, seed: int) -> MeasuredLog:
+    """Return the log with the white noise of its torques doubled, as far as they show it."""
+    random = np.random.default_rng(seed)
+    signals = {
+        name: log.signals[name]
+        + white_noise(log.samples(name)[1]) * random.standard_normal(len(log.time_s))
+        for name in TORQUES
+    }
+    return replace(log, signals={**log.signals, **signals})
+
+
+def torques_are_noisy(log: MeasuredLog) -> bool:
+    """Whether a torque has white noise that a fit could feel."""
+    samples = [log.samples(name)[1] for name in TORQUES]
+    return any(white_noise(each) > _NOISY * float(np.std(each)) for each in samples)
+
+
+def white_noise(values: np.ndarray) -> float:
+    """
+    Return the standard deviation of white noise on a smooth signal, from its third differences.
+
+    Their variance is 20 times that of the noise; the median passes over steps and bends.
+    """
+    if len(values) < FEWEST_SAMPLES:
+        return 0.0
+    return float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
+
+
+def _parts(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarray:
+    """Return the number of the stretch of each time, -1 within a gap of one of the signals."""
+    part = np.zeros(len(time_s), dtype=int)
+    for times in sampled:
+        part[(time_s < times[0]) | (time_s > times[-1])] = -1
+        steps = np.diff(times)
+        for index in np.flatnonzero(steps > _GAP * np.median(steps)):
+            part[(time_s > times[index]) & (time_s < times[index + 1])] = -1
+            part[(time_s >= times[index + 1]) & (part >= 0)] += 1
+    return part
+
+
+def _stretch(
+    log: MeasuredLog,
+    time_s: np.ndarray,
+    speeds: np.ndarray,
+    known_load: Callable[[np.ndarray], np.ndarray],
+) -> Stretch:
+    usual = float(np.median(np.diff(time_s)))
+    even = bool(np.all(np.abs(np.diff(time_s) - usual) <= _UNEVEN * usual))
+    if even:
+        usual = float(time_s[-1] - time_s[0]) / (len(time_s) - 1)
+        time_s = time_s[0] + usual * np.arange(len(time_s))
+    finer = [1.0 if even else _FOR_UNEVEN]
+    finer += [usual / float(np.median(np.diff(log.samples(name)[0]))) for name in TORQUES]
+    step = usual / min(max(round(max(finer)), 1), _FINEST)
+    grid_s = time_s[0] + step * np.arange(int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6)) + 1)
+    known = LOAD in log.signals
+    load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, speeds[:, 2]))
+    return Stretch(
+        time_s=time_s,
+        speeds=speeds,
+        grid_s=grid_s,
+        torques=np.column_stack([*(log.at(name, grid_s) for name in TORQUES), load]),
+        held=(log.is_held(TORQUES[0]), log.is_held(TORQUES[1]), log.is_held(LOAD)),
+        load_known=known,
+    )

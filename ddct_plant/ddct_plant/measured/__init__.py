@@ -1,0 +1,1 @@
+"""Logs that other tools or our bags hold: columns by name, in SI units."""

@@ -1,0 +1,126 @@
+"""Which column of a log holds what, in which unit: the one column map of all programs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import close_name
+from ddct_plant.base.units import si_values
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.yaml_text import parse_yaml
+
+TIME = 'time'
+_NOTHING = np.zeros(0)
+LINEAR, HELD = BETWEEN = ('linear', 'held')
+"""What a signal does between its samples: a straight line, or it keeps its value."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Something that a log may hold."""
+
+    unit: str
+    """SI."""
+    symbol: str
+    meaning: str
+    own_column: str
+    """Its column in what `score --signals-csv` writes."""
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    TIME: Quantity('s', 't', 'time, from any instant', 'time_s'),
+    'engine_speed': Quantity('rad/s', 'w_m', 'engine', 'engine_speed_rad_s'),
+    'shaft_speed': Quantity('rad/s', 'w_p', 'primary shaft', 'primary_shaft_speed_rad_s'),
+    'wheel_speed': Quantity('rad/s', 'w_r', 'wheels, their mean', 'wheel_speed_rad_s'),
+    'engine_torque': Quantity('N m', 'C_m', 'at the crankshaft', 'engine_torque_n_m'),
+    'clutch_torque': Quantity(
+        'N m', 'C_f', 'transmitted, positive towards the wheels', 'primary_shaft_effort_n_m'
+    ),
+    'load_torque': Quantity('N m', 'C_load', 'at the wheels', 'load_torque_n_m'),
+    'driveshaft_torque': Quantity('N m', '', 'at the wheels', 'driveshaft_effort_n_m'),
+    'vehicle_speed': Quantity('m/s', 'V_x', 'of the car', 'vehicle_speed_m_s'),
+    'vehicle_accel': Quantity('m/s^2', 'A_x', 'of the car', 'vehicle_accel_m_s2'),
+    'slip_reference': Quantity('rad/s', '', 'what w_m - w_p should be', 'slip_reference_rad_s'),
+    'torque_request': Quantity('N m', '', 'asked of the clutch', 'torque_request_n_m'),
+}
+
+
+@dataclass(frozen=True)
+class Column:
+    """Where a quantity stands in a CSV log."""
+
+    column: str
+    unit: str
+    between: str = LINEAR
+
+
+@dataclass(frozen=True)
+class ColumnMap:
+    """The columns of a log by quantity, and what it cannot say itself."""
+
+    columns: Mapping[str, Column]
+    run: Mapping[str, Any]
+    """What `score` needs of a run; empty for `identify`."""
+
+
+def own_columns(*names: str) -> ColumnMap:
+    """Return the map of quantities in what `score --signals-csv` writes."""
+    held = ('engine_torque',)
+    return ColumnMap(
+        {
+            name: Column(each.own_column, each.unit, HELD if name in held else LINEAR)
+            for name in names
+            for each in [QUANTITIES[name]]
+        },
+        {},
+    )
+
+
+def load_columns(file: str) -> ColumnMap:
+    """Read a column map from YAML; raise DdctError that names the file and what is wrong."""
+    try:
+        return _column_map(parse_yaml(read_text_file(Path(file))))
+    except OSError as error:
+        raise DdctError(f'--columns {file}: cannot be read ({error.strerror})') from error
+    except ParameterError as error:
+        raise DdctError(f'--columns {file}: {error}') from error
+
+
+def _column_map(content: Any) -> ColumnMap:
+    if not isinstance(content, dict) or not isinstance(content.get('columns'), dict):
+        raise ParameterError('give columns by quantity, columns: {time: {column: t, unit: s}}')
+    for key in content:
+        if key not in ('columns', 'run'):
+            raise ParameterError(f'unknown key {key}: known: columns, run')
+    columns = {str(name): _column(str(name), each) for name, each in content['columns'].items()}
+    if TIME not in columns:
+        raise ParameterError(f'columns.{TIME} is missing')
+    run = content.get('run') or {}
+    if not isinstance(run, dict):
+        raise ParameterError('run: give keys and values')
+    return ColumnMap(columns, run)
+
+
+def _column(name: str, content: Any) -> Column:
+    key = f'columns.{name}'
+    if name not in QUANTITIES:
+        raise ParameterError(f'unknown {key}: {close_name(name, QUANTITIES, "columns.")}')
+    if not isinstance(content, dict) or not {'column', 'unit'} <= set(content):
+        raise ParameterError(f'{key}: give {{column: NAME, unit: UNIT}}')
+    for part, value in content.items():
+        if part not in ('column', 'unit', 'between'):
+            raise ParameterError(f'unknown key {key}.{part}: known: column, unit, between')
+        if not isinstance(value, str):
+            raise ParameterError(f'{key}.{part} is {value!r}: give text')
+    found = Column(**content)
+    if found.between not in BETWEEN:
+        raise ParameterError(f'{key}.between is {found.between!r}: choose from linear, held')
+    try:
+        si_values(_NOTHING, found.unit, QUANTITIES[name].unit)
+    except ParameterError as error:
+        raise ParameterError(f'{key}: {error}') from error
+    return found

@@ -1,0 +1,125 @@
+"""A log of a drive: quantities over time in SI units, from CSV or from one of our bags."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.units import si_values
+from ddct_plant.files.csv_table import CsvTable, read_csv
+from ddct_plant.measured.bag_log import bag_file, read_bag_signals
+from ddct_plant.measured.columns import HELD, QUANTITIES, TIME, ColumnMap
+
+MOST_BYTES = 200_000_000
+MOST_ROWS = 1_000_000
+HIGHEST_SPEED = 1000.0
+"""In rad/s: no engine, shaft or wheel of a car; but 3000 rpm taken for rad/s is above."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredLog:
+    """What was measured; NaN where a row has nothing of a quantity."""
+
+    path: Path
+    digest: str
+    """SHA-256 of the file, its first 16 digits."""
+    time_s: np.ndarray
+    """(n,) rising."""
+    signals: dict[str, np.ndarray]
+    """(n,) by quantity."""
+    held: tuple[str, ...] = ()
+    """Quantities that keep their value from a sample to the next."""
+
+    def samples(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and values of the rows that have a quantity."""
+        rows = np.isfinite(self.signals[name])
+        return self.time_s[rows], self.signals[name][rows]
+
+    def is_held(self, name: str) -> bool:
+        """Whether a quantity keeps its value from a sample to the next."""
+        return name in self.held
+
+    def at(self, name: str, time_s: np.ndarray) -> np.ndarray:
+        """Return a quantity at any times, by what it does between its samples."""
+        times, values = self.samples(name)
+        if not self.is_held(name):
+            return np.interp(time_s, times, values)
+        # A time on a sample is not pushed before it by its last bit.
+        before = np.searchsorted(times, time_s + 1e-9, side='right') - 1
+        return values[np.clip(before, 0, len(values) - 1)]
+
+    def part(self, first: float, last: float) -> 'MeasuredLog':
+        """Return the rows from one time to another, both included."""
+        rows = (self.time_s >= first) & (self.time_s <= last)
+        signals = {name: values[rows] for name, values in self.signals.items()}
+        return MeasuredLog(self.path, self.digest, self.time_s[rows], signals, self.held)
+
+
+def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> MeasuredLog:
+    """
+    Read a CSV log by a column map, or a bag, which needs none.
+
+    Raise DdctError for a file that cannot be read, a quantity that is missing, times that do not
+    rise, and speeds that no car has, in one line with the place.
+    """
+    try:
+        if (bag := bag_file(path)) is not None:
+            time_s, signals, held = read_bag_signals(bag)
+            log = MeasuredLog(path, _digest(bag), time_s, signals, held)
+        else:
+            log = _read_csv_log(path, columns, needed)
+    except ParameterError as error:
+        raise DdctError(str(error)) from error
+    for name in needed:
+        if not np.isfinite(log.signals[name]).any():
+            raise DdctError(f'{path}: {name} has no value in any row')
+    return log
+
+
+def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> MeasuredLog:
+    for name in needed:
+        if name not in columns.columns:
+            raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
+    names = [each.column for each in columns.columns.values()]
+    table = read_csv(path, names, most_bytes=MOST_BYTES, most_rows=MOST_ROWS)
+    signals = {
+        name: si_values(table.columns[each.column], each.unit, QUANTITIES[name].unit)
+        for name, each in columns.columns.items()
+    }
+    _require_rising(table, columns.columns[TIME].column, signals[TIME])
+    for name, values in signals.items():
+        if QUANTITIES[name].unit == 'rad/s':
+            _require_speed(table, columns, name, values)
+    held = tuple(name for name, each in columns.columns.items() if each.between == HELD)
+    time_s = signals.pop(TIME)
+    return MeasuredLog(path, _digest(path), time_s, signals, held)
+
+
+def _require_rising(table: CsvTable, column: str, time_s: np.ndarray) -> None:
+    missing = np.flatnonzero(~np.isfinite(time_s))
+    if missing.size:
+        raise ParameterError(f'{table.place(int(missing[0]), column)}: the time is empty: mend it')
+    back = np.flatnonzero(np.diff(time_s) <= 0.0)
+    if back.size:
+        row = int(back[0]) + 1
+        raise ParameterError(
+            f'{table.place(row, column)}: the time goes from {time_s[row - 1]:.9g} to '
+            f'{time_s[row]:.9g} s: it must rise'
+        )
+
+
+def _require_speed(table: CsvTable, columns: ColumnMap, name: str, values: np.ndarray) -> None:
+    high = np.flatnonzero(np.abs(values) > HIGHEST_SPEED)
+    if high.size:
+        row, column = int(high[0]), columns.columns[name]
+        raise ParameterError(
+            f'{table.place(row, column.column)}: {name} is {values[row]:g} rad/s: is it '
+            f'in another unit than {column.unit}?'
+        )
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
