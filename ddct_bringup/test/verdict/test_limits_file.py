@@ -85,7 +85,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'daily_vib',
             'limits\\[1\\]: source is missing: c',
         ),
-        ('    clause: C.2', '    page: C.2', 'page: C.2', 'limits\\[0\\].page: unknown key'),
+        ('    clause: annex', '    page: annex', 'page: annex', 'limits\\[0\\].page: unknown key'),
         (
             '    source: Directive 2002/44/EC',
             "    source: ''",

@@ -47,6 +47,8 @@ def test_the_thresholds_of_the_text_are_those_of_the_file():
     for text in (
         f'within {rules.engaged_slip:g} rpm for {rules.settled_time:g} s',
         f'more than {rules.runaway_slip:g} rpm',
+        f'keeps within {rules.locked_slip:g} rpm for {rules.settled_time:g} s',
+        f'reaches {rules.runaway_swing:g} times what was reached before',
         f'grows by {rules.runaway_growth:g} rpm/s',
         f'each time by {2 * rules.engaged_slip:g} rpm or more',
     ):

@@ -35,7 +35,7 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
     MultiAir in the Alfa Romeo MiTo with the C635 gearbox (types-cars.com, 2010; 250 N m also
     easier.com, 2010). The rest of the curve is assumed. Friction is (0.97 + 0.15 n + 0.05 n^2) bar
     with n in 1000 rpm, the mean effective pressure of friction and gas exchange after Heywood
-    (Internal Combustion Engine Fundamentals, 1988, eq. 13.6), times 1.368 l / 4 pi.
+    (Internal Combustion Engine Fundamentals, 1988, chapter 13), times 1.368 l / 4 pi.
     """
 
     speed_rad_s: tuple[float, ...] = option(
@@ -55,7 +55,7 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
     friction_n_m: tuple[float, ...] = _torques(
         (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5),
         'torque that the engine takes with the fuel cut',
-        'Heywood 1988, eq. 13.6, times 1.368 l / 4 pi',
+        'Heywood 1988, chapter 13, times 1.368 l / 4 pi',
     )
     idle_rad_s: float = _speed(94.25, 'speed that idle control keeps, 900 rpm')
     idle_gain_n_m_s: float = _idle(3.0, 'proportional gain of idle control', 'N m s/rad')
