@@ -1,5 +1,7 @@
 """Trajectories and facts made by hand: zeros and those of `thesis`, but for what a test gives."""
 
+from typing import Any
+
 import numpy as np
 
 from ddct_bringup.bag.run_facts import RunFacts
@@ -32,9 +34,9 @@ def times(duration_s: float = 3.0) -> np.ndarray:
     return np.arange(round(100 * duration_s) + 1) / 100.0
 
 
-def made_facts(**values: object) -> RunFacts:
+def made_facts(**values: Any) -> RunFacts:
     """Return the facts of a run of `ls8` in `thesis`, but for these."""
-    facts = {
+    facts: dict[str, Any] = {
         'controller': 'ls8',
         'architecture': 'detailed',
         'scenario': 'thesis',
