@@ -16,8 +16,9 @@ from ddct_controllers.check import program
 from ddct_controllers.check.checks import CHECKS, check_controller
 from ddct_controllers.check.outcome import FAIL, PASS, SKIPPED, Outcome
 from ddct_controllers.interface import Controller
-from ddct_controllers.registry import controller_names
+from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.template.install_command import install_command
+from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -42,10 +43,21 @@ WRONG = {
     'UndeclaredGain': ('options', ["the gain 'gain'", 'it declares none', *IN_UPDATE]),
     'RandomNumbers': ('determinism', ['it calls random.gauss', *IN_UPDATE]),
     'WallClock': ('determinism', ['it calls time.monotonic', *IN_UPDATE]),
+    'NoReset': ('constructor', ['abstract method', 'wrong_controllers:NoReset']),
+    'SharedDefault': ('state', ['the defaults of SharedDefault.update', *IN_UPDATE]),
+    'ClockOfItsOwn': ('determinism', ['it calls time.monotonic', *IN_UPDATE]),
+    'HidesNaN': ('NaN', ['goes unnoticed and moves its torque by', *IN_UPDATE]),
+    'Chatters': ('rate', ['N m per second, more than 3500', *IN_UPDATE]),
+    'IdlePreview': ('preview', ['preview_steps = 5', 'changes no torque']),
+    'AnotherModel': ('linear model', ['differ by up to', *IN_UPDATE]),
     'Prints': ('prints', ["the first 'e = 0.0'", *IN_UPDATE]),
 }
 """By class the check that names its error, and words of the detail."""
-ALSO = {'WrongSign': {'stability'}, 'RpmTwice': {'rate', 'stability'}}
+ALSO = {
+    'AnotherModel': {'stability'},
+    'WrongSign': {'stability'},
+    'RpmTwice': {'rate', 'stability'},
+}
 """What else those errors do."""
 RIGHT = [
     name
@@ -53,7 +65,7 @@ RIGHT = [
     if inspect.isclass(value) and issubclass(value, Controller) and value is not Controller
 ]
 POINTS = {
-    **{name: f'wrong_controllers:{name}' for name in WRONG},
+    **{name: f'wrong_controllers:{name}' for name in (*WRONG, 'SwallowsGains')},
     **{name: f'right_controllers:{name}' for name in RIGHT},
     'from_function': 'right_controllers:from_function',
     'misspelt': 'wrong_controllers:Proportinal',
@@ -99,6 +111,16 @@ def test_a_name_that_leads_nowhere_is_explained(name: str, words: list[str]) -> 
     assert found.keys() == {'entry point'}
     for word in words:
         assert word in found['entry point']
+
+
+@pytest.mark.usefixtures('installed')
+def test_a_gain_that_nobody_declared_is_refused_by_the_registry_or_named() -> None:
+    try:
+        make_controller('SwallowsGains', SETTINGS, {'gian': 1.0})
+    except DdctError:
+        assert failed(outcomes_of('SwallowsGains')) == {}
+    else:
+        assert 'the gain no_such_gain' in failed(outcomes_of('SwallowsGains'))['options']
 
 
 @pytest.mark.usefixtures('installed')

@@ -2,12 +2,15 @@
 
 import random
 import time
+from time import monotonic
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_plant.base.options import Option, Options
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
 
 GAIN = 0.1
 """N m/rpm; crosses over at about 4 rad/s."""
@@ -59,6 +62,14 @@ class MissingReset(Proportional):
     def update(self, measurement: Measurement) -> Command:
         self._integral += 0.01 * measurement.slip_error_rpm
         return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self._integral))
+
+
+class NoReset(Controller):
+    def __init__(self, context: ControllerContext) -> None:
+        pass
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * measurement.slip_error_rpm)
 
 
 class SharedState(Proportional):
@@ -128,6 +139,13 @@ class UndeclaredGain(Proportional):
         self._gain = context.gains.get('gain', GAIN)
 
 
+class SwallowsGains(Proportional):
+    options: ClassVar[Options | None] = None
+
+    def __init__(self, context: ControllerContext) -> None:
+        self._gain = {'gain': GAIN, **context.gains}['gain']
+
+
 class RandomNumbers(Proportional):
     def update(self, measurement: Measurement) -> Command:
         return Command(-GAIN * measurement.slip_error_rpm + random.gauss(0.0, 0.1))
@@ -145,6 +163,56 @@ class WallClock(Proportional):
         self._integral += (now - self._last) * measurement.slip_error_rpm
         self._last = now
         return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self._integral))
+
+
+class SharedDefault(Proportional):
+    """Its list is made once, when the method is defined."""
+
+    def update(self, measurement: Measurement, errors: list[float] = []) -> Command:  # noqa: B006
+        errors.append(measurement.slip_error_rpm)
+        return Command(-GAIN * (errors[-1] + 0.002 * sum(errors)))
+
+
+class ClockOfItsOwn(Proportional):
+    """Has bound the clock's name in its own module, and reads it in whole hours."""
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-GAIN * measurement.slip_error_rpm - monotonic() // 3600.0)
+
+
+class HidesNaN(Proportional):
+    """Its limit turns NaN into a torque."""
+
+    def __init__(self, context: ControllerContext) -> None:
+        self.reset()
+
+    def reset(self) -> None:
+        self._integral = 0.0
+
+    def update(self, measurement: Measurement) -> Command:
+        self._integral += 0.01 * measurement.slip_error_rpm
+        wanted = -GAIN * (measurement.slip_error_rpm + 0.2 * self._integral)
+        return Command(max(-100.0, min(100.0, wanted)))
+
+
+class Chatters(Proportional):
+    """Switches to and fro at every step."""
+
+    def update(self, measurement: Measurement) -> Command:
+        switched = 30.0 if measurement.step % 2 else -30.0
+        return Command(switched - GAIN * measurement.slip_error_rpm)
+
+
+class IdlePreview(Proportional):
+    preview_steps = 5
+
+
+class AnotherModel(Proportional):
+    """Its linear_model has the sign of the plant in it."""
+
+    def linear_model(self) -> StateSpace:
+        none = np.zeros((0, 0))
+        return StateSpace(none, np.zeros((0, 1)), np.zeros((1, 0)), np.array([[GAIN]]), PERIOD_S)
 
 
 class Prints(Proportional):

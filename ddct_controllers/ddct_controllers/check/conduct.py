@@ -24,7 +24,7 @@ def answers(subject: Subject) -> str:
     except DdctError as error:
         if isinstance(error, ForeignError) or not subject.package:
             raise
-        place = place_of_method(subject.make(), 'update')
+        place = place_of_method(subject.sample, 'update')
         raise CheckFailedError(f'{error}; its update is in {place}') from error
     return f'{len(closed.update_s)} commands, each with finite torques and a status of text'
 
@@ -43,11 +43,11 @@ def prints(subject: Subject) -> str:
 
 def own_state(subject: Subject) -> str:
     """Check that two objects at once do not disturb each other: all state is in the object."""
-    before = _shared(subject.make(), subject.package)
+    before = _shared(subject.sample, subject.package)
     alone = subject.answers
     changed = [
         name
-        for name, value in _shared(subject.make(), subject.package).items()
+        for name, value in _shared(subject.sample, subject.package).items()
         if before.get(name) != value
     ]
     one, other = subject.make(), subject.make()
@@ -61,7 +61,7 @@ def own_state(subject: Subject) -> str:
         raise CheckFailedError(
             f'a second object changes what it answers, as both share {", ".join(changed)}: '
             f'make that an attribute of self, in __init__ or reset '
-            f'({place_of_method(subject.make(), "__init__")})'
+            f'({place_of_method(subject.sample, "__init__")})'
         )
     if _same_again(subject, alone):
         raise CheckFailedError(
@@ -93,15 +93,14 @@ def reset(subject: Subject) -> str:
     controller = subject.make()
     played(controller, subject.measured)
     controller.reset()
-    left = _differences(subject.make(), controller)
     again = played(controller, subject.measured)
     different = np.flatnonzero((again != subject.answers).any(axis=1))
     if different.size:
         step = int(different[0])
         raise CheckFailedError(
             f'after reset it asks {again[step, 0]:.6g} in place of '
-            f'{subject.answers[step, 0]:.6g} N m at step {step}'
-            f'{left}: set all state anew in {place_of_method(controller, "reset")}'
+            f'{subject.answers[step, 0]:.6g} N m at step {step}{_left_after_reset(subject)}: set '
+            f'all state anew in {place_of_method(controller, "reset")}'
         )
     return 'after reset it answers as a new object'
 
@@ -127,12 +126,14 @@ def _shared(controller: Controller, package: str) -> dict[str, str]:
     return found
 
 
-def _differences(new: Controller, after: Controller) -> str:
-    """Return which plain attributes differ, as a part of a sentence; '' if none does."""
-    old = vars(after)
-    changed = [
-        f'self.{name} is {old.get(name)!r}, of a new object {value!r}'
-        for name, value in vars(new).items()
-        if isinstance(value, PLAIN) and repr(old.get(name)) != repr(value)
+def _left_after_reset(subject: Subject) -> str:
+    """Return which plain attributes reset leaves, as a part of a sentence; '' if none is seen."""
+    used = subject.make()
+    played(used, subject.measured)
+    used.reset()
+    left = [
+        f'self.{name} is {vars(used).get(name)!r}, of a new object {value!r}'
+        for name, value in vars(subject.make()).items()
+        if isinstance(value, PLAIN) and repr(vars(used).get(name)) != repr(value)
     ]
-    return f' ({"; ".join(changed)})' if changed else ''
+    return f' ({"; ".join(left)})' if left else ''

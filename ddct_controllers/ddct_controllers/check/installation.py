@@ -103,7 +103,7 @@ def _installed_from_folders() -> Iterator[tuple[Path, bool, set[str]]]:
 def constructor(subject: Subject) -> str:
     """Check that an object can be made."""
     try:
-        controller = subject.make()
+        controller = subject.sample
     except DdctError as error:
         raise subject.what_failed(error) from error
     return f'{type(controller).__name__} with {len(subject.spec.options or {})} options'

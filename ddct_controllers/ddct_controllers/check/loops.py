@@ -32,7 +32,7 @@ def update_time(subject: Subject) -> str:
     if slow > 1e3 * PERIOD_S:
         raise CheckFailedError(
             f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; move what can '
-            f'be computed before to __init__, from {place_of_method(subject.make(), "update")}'
+            f'be computed before to __init__, from {place_of_method(subject.sample, "update")}'
         )
     return found
 
@@ -49,7 +49,7 @@ def rate(subject: Subject) -> str:
     if per_second > MOST_RATE_N_M_S:
         raise CheckFailedError(
             f'{found}, more than {MOST_RATE_N_M_S:g}: the actuator does not follow that, and the '
-            f'driveline rings; smooth it in {place_of_method(subject.make(), "update")}'
+            f'driveline rings; smooth it in {place_of_method(subject.sample, "update")}'
         )
     return found
 
@@ -70,7 +70,7 @@ def unit(subject: Subject) -> str:
     raise CheckFailedError(
         f'{found}; with {what} of its torque the loop is stable and follows to '
         f'{other.followed:.0%}. That is 30/pi, rpm in a rad/s: look at the units in '
-        f'{place_of_method(subject.make(), "update")}; slip_error_rpm is in rpm, the speeds and '
+        f'{place_of_method(subject.sample, "update")}; slip_error_rpm is in rpm, the speeds and '
         'slip_reference are in rad/s'
     )
 
@@ -81,7 +81,7 @@ def stability(subject: Subject) -> str:
         raise CheckFailedError(
             'in the closed loop the slip ends further from its reference than control found it, '
             'or a step of the reference grows: lower the gain, after sign and unit are right '
-            f'({place_of_method(subject.make(), "update")})'
+            f'({place_of_method(subject.sample, "update")})'
         )
     model = _linear_model(subject)
     if model is None:
@@ -117,14 +117,14 @@ def linear_model(subject: Subject) -> str:
     if worst > 1e-6 * max(largest, 1.0):
         raise CheckFailedError(
             f'its torque and that of its linear_model differ by up to {worst:.4g} of '
-            f'{largest:.4g} N m: mend {place_of_method(subject.make(), "linear_model")}, '
+            f'{largest:.4g} N m: mend {place_of_method(subject.sample, "linear_model")}, '
             'or return None'
         )
     return f'update gives the torque of linear_model within {worst:.1g} N m'
 
 
 def _linear_model(subject: Subject) -> StateSpace | None:
-    controller = subject.make()
+    controller = subject.sample
     model = controller.linear_model()
     if model is None:
         return None

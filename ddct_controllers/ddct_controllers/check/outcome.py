@@ -36,16 +36,16 @@ def root_cause(error: BaseException) -> BaseException:
 
 
 def place_of_error(error: BaseException, package: str) -> str:
-    """Return `FILE line N` of the last step of a traceback in `package`, else the last of all."""
+    """Return `FILE line N` of the last step of a traceback in `package`, '' if none is there."""
     places = []
     step = error.__traceback__
     while step:
         frame = step.tb_frame
         own = str(frame.f_globals.get('__name__')).partition('.')[0] == package
-        places.append((own, f'{frame.f_code.co_filename} line {step.tb_lineno}'))
+        if own:
+            places.append(f'{frame.f_code.co_filename} line {step.tb_lineno}')
         step = step.tb_next
-    own_places = [place for own, place in places if own]
-    return own_places[-1] if own_places else places[-1][1]
+    return places[-1] if places else ''
 
 
 def place_of_caller(depth: int) -> str:

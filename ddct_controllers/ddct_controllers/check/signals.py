@@ -46,7 +46,7 @@ def _after_nan(subject: Subject, change: np.ndarray) -> str:
         raise CheckFailedError(
             f'one engine speed of NaN goes unnoticed and moves its torque by {left:.4g} N m '
             f'for good: limits such as min(max(x, ...)) hide NaN; raise an error or leave such a '
-            f'measurement out, in {place_of_method(subject.make(), "update")}'
+            f'measurement out, in {place_of_method(subject.sample, "update")}'
         )
     return 'NaN is left out'
 
@@ -77,14 +77,14 @@ def _finite(subject: Subject, torques: np.ndarray, what: str) -> np.ndarray:
     if not np.isfinite(torques).all():
         raise CheckFailedError(
             f'{what} makes the torque infinite or NaN: limit what grows in '
-            f'{place_of_method(subject.make(), "update")}'
+            f'{place_of_method(subject.sample, "update")}'
         )
     return torques - subject.answers
 
 
 def preview(subject: Subject) -> str:
     """Check that the reference ahead is used if it is asked for."""
-    steps = subject.make().preview_steps
+    steps = subject.sample.preview_steps
     if not steps:
         raise CheckSkippedError('it declares no preview_steps')
     changed = subject.played(_other_future)
@@ -104,7 +104,7 @@ def sign(subject: Subject) -> str:
     clutch, engine = change[first : first + WITHIN_STEPS].mean(axis=0)
     rpm = PROBE_RAD_S * 30.0 / math.pi
     found = f'{rpm:.0f} rpm more slip changes the clutch torque by {clutch:+.4g} N m'
-    if subject.make().commands_engine:
+    if subject.sample.commands_engine:
         found += f' and the engine torque by {engine:+.4g} N m'
     found += f', mean over {WITHIN_STEPS * PERIOD_S:g} s'
     if clutch == 0.0 and engine == 0.0:
@@ -112,7 +112,7 @@ def sign(subject: Subject) -> str:
     if clutch - engine < 0.0:
         raise CheckFailedError(
             f'{found}, which drives the slip further up: change the sign in '
-            f'{place_of_method(subject.make(), "update")}; the error is reference less slip, so a '
+            f'{place_of_method(subject.sample, "update")}; the error is reference less slip, so a '
             'positive error asks for less torque, -gain * measurement.slip_error_rpm'
         )
     return found

@@ -61,10 +61,15 @@ class Subject:
         advice = 'mend it there'
         if isinstance(cause, IndexError):
             advice += ' (slip_reference has preview_steps + 1 entries)'
-        return CheckFailedError(
-            f'it raised {type(cause).__name__}: {cause}, in '
-            f'{place_of_error(cause, self.package)}: {advice}'
-        )
+        place = place_of_error(cause, self.package)
+        if not place:
+            place = self.points[0].value if self.points else self.name
+        return CheckFailedError(f'it raised {type(cause).__name__}: {cause}, in {place}: {advice}')
+
+    @cached_property
+    def sample(self) -> Controller:
+        """An object that is only looked at."""
+        return self.make()
 
     @cached_property
     def closed(self) -> Heard:
@@ -75,7 +80,7 @@ class Subject:
     def measured(self) -> list[tuple[bool, Measurement]]:
         """What a PI of 0.1 N m/rpm measures: the same plain engagement for every controller."""
         pi = PiController(0.1, 0.1)
-        pi.preview_steps = self.make().preview_steps
+        pi.preview_steps = self.sample.preview_steps
         return closed_trial(self.settings, pi).measured
 
     @cached_property
