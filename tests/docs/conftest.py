@@ -11,11 +11,12 @@ from support.documented import ROOT, blocks
 from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.registry import controller_names
+from ddct_controllers.template.new_controller import write_package
 from ddct_plant.scenario.file import scenario_to_yaml
 
 
 def install_example(site: Path) -> None:
-    """Make the package of docs/writing_a_controller.md out of the code that the page shows."""
+    """Install the class that the page shows, and what new-controller writes, as `my_slip`."""
     code = next(
         block.text
         for block in blocks()
@@ -29,7 +30,10 @@ def install_example(site: Path) -> None:
     (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: my_package\nVersion: 1.0\n')
     (record / 'entry_points.txt').write_text(
         '[ddct.controllers]\nproportional = my_package.control:Proportional\n'
+        'my_slip = my_slip:MySlip\n'
     )
+    write_package('my_slip', site / 'new')
+    (site / 'new' / 'my_slip.py').rename(site / 'my_slip.py')
 
 
 @pytest.fixture(scope='session')

@@ -17,7 +17,8 @@ NOT_RUN_HERE = {
     'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
     'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
     'git clone': 'is how one comes here',
-    '.venv/bin/': 'stands on the page of FMUs alone; tests/fmu runs it',
+    '.venv/bin/': 'would change the environment of the tests; tests/fmu, tests/conformance run it',
+    'ddct new-controller': 'takes a name that is free; tests/conformance runs it and what follows',
     'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
     'ddct bringup --mode realtime --controller ls8 --live': (
