@@ -50,11 +50,12 @@ def install() -> Path:
 def workplace(install: Path, tmp_path: Path) -> Path:
     """Return a folder with what commands read and write, and the example in `site`."""
     shutil.copytree(ROOT / 'docs', tmp_path / 'docs')
-    for scenarios in (
+    for folder in (
+        'ddct_controllers/ddct_controllers/from_file/c_library/template',
         'ddct_plant/ddct_plant/scenario/packaged',
         'ddct_bringup/ddct_bringup/thesis/admissible_scenarios',
     ):
-        shutil.copytree(ROOT / scenarios, tmp_path / scenarios)
+        shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / 'install').symlink_to(install)
     install_example(tmp_path / 'site')
     return tmp_path

@@ -33,7 +33,9 @@ def test_there_are_commands_to_run():
     assert {block.page for block in SHELL_BLOCKS} >= {'README.md', 'docs/mpc.md'}
 
 
-@pytest.mark.parametrize('page', ['README.md', 'docs/writing_a_controller.md'])
+@pytest.mark.parametrize(
+    'page', ['README.md', 'docs/writing_a_controller.md', 'docs/controller_files.md']
+)
 def test_python_examples_run(page, tmp_path):
     """One after the other, as one reads them."""
     parts = [block.text for block in blocks() if block.page == page and block.language == 'python']
