@@ -1,61 +1,58 @@
 """Nodes that import nothing of ours stand in for ours and give the same trajectory."""
 
-import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.documented import ROOT
-from support.processes import Programs
-from support.runs import expected
+from support.documented import ROOT, blocks
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_bringup.programs import score
-from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.headless import run_headless
 from ddct_plant.graph.topics import all_signals
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-EXAMPLES = ROOT / 'docs' / 'examples'
-OWN = {name: EXAMPLES / f'own_{name}.py' for name in ('controller', 'engine')}
+PAGE = 'docs/own_node.md'
+EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
 MOST_LINES = 40
 """Of code, as the page says."""
+WITHIN_S = 120.0
 
 
-@pytest.mark.parametrize('file', OWN.values(), ids=lambda file: file.name)
+@pytest.mark.parametrize('file', EXAMPLES, ids=lambda file: file.name)
 def test_an_example_is_short_and_imports_nothing_of_ours(file: Path) -> None:
     text = re.sub(r'""".*?"""', '', file.read_text(encoding='utf-8'), flags=re.DOTALL)
     assert not re.search(r'\bddct_', text)
     assert len([line for line in text.splitlines() if line.strip()]) <= MOST_LINES
 
 
-def test_own_nodes_give_the_trajectory_of_ours(programs: Programs, tmp_path: Path) -> None:
-    bag = tmp_path / 'own'
-    parameters: dict[str, dict[str, object]] = {
-        'recorder': {'out': bag},
-        'driveline': {'require_recorder': True},
-    }
-    nodes = {}
-    for node in GRAPH_NODES:
-        if node.name in OWN:
-            nodes[node.name] = programs.start([sys.executable, str(OWN[node.name])])
-        else:
-            given = {'architecture': 'base', **parameters.get(node.name, {})}
-            nodes[node.name] = programs.start_node(node.module, given)
-    assert nodes['driveline'].wait() == 0, nodes['driveline'].errors()
-    for name in sorted(nodes, key=lambda name: name == 'recorder'):
-        if name != 'driveline':
-            nodes[name].stop()
+def test_the_page_shows_the_controller_as_it_runs() -> None:
+    (shown,) = [block for block in blocks() if (block.page, block.language) == (PAGE, 'python')]
+    assert shown.text in (ROOT / 'docs/examples/own_controller.py').read_text(encoding='utf-8')
 
-    settings = RunSettings(load_scenario('thesis'), architecture='base')
-    ours, own = expected(RunPlan(settings, 'pi', 'headless')), read_bag(bag)
+
+def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path: Path) -> None:
+    (commands,) = [block.text for block in blocks() if block.page == PAGE and ' &\n' in block.text]
+    for name, target in (('docs', ROOT / 'docs'), ('install', ROOT / 'install')):
+        (tmp_path / name).symlink_to(target)
+    (tmp_path / '.venv').symlink_to(sys.prefix)
+    done = subprocess.run(
+        ['bash', '-ec', f"trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT\n{commands}"],
+        cwd=tmp_path,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=WITHIN_S,
+    )
+    assert done.returncode == 0, done.stderr
+    assert re.search(r'own_pi .* yes *$', done.stdout, re.MULTILINE), 'valid'
+
+    ours = run_headless(RunSettings(load_scenario('thesis'), architecture='base'), 'pi')
+    own = read_bag(tmp_path / 'runs' / 'own').trajectory
     for signal in all_signals():
         if signal.name != 'status':
-            found, wanted = (getattr(run, signal.name) for run in (own.trajectory, ours))
+            found, wanted = (getattr(run, signal.name) for run in (own, ours))
             assert found is wanted is None or np.array_equal(found, wanted), signal.name
-    assert score.main([str(bag), '--json', str(tmp_path / 'scores.json')]) == 0
-    (run,) = json.loads((tmp_path / 'scores.json').read_text())['runs']
-    assert (run['controller'], run['valid'], run['metrics']['steps']) == ('own_pi', True, 300)
