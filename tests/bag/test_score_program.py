@@ -36,6 +36,7 @@ ENTRY_KEYS = [
     'fallbacks',
     'safe_state',
     'before_schema',
+    'scenario_changes',
 ]
 
 

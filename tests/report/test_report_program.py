@@ -80,7 +80,22 @@ def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path
 
 def test_bad_limits_are_named_before_anything_is_read(tmp_path: Path, capsys) -> None:
     assert main([str(tmp_path), '--limits', str(tmp_path / 'none.yaml')]) == 1
-    assert capsys.readouterr().err.startswith(f'report: limits {tmp_path / "none.yaml"}: cannot')
+    assert capsys.readouterr().err.startswith(
+        f'ddct report: limits {tmp_path / "none.yaml"}: cannot'
+    )
+
+
+def test_the_header_says_what_differs_from_the_packaged_scenario(
+    page: Path, tmp_path: Path
+) -> None:
+    record(plan('pi', 'headless', duration_s=1.0), tmp_path / 'pi')
+    out = tmp_path / 'report.html'
+    assert main([str(tmp_path), '--out', str(out)]) == 0
+    text = out.read_text(encoding='utf-8')
+    changed = 'thesis, 1 value changed: duration_s=1.0'
+    assert f'Scenario <b>{changed}</b>' in text
+    assert f'<title>Clutch engagement, {changed}: pi</title>' in text
+    assert 'Scenario <b>thesis</b>' in page.read_text(encoding='utf-8')
 
 
 def test_the_page_says_where_it_comes_from(page: Path) -> None:

@@ -19,6 +19,7 @@ from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.scenario.differences import scenario_title
 
 PROGRAM = 'ddct bringup'
 
@@ -68,6 +69,8 @@ def _run(plan: RunPlan, folder: StagedFolder, options: argparse.Namespace, limit
         raise DdctError(f'{folder.path}: not valid: {entry["reason"]}')
     folder.commit()
     print(folder.final, flush=True)
+    if changes := entry['scenario_changes']:
+        print(f'{PROGRAM}: {scenario_title(entry["scenario"], changes)}', file=sys.stderr)
     _tell(recording, folder.final)
     verdict = entry['verdict']
     print(f'{PROGRAM}: state {verdict["state"]}, limits {verdict["limits"]}', file=sys.stderr)

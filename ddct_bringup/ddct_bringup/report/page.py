@@ -36,6 +36,7 @@ from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.program.command_line import package_version
+from ddct_plant.scenario.differences import scenario_title
 
 SHOWN_AT_FIRST = 12
 """Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
@@ -84,6 +85,7 @@ def report_page(
         computed=COMPUTED,
         ticks=TICKS,
         facts=recordings[0].facts,
+        scenario_title=_scenario_title(runs),
         conditions=common_conditions([run.entry for run in runs]),
         scenario_text=scenario_text(recordings[0]),
         digest=next((run.digest for run in runs if run.digest), None),
@@ -91,6 +93,13 @@ def report_page(
         versions=sorted({run['origin'].version for run in shown if run['charted']}),
         made_with={'ddct_bringup': package_version(), 'Bokeh': bokeh.__version__},
     )
+
+
+def _scenario_title(runs: Sequence[ReportRun]) -> str:
+    """Return the scenario of all runs and what is changed in it, as the readable ones tell."""
+    entries = [run.entry for run in runs if run.recording is not None]
+    changes = (entry['scenario_changes'] for entry in entries if entry['scenario_changes'])
+    return scenario_title(entries[0]['scenario'], next(changes, ()))
 
 
 def symbols(text: str) -> Markup:

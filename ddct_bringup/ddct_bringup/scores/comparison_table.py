@@ -25,6 +25,7 @@ from ddct_bringup.thesis.table_5_1 import (
     is_thesis_run,
     thesis_row,
 )
+from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 _NOTE = (
@@ -66,10 +67,10 @@ _UNITS = ('s', 'rpm', 'm/s^2')
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
-    changes = f' ({", ".join(overrides)})' if overrides else ''
+    changes = changed_values(settings.scenario) or overrides
     return (
-        f'{settings.scenario.name}{changes}, {settings.architecture}, {settings.clutch} clutch, '
-        f'wear gain {settings.wear_gain:g}, {settings.mode}'
+        f'{scenario_title(settings.scenario.name, changes)}; {settings.architecture}, '
+        f'{settings.clutch} clutch, wear gain {settings.wear_gain:g}, {settings.mode}'
     )
 
 

@@ -23,10 +23,11 @@ from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.plant import end_cause
 
 Entry = dict[str, Any]
-"""One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, before_schema."""
+"""One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, ..."""
 
 SCHEMA_VERSION = 2
 """Of `scores.json`; 1 had no verdict and did not say its version."""
@@ -76,7 +77,14 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
         'fallbacks': fallbacks_in(recording.trajectory),
         'safe_state': None if facts.lockstep else safe_state(recording),
         'before_schema': recording.before_schema,
+        'scenario_changes': _scenario_changes(recording),
     }
+
+
+def _scenario_changes(recording: Recording) -> list[str] | None:
+    """Return what the run changed of the packaged scenario; None where the bag does not tell."""
+    settings = recording.settings
+    return None if settings is None else list(changed_values(settings.scenario))
 
 
 def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None = None) -> Entry:
@@ -106,6 +114,7 @@ def _entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry
         'fallbacks': None,
         'safe_state': None,
         'before_schema': None,
+        'scenario_changes': None,
     }
 
 

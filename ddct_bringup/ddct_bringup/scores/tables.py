@@ -13,6 +13,7 @@ from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
 from ddct_bringup.verdict.verdict import BEYOND
 from ddct_plant.base.printable import printable
+from ddct_plant.scenario.differences import scenario_title
 
 UNDEFINED = '-'
 _PIPED_WIDTH = 200
@@ -95,8 +96,12 @@ def print_runs(
     """
     Print one row per run, its verdict included, then what needs a word.
 
-    That are dashes, runs that do not count, and criteria beyond their limits.
+    That are dashes, runs that do not count, and criteria beyond their limits. Without a title it
+    is the scenario, with what is changed in it; of several scenarios each run has its own below.
     """
+    scenarios = {_scenario(run) for run in runs if run['scenario'] is not None}
+    if title is None and len(scenarios) == 1:
+        (title,) = scenarios
     if any(run['mode'] == 'realtime' for run in runs):
         columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
     console = Console(
@@ -110,7 +115,8 @@ def print_runs(
         console.print(Text(text), soft_wrap=True)
     for run in runs:
         verdict = [] if wide_enough else [_verdict_text(run)]
-        for text in [*verdict, *run_notes(run)]:
+        scenario = [_scenario(run)] if title is None and run['scenario'] is not None else []
+        for text in [*scenario, *verdict, *run_notes(run)]:
             console.print(Text(printable(f'{run["bag"]}: {text}'), 'bold'), soft_wrap=True)
 
 
@@ -161,6 +167,10 @@ def fallback_note(run: Entry) -> str:
         f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
         'time: the figures are partly those of its fallback'
     )
+
+
+def _scenario(run: Entry) -> str:
+    return scenario_title(run['scenario'], run['scenario_changes'] or ())
 
 
 def _safe_state(run: Entry) -> str:

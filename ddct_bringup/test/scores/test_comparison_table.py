@@ -35,6 +35,8 @@ def entry(controller='ls8', *, valid=True):
         'verdict': verdict_of_unreadable(),
         'fallbacks': None,
         'before_schema': False,
+        'scenario_changes': [],
+        'scenario': 'thesis',
     }
 
 
@@ -108,3 +110,22 @@ def test_a_run_that_is_not_valid_neither_hits_nor_misses():
     assert 'hit' not in table
     assert 'miss' not in table
     assert 'mpc4: not valid: node clutch was killed' in table
+
+
+@pytest.mark.parametrize(
+    ('overrides', 'title'),
+    [
+        ((), 'thesis; detailed, linear clutch, wear gain 1, lockstep'),
+        ((SLOPE,), f'thesis, 1 value changed: {SLOPE}; detailed, linear clutch'),
+    ],
+)
+def test_the_title_says_what_differs_from_the_packaged_scenario(overrides, title):
+    text = printed(RunSettings(load_scenario('thesis', overrides)), overrides)
+    assert title in ' '.join(text.split())
+
+
+def test_the_title_of_a_scenario_of_ones_own_has_what_set_gave():
+    own = dataclasses.replace(load_scenario('thesis', [SLOPE]), name='mine')
+    assert f'mine, 1 value changed: {SLOPE}; ' in ' '.join(
+        printed(RunSettings(own), [SLOPE]).split()
+    )

@@ -32,6 +32,8 @@ def run(
         'verdict': verdict or verdict_of_unreadable(),
         'fallbacks': None,
         'before_schema': False,
+        'scenario_changes': [],
+        'scenario': 'thesis',
     }
 
 
@@ -204,3 +206,19 @@ def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
 
 def test_a_bag_of_before_the_schema_says_so():
     assert 'pi: recorded before' in printed([{**run(), 'before_schema': True}])
+
+
+def test_the_title_is_the_scenario_with_what_is_changed_in_it():
+    changed = [
+        {**run(name), 'scenario_changes': ['load.slope_rad=0.05']} for name in ('pi', 'ls8')
+    ]
+    first = printed(changed).splitlines()[0]
+    assert first.strip() == 'thesis, 1 value changed: load.slope_rad=0.05'
+    assert printed([run('pi'), run('ls8')]).splitlines()[0].strip() == 'thesis'
+
+
+def test_of_several_scenarios_each_run_tells_its_own():
+    text = printed([run('pi'), {**run('ls8'), 'scenario_changes': ['load.slope_rad=0.05']}])
+    assert '\npi: thesis\n' in text
+    assert '\nls8: thesis, 1 value changed: load.slope_rad=0.05\n' in text
+    assert 'thesis' not in text.splitlines()[0]

@@ -8,6 +8,7 @@ from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
@@ -66,7 +67,9 @@ def run(options: argparse.Namespace) -> int:
             'choose a controller that has a linear_model, or all'
         )
     if options.json != '-':
-        title = f'Sampled loop, {settings.scenario.name}, wear gain {settings.wear_gain:g}'
+        scenario = settings.scenario
+        changed = scenario_title(scenario.name, changed_values(scenario))
+        title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
         headers = (
             *('controller', 'stable'),
             *(heading for heading, _, _ in _POINT_COLUMNS),

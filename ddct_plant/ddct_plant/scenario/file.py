@@ -77,7 +77,7 @@ def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
 
 def scenario_to_yaml(scenario: Scenario) -> str:
     """Return the YAML text that `load_scenario` reads back to an equal scenario."""
-    return dump_yaml({SCHEMA_KEY: SCHEMA_VERSION, **_content(scenario)})
+    return dump_yaml({SCHEMA_KEY: SCHEMA_VERSION, **scenario_content(scenario)})
 
 
 def scenario_digest(scenario: Scenario) -> str:
@@ -87,7 +87,7 @@ def scenario_digest(scenario: Scenario) -> str:
     What a file may leave out counts only where it is given, so the hash of a scenario stays when
     a key is added that it does not have.
     """
-    text = json.dumps(_content(scenario), sort_keys=True)
+    text = json.dumps(scenario_content(scenario), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -193,14 +193,15 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
     return {str(name): dict(gains) for name, gains in content.items()}
 
 
-def _content(group: OptionGroup) -> dict[str, Any]:
+def scenario_content(group: OptionGroup) -> dict[str, Any]:
     """Return what a file says of the group; what it may leave out is left out."""
     content: dict[str, Any] = {}
     for field in dataclasses.fields(group):
         value = getattr(group, field.name)
         if value is None or (field.metadata.get('left_out') and value == field.default):
             continue
-        content[field.name] = _content(value) if isinstance(value, OptionGroup) else _plain(value)
+        nested = isinstance(value, OptionGroup)
+        content[field.name] = scenario_content(value) if nested else _plain(value)
     return content
 
 

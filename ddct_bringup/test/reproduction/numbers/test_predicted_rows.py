@@ -45,6 +45,8 @@ def run(controller, figures=FIGURES):
         'verdict': verdict_of_unreadable(),
         'fallbacks': None,
         'before_schema': False,
+        'scenario_changes': [],
+        'scenario': 'thesis',
     }
 
 

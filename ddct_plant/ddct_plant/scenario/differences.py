@@ -1,0 +1,61 @@
+"""What a scenario has changed of the packaged one that it is called after."""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from ddct_plant.scenario.file import load_scenario, scenario_content, scenario_names
+from ddct_plant.scenario.scenario import Scenario
+
+SHOWN = 6
+"""Changed values that a title shows; it counts the others."""
+_LONGEST = 40
+_NOT_COMPARED = ('name', 'description', 'adjusted')
+
+
+def changed_values(scenario: Scenario) -> tuple[str, ...]:
+    """
+    Return `KEY=VALUE` of every value that differs from the packaged scenario of the same name.
+
+    A scenario of a name that is not packaged has none: there is nothing to set it beside.
+    """
+    if scenario.name not in scenario_names():
+        return ()
+    values, packaged = _values(scenario_content(scenario)), _packaged_values(scenario.name)
+    keys = [*values, *(key for key in packaged if key not in values)]
+    return tuple(
+        f'{key}={_text(values[key])}' if key in values else f'{key} left out'
+        for key in keys
+        if key not in _NOT_COMPARED and values.get(key) != packaged.get(key)
+    )
+
+
+def scenario_title(name: str, changes: Sequence[str]) -> str:
+    """Return the scenario's name for a heading, and what it has changed."""
+    if not changes:
+        return name
+    count = f'{len(changes)} value{"s" if len(changes) > 1 else ""} changed'
+    more = len(changes) - SHOWN
+    shown = ', '.join(changes[:SHOWN]) + (f' and {more} more' if more > 0 else '')
+    return f'{name}, {count}: {shown}'
+
+
+@cache
+def _packaged_values(name: str) -> dict[str, Any]:
+    return _values(scenario_content(load_scenario(name)))
+
+
+def _values(content: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    """Return the values by their dotted keys."""
+    values: dict[str, Any] = {}
+    for key, value in content.items():
+        if isinstance(value, Mapping):
+            values |= _values(value, f'{prefix}{key}.')
+        else:
+            values[f'{prefix}{key}'] = value
+    return values
+
+
+def _text(value: Any) -> str:
+    text = str(value)
+    return text if len(text) <= _LONGEST else f'{text[:_LONGEST]}...'
