@@ -6,11 +6,10 @@ from typing import Any
 
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import HOLD, Given, linear_spec
+from ddct_controllers.lti_objects import linear_system
 from ddct_controllers.registry import Chosen, controller_names, factory_spec
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 _LINEAR = 'linear'
 """What a linear system is called that was given no name."""
@@ -61,23 +60,7 @@ def _same(controller: Controller) -> Any:
 
 def _linear_system(system: Any, name: str) -> Given | None:
     """Return a linear system in our form, None for what is none."""
-    if isinstance(system, (StateSpace, FactoredTransferFunction)):
-        return system
-    library = type(system).__module__.partition('.')[0]
-    if library not in ('scipy', 'control') or not hasattr(system, 'dt'):
-        return None
     try:
-        if library == 'control':
-            import control
-
-            system = control.ss(system)
-        else:
-            system = system.to_ss()
-    except Exception as error:  # each library has errors of its own, and numpy's
-        raise ParameterError(f'controller {name!r}: it has no state space ({error})') from error
-    if system.dt is True:
-        raise ParameterError(
-            f'controller {name!r}: it does not say its period: give dt={PERIOD_S}'
-        )
-    period_s = float(system.dt) if system.dt else None
-    return StateSpace(system.A, system.B, system.C, system.D, period_s)
+        return linear_system(system)
+    except ParameterError as error:
+        raise ParameterError(f'controller {name!r}: {error}') from error

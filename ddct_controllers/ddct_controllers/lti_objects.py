@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.linear import Given, LinearController, in_z
+from ddct_controllers.linear import HOLD, Given, LinearController, in_z
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -14,39 +14,63 @@ def controller_from(lti: Any, discretisation: str | None = None) -> LinearContro
     """
     Return G_c, from slip error in rpm to torque in N m, as a controller.
 
-    `lti` is a TransferFunction, ZerosPolesGain or StateSpace of scipy.signal, or a
-    TransferFunction or StateSpace of python-control. A continuous one is discretised at 10 ms by
-    'hold', the default, or 'bilinear'; a sampled one must have `dt` 0.01. Neither library is
-    imported here. Raise ParameterError for what cannot run.
+    `lti` is what `linear_system` takes. A continuous one is discretised at 10 ms by 'hold', the
+    default, or 'bilinear'. Raise ParameterError for what cannot run.
     """
-    period_s = getattr(lti, 'dt', None)
-    form = _form(lti)
-    if not period_s:
-        return LinearController(form, discretisation or 'hold')
-    if period_s is True or abs(period_s - PERIOD_S) > 1e-9 * PERIOD_S:
+    given = linear_system(lti)
+    if given is None:
         raise ParameterError(
-            f'{_name(lti)}: dt is {period_s}, the loop runs at {PERIOD_S:g} s: sample it at that, '
-            'or give it continuous'
+            f'{_name(lti)} is no linear system: give a TransferFunction, ZerosPolesGain or '
+            'StateSpace of scipy.signal or python-control'
         )
-    if discretisation:
+    if discretisation and isinstance(given, StateSpace) and given.period_s:
         raise ParameterError(f'{_name(lti)}: it is sampled: drop discretisation={discretisation}')
-    return LinearController(in_z(form))
+    return LinearController(given, discretisation or HOLD)
 
 
-def _form(lti: Any) -> Given:
-    # By what they hold, not by type: importing python-control takes a second.
+def linear_system(lti: Any) -> Given | None:
+    """
+    Return a system in our form, continuous or sampled at 10 ms; None for what is none.
+
+    It is a TransferFunction, ZerosPolesGain or StateSpace of scipy.signal, a TransferFunction or
+    StateSpace of python-control, or in our form already. Raise ParameterError for one that is
+    improper, has more than one input or output, or another period.
+    """
+    if isinstance(lti, (StateSpace, FactoredTransferFunction)):
+        return lti
+    # By what it holds, not by type: importing python-control takes a second.
+    if type(lti).__module__.partition('.')[0] not in ('scipy', 'control'):
+        return None
+    form = _form(lti)
+    if form is None:
+        return None
+    if isinstance(form, FactoredTransferFunction):
+        form.to_state_space()
+    if not lti.dt:
+        return form
+    if lti.dt is True:
+        raise ParameterError(
+            f'{_name(lti)}: dt is True, it does not say its period: give dt={PERIOD_S:g}'
+        )
+    if abs(lti.dt - PERIOD_S) > 1e-9 * PERIOD_S:
+        raise ParameterError(
+            f'{_name(lti)}: dt is {lti.dt}, the loop has a period of {PERIOD_S:g} s: sample it at '
+            'that, or give it continuous'
+        )
+    return in_z(form)
+
+
+def _form(lti: Any) -> Given | None:
+    """Return the system without its period."""
     if all(hasattr(lti, name) for name in 'ABCD'):
         return StateSpace(lti.A, lti.B, lti.C, lti.D)
     if all(hasattr(lti, name) for name in ('zeros', 'poles', 'gain')):
         return FactoredTransferFunction.from_roots(float(lti.gain), lti.zeros, lti.poles)
-    if all(hasattr(lti, name) for name in ('num', 'den')):
+    if all(hasattr(lti, name) for name in ('num', 'den', 'dt')):
         return FactoredTransferFunction.from_polynomials(
             _coefficients(lti, lti.num), _coefficients(lti, lti.den)
         )
-    raise ParameterError(
-        f'{_name(lti)} is no linear system: give a TransferFunction, ZerosPolesGain or StateSpace '
-        'of scipy.signal or python-control'
-    )
+    return None
 
 
 def _coefficients(lti: Any, side: Any) -> np.ndarray:

@@ -105,7 +105,7 @@ def test_our_own_forms_are_taken():
         (Mine, 'a b', "controller name is 'a b'"),
         (lambda context: Mine(), '', "controller name is '<lambda>'"),
         (control.tf([1], [1, 2], True), '', 'does not say its period: give dt=0.01'),
-        (control.tf([1, 2, 3], [1, 2]), 'steep', "controller 'steep': it has no state space"),
+        (control.tf([1, 2, 3], [1, 2]), 'steep', "controller 'steep': transfer function has 2 z"),
     ],
 )
 def test_what_is_no_controller_is_refused_by_name(given, name, text):

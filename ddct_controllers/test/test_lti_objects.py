@@ -44,7 +44,11 @@ def test_a_continuous_one_may_be_sampled_by_the_bilinear_rule():
 @pytest.mark.parametrize(
     ('lti', 'discretisation', 'complaint'),
     [
-        (signal.TransferFunction(NUM, DEN, dt=0.02), None, 'dt is 0.02, the loop runs at 0.01 s'),
+        (
+            signal.TransferFunction(NUM, DEN, dt=0.02),
+            None,
+            'dt is 0.02, the loop has a period of 0.01 s',
+        ),
         (signal.TransferFunction(NUM, DEN, dt=True), None, 'dt is True'),
         (control.tf(NUM, DEN, True), None, 'dt is True'),
         (SAMPLED, 'hold', 'drop discretisation=hold'),
@@ -68,7 +72,6 @@ def test_it_needs_no_python_control(monkeypatch):
     assert controller_from(CONTINUOUS).linear_model().period_s == 0.01
 
 
-def test_a_state_space_of_ours_is_not_taken_for_one_of_theirs():
+def test_a_system_in_our_own_form_is_taken_as_it_is():
     ours = controller_from(CONTINUOUS).linear_model()
-    with pytest.raises(ParameterError, match='lti.StateSpace is no linear system'):
-        controller_from(ours)
+    assert controller_from(ours).linear_model() is ours
