@@ -165,6 +165,19 @@ class WallClock(Proportional):
         return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self._integral))
 
 
+class SharedIntegral(Proportional):
+    """Its state belongs to the class, but a reset does clear it."""
+
+    integral = 0.0
+
+    def reset(self) -> None:
+        SharedIntegral.integral = 0.0
+
+    def update(self, measurement: Measurement) -> Command:
+        SharedIntegral.integral += 0.01 * measurement.slip_error_rpm
+        return Command(-GAIN * (measurement.slip_error_rpm + 0.2 * self.integral))
+
+
 class SharedDefault(Proportional):
     """Its list is made once, when the method is defined."""
 
