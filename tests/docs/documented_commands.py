@@ -21,6 +21,8 @@ NOT_RUN_HERE = {
     'ddct new-controller': 'takes a name that is free; tests/conformance runs it and what follows',
     'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
+    'python3 -m venv': 'tests/packaging/test_without_ros.py runs what pip would install',
+    '. my-env': 'nothing is installed there by the tests',
     'ddct bringup --mode realtime --controller ls8 --live': (
         'waits for a viewer; tests/live gives it one'
     ),

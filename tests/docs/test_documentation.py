@@ -34,7 +34,8 @@ def test_there_are_commands_to_run():
 
 
 @pytest.mark.parametrize(
-    'page', ['README.md', 'docs/writing_a_controller.md', 'docs/controller_files.md']
+    'page',
+    ['README.md', 'docs/python.md', 'docs/writing_a_controller.md', 'docs/controller_files.md'],
 )
 def test_python_examples_run(page, tmp_path):
     """One after the other, as one reads them."""
