@@ -118,6 +118,8 @@ def print_runs(
         scenario = [_scenario(run)] if title is None and run['scenario'] is not None else []
         for text in [*scenario, *verdict, *run_notes(run)]:
             console.print(Text(printable(f'{run["bag"]}: {text}'), 'bold'), soft_wrap=True)
+    for text in beyond_notes(runs):
+        console.print(Text(printable(text), 'bold'), soft_wrap=True)
 
 
 def _verdict_text(run: Entry) -> str:
@@ -148,17 +150,21 @@ def run_notes(run: Entry) -> list[str]:
     notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
     if run['valid'] and run['fallbacks']:
         notes.append(fallback_note(run))
-    beyond = [
-        f'{each["name"]} {each["value"]:.4g} {each["unit"]} (limit {each["limit"]:g}, '
-        f'{each["source"]})'
-        for each in run['verdict']['criteria']
-        if each['state'] == BEYOND
-    ]
-    if beyond:
-        notes.append(f'beyond {"; ".join(beyond)}')
     if run['before_schema']:
         notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes
+
+
+def beyond_notes(runs: Sequence[Entry]) -> list[str]:
+    """Return for each limit that runs are beyond its source, and the runs with their values."""
+    beyond: dict[str, list[str]] = {}
+    for run in runs:
+        for each in run['verdict']['criteria']:
+            if each['state'] == BEYOND:
+                limit = f'beyond {each["name"]} {each["limit"]:g} {each["unit"]}'
+                found = beyond.setdefault(f'{limit} ({each["source"]})', [])
+                found.append(f'{run["bag"]} {each["value"]:.4g}')
+    return [f'{limit}: {", ".join(found)}' for limit, found in beyond.items()]
 
 
 def fallback_note(run: Entry) -> str:

@@ -131,7 +131,8 @@ class _LimitsFile:
     def _scenarios(self, value: Any, path: tuple[Any, ...]) -> tuple[str, ...] | None:
         if value == 'all':
             return None
-        if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        names = isinstance(value, list) and value
+        if not names or not all(isinstance(name, str) for name in value):
             raise self._bad(path, "give 'all' or a list of scenarios")
         return tuple(value)
 

@@ -175,8 +175,14 @@ def test_a_run_has_its_state_and_its_limits_and_a_word_on_what_is_beyond():
     text = printed([run('ls8', verdict=verdict_beyond())])
     row = next(line for line in text.splitlines() if 'ls8' in line.split())
     assert row.split()[-3:] == ['oscillating', 'beyond', 'yes']
-    assert 'ls8: beyond judder 4 rpm (limit 3, B, 2)\n' in text
+    assert 'beyond judder 3 rpm (B, 2): ls8 4\n' in text
     assert 'peak_jerk' not in text
+
+
+def test_a_limit_is_named_once_with_all_runs_beyond_it():
+    runs = [run(name, verdict=verdict_beyond()) for name in ('pi', 'ls8')]
+    assert printed([*runs, run('mpc3')]).count('B, 2') == 1
+    assert 'beyond judder 3 rpm (B, 2): pi 4, ls8 4\n' in printed(runs)
 
 
 def test_a_narrow_terminal_has_state_and_limits_in_lines_of_their_own(monkeypatch):

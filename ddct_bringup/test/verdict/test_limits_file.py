@@ -77,6 +77,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'applies_to: few',
             'limits\\[0\\].applies_to: give',
         ),
+        ('applies_to: all', 'applies_to: []', 'applies_to: []', 'limits\\[0\\].applies_to: give'),
         ('  settled_time:', '  settling:', '  settling:', 'rules.settling: unknown key'),
         ('rules:', 'rule:', 'rule:', 'rule: unknown key: known are rules, limits'),
         (
