@@ -116,6 +116,26 @@ def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
     assert seen.errors == []
 
 
+def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path) -> None:
+    crowd = """const {style} = document.querySelector('.field');
+      Object.assign(style, {width: '1rem', height: '1rem'});
+      document.querySelector('.pareto-choice select').dispatchEvent(new Event('change'))"""
+    plain = """document.querySelectorAll('.point b').forEach((label) => {
+      label.style.translate = ''; })"""
+    covered = """(() => {
+      const box = (each) => each.getBoundingClientRect();
+      const labels = [...document.querySelectorAll('.point b')].map(box);
+      const all = [...labels, ...[...document.querySelectorAll('.point .dot')].map(box)];
+      return labels.flatMap((one, index) => all.filter((other, at) => at !== index
+        && one.left < other.right && one.right > other.left
+        && one.top < other.bottom - 0.1 && one.bottom > other.top + 0.1)).length;
+    })()"""
+    seen = visit(page, scripts=[covered, crowd, covered, plain, covered])
+    assert [seen.values[0], seen.values[2]] == [0, 0]
+    assert seen.values[4] > 0
+    assert seen.errors == []
+
+
 def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
     listen = """addEventListener('beforeprint', () => {
       const lines = window.light.map((colour) => parseInt(colour.slice(1), 16));

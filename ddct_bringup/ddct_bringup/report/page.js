@@ -109,8 +109,27 @@
           return tick;
         }));
     });
+    partLabels();
   }
 
+  // A label that would cover another one or a dot moves up until it does not.
+  function partLabels() {
+    const points = [...document.querySelectorAll('.pareto .point:not([hidden])')];
+    const taken = points.map((point) => point.querySelector('.dot').getBoundingClientRect());
+    points.forEach((point) => {
+      const label = point.querySelector('b');
+      label.style.translate = '';
+      const {left, right, top, height} = label.getBoundingClientRect();
+      let place = top;
+      const covered = () => taken.find((box) => left < box.right && right > box.left
+        && place < box.bottom && place + height > box.top);
+      for (let box = covered(); box; box = covered()) place = box.top - height;
+      label.style.translate = `0 ${place - top}px`;
+      taken.push({left, right, top: place, bottom: place + height});
+    });
+  }
+
+  if (across) partLabels();
   [across, up].filter(Boolean).forEach((select) => {
     select.disabled = false;
     select.addEventListener('change', placeRuns);

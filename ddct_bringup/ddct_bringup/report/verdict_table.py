@@ -69,8 +69,8 @@ def unit_text(unit: str) -> str:
 
 
 def value_text(value: float | None) -> str:
-    """Return four digits, and of large values every digit before the point."""
-    large = value is not None and abs(value) >= 1e4
+    """Return four digits, and of values up to a million every digit before the point."""
+    large = value is not None and 1e4 <= abs(value) < 1e6
     return number_text(value, '.0f' if large else '.4g')
 
 

@@ -51,7 +51,8 @@ def test_every_dash_has_its_reason():
 
 
 def test_large_values_keep_every_digit_before_the_point():
-    assert [value_text(each) for each in (None, 0.07461, 10636.4)] == ['–', '0.07461', '10636']
+    values = (None, 0.07461, 10636.4, 2.2623e14)
+    assert [value_text(each) for each in values] == ['–', '0.07461', '10636', '2.262e+14']
 
 
 def test_a_run_is_dominated_by_one_better_in_one_criterion_and_as_good_in_the_other():
