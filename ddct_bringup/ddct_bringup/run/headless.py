@@ -40,12 +40,11 @@ class ClosedLoop:
         started = time.perf_counter()
         request = self._architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
-        return {
-            **self.plant.reply(step, sight, request.torque, request.engine_torque),
-            'slip_reference': speeds,
-            'slip_reference_rate': rates,
-            'status': request.status,
-        }
+        reply = self.plant.reply(step, sight, request.torque, request.engine_torque)
+        reply['slip_reference'] = speeds
+        reply['slip_reference_rate'] = rates
+        reply['status'] = request.status
+        return reply
 
     @property
     def over(self) -> bool:
@@ -85,5 +84,4 @@ def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> T
             break
     timing.steps = len(rows) - 1
     timing.wall_time_s = time.perf_counter() - started
-    present = [name for name, first in rows[0].items() if first is not None]
-    return Trajectory.of_columns({name: [row[name] for row in rows] for name in present})
+    return Trajectory.of_columns({name: [row[name] for row in rows] for name in rows[0]})

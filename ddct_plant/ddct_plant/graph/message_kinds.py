@@ -275,7 +275,7 @@ class ClutchPoints(TorqueRows):
         rows = self._rows(topic, message, joints)
         try:
             if joints > 1:
-                require_capacities(*([row] for row in rows))
+                require_capacities(0, *rows)
         except ParameterError as error:
             raise ParameterError(f'{topic}: {error}') from error
         return rows

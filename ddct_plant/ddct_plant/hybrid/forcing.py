@@ -1,63 +1,104 @@
 """What drives a system with friction over an interval: inputs and capacities."""
 
 from collections.abc import Sequence
-from operator import lt
+from itertools import accumulate
+from operator import le
 
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.hybrid.mode_flow import Signs
 
-Value = float | Sequence[float] | np.ndarray
-"""An input over an interval: one number if it is held, else one for each node."""
-_NUMBER = (float, int)
-"""As a tuple, for which `isinstance` takes a third of the time."""
+Signs = tuple[int, ...]
+"""A mode: by element 0 where it sticks, else the sign of its slip."""
+Values = Sequence[float] | np.ndarray
 
 
-def require_capacities(kinetic: Sequence[Value], static: Sequence[Value]) -> None:
-    """Raise ParameterError for a negative capacity, or a static one below the kinetic one."""
-    for element, (low, high) in enumerate(zip(kinetic, static, strict=True)):
-        if isinstance(low, _NUMBER) and isinstance(high, _NUMBER):
-            negative, below = low < 0.0, high < low
-        elif isinstance(low, _NUMBER) or isinstance(high, _NUMBER):
-            raise ParameterError(
-                f'friction element {element}: give one number for both its kinetic and its '
-                'static capacity, or one for each node'
-            )
-        else:
-            negative, below = min(low) < 0.0, any(map(lt, high, low))
-        if negative:
-            raise ParameterError(
-                f'friction element {element}: its capacity {low} must not be negative'
-            )
-        if below:
+def require_capacities(element: int, kinetic: Values, static: Values) -> None:
+    """Raise ParameterError where one of an element is negative, or static below kinetic."""
+    if min(kinetic) < 0.0:
+        raise ParameterError(
+            f'friction element {element}: its capacity {min(kinetic)} must not be negative'
+        )
+    for low, high in zip(kinetic, static, strict=True):
+        if high < low:
             raise ParameterError(
                 f'friction element {element}: its static capacity {high} is below the kinetic '
                 f'one {low}: give at least that'
             )
 
 
-class Forcing:
-    """The inputs w = [u, c] of each piece, whichever mode they are asked in."""
+class Layout:
+    """
+    Where inputs u (m) and capacities c (N) stand over an interval, in flat lists of each.
 
-    def __init__(self, nodes: np.ndarray, elements: int) -> None:
-        """Take in the values (nodes, m + 2 N) of u, the kinetic and the static capacities."""
-        self._nodes, self._elements = nodes, elements
+    An entry has one value if it is held over the interval, else one at each of P + 1 nodes.
+    """
+
+    def __init__(self, inputs: int, elements: int, pieces: int, held: Sequence[int]) -> None:
+        """Lay out m inputs and N capacities; `held` lists the entries of [u, c] that are held."""
+        sizes = [1 if i in held else pieces + 1 for i in range(inputs + elements)]
+        ends = [0, *accumulate(sizes)]
+        self.pieces, self.inputs, self.width = pieces, ends[inputs], ends[-1]
+        """P, and how many values the inputs have and all entries together."""
+        self.columns = [slice(start, stop) for start, stop in zip(ends, ends[1:], strict=False)]
+        """By entry where its values are in [*u, *c]."""
+        self.capacities = [
+            slice(column.start - self.inputs, column.stop - self.inputs)
+            for column in self.columns[inputs:]
+        ]
+        """By element where its values are in a list of capacities."""
+        node = np.arange(pieces + 1)[:, None]
+        self.nodes = np.minimum(np.array(ends[:-1]) + node, np.array(ends[1:]) - 1)
+        """(P + 1, m + N): where in [*u, *c] the value of each entry at a node is."""
+        last = np.repeat(np.array(ends[1:]) - 1, sizes)
+        self.shifts = np.minimum(np.arange(self.width) + node, last)
+        """(P + 1, width): where in [*u, *c] they are when the interval starts later by nodes."""
+
+    def in_force(self, signs: Signs, kinetic: Values, static: Values) -> Values:
+        """
+        Return the capacities in a mode: the static ones of the elements that stick.
+
+        Raise ParameterError where they are impossible or not as many as they should be.
+        """
+        if static is kinetic and min(kinetic) >= 0.0:
+            return kinetic
+        self._require(kinetic, static)
+        capacities = list(kinetic)
+        for sign, where in zip(signs, self.capacities, strict=True):
+            if not sign:
+                capacities[where] = static[where]
+        return capacities
+
+    def _require(self, kinetic: Values, static: Values) -> None:
+        count = self.width - self.inputs
+        if (len(kinetic), len(static)) != (count, count):
+            raise ParameterError(
+                f'friction: {len(kinetic)} kinetic and {len(static)} static capacities do not fit '
+                f'the interval, which has {count} of each'
+            )
+        if not (min(kinetic) >= 0.0 and all(map(le, kinetic, static))):
+            for element, where in enumerate(self.capacities):
+                require_capacities(element, kinetic[where], static[where])
+
+
+class Forcing:
+    """The inputs w = [u, c] over an interval, in whichever mode they are asked."""
+
+    def __init__(self, layout: Layout, inputs: Values, kinetic: Values, static: Values) -> None:
+        """Take in the flat values of u and of both kinds of capacities."""
+        self.layout = layout
+        self._inputs, self._kinetic, self._static = inputs, kinetic, static
         self._by_mode: dict[Signs, np.ndarray] = {}
 
-    def pieces(self, signs: Signs) -> np.ndarray:
-        """Return [w, dw] (pieces, 2 (m + N)) in a mode; dw is the change over a piece."""
+    def values(self, signs: Signs) -> np.ndarray:
+        """Return [*u, *c] in a mode."""
         if signs not in self._by_mode:
-            count = self._elements
-            first = self._nodes.shape[1] - 2 * count
-            in_force = [first + i + (0 if sign else count) for i, sign in enumerate(signs)]
-            w = self._nodes[:, [*range(first), *in_force]]
-            self._by_mode[signs] = np.hstack([w[:-1], w[1:] - w[:-1]])
+            capacities = self.layout.in_force(signs, self._kinetic, self._static)
+            self._by_mode[signs] = np.array([*self._inputs, *capacities])
         return self._by_mode[signs]
 
     def at(self, signs: Signs, piece: int, part: float) -> np.ndarray:
-        """Return [w, dw] after a `part` (0 to 1) of a piece."""
-        forcing = self.pieces(signs)[piece].copy()
-        inputs = len(forcing) // 2
-        forcing[:inputs] += part * forcing[inputs:]
-        return forcing
+        """Return [w, dw] (2 (m + N),) after a `part` of a piece, 0 to 1; dw: over the piece."""
+        start, end = self.values(signs)[self.layout.nodes[piece : piece + 2]]
+        change = end - start
+        return np.concatenate((start + part * change, change))

@@ -1,6 +1,7 @@
 """A linear system with dry-friction elements."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -52,6 +53,11 @@ class FrictionSystem:
     def elements(self) -> int:
         """N, the number of friction elements."""
         return len(self.h)
+
+    @cached_property
+    def slip_sizes(self) -> np.ndarray:
+        """(N, n): times |x| how large the sums are whose rounding the slips have."""
+        return np.abs(self.h)
 
     def _require_positive_minors(self) -> None:
         mobility = -self.h @ self.g

@@ -1,9 +1,13 @@
-"""A mode over an interval of equal pieces, as one matrix product."""
+"""A mode over an interval of equal pieces, as matrix products."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
+from operator import mul
+from typing import NamedTuple
 
 import numpy as np
 
+from ddct_plant.hybrid.forcing import Layout, Signs, Values
 from ddct_plant.hybrid.mode_flow import ModeFlow
 from ddct_plant.hybrid.polynomials import linear_weights
 
@@ -12,123 +16,154 @@ BLOCK = 9000
 
 ROUNDING = 2.0**-52
 """Singular values below this part of the largest one are zero."""
-TINY = 1e-300
+
+
+class Event(NamedTuple):
+    """An element locks, is released, or changes the direction of its slip."""
+
+    time_s: float
+    """From the start of the interval."""
+    element: int
+    kind: str
+    """`lock`, `release` or `reverse`."""
+
+
+@dataclass(slots=True)
+class Interval:
+    """What an interval ends with, and what happened in it."""
+
+    state: list[float]
+    """(n,) at the end."""
+    signs: Signs
+    """The mode at the end."""
+    events: list[Event]
+    work: list[float]
+    """(N,) friction work of each element, the integral of c |s|, >= 0."""
+    friction: list[float]
+    """(N,) friction torques at the end, left limits."""
+
+
+class Passage(NamedTuple):
+    """What a mode makes of the pieces of an interval, one after the other, if it lasts."""
+
+    ends: np.ndarray
+    """(P, n): the state after each."""
+    slips: np.ndarray
+    """(P, slipping elements, 2): the integrals of |s| (1 - t) and |s| t, t from 0 to 1 in it."""
+    lasts: np.ndarray
+    """(P,) whether the mode lasts throughout a piece at whose start it is in force."""
 
 
 class IntervalMap:
     """
-    From the start of an interval to its end, as long as no event can be in it.
+    A mode from the start of an interval on, as functions of v = [x, *u, *c]; see `Layout`.
 
-    The argument is v = [x, the values of u, of the kinetic and of the static capacities: one if
-    it is held, else one a node]. The product holds the state at the end (n,); the friction
-    torques there (N,); for each element that slips what times its capacity in v is its friction
-    work; and what tells that there is no event: kinetic capacities, static less kinetic ones and
-    the guards at the nodes, which all must stay above what the last rows give.
-
-    For between two nodes a guard's Bernstein coefficients may fall short of the straight line.
-    How far is a matrix times v. With its singular values it is few numbers z = W v, small as no
-    large terms cancel any more, and D |z| a bound that is close to the largest shortfall.
+    Between two nodes a guard's Bernstein coefficients may fall short of the straight line. How
+    far is a matrix times v. With its singular values it is few numbers z = W v, small as no large
+    terms cancel any more; no shortfall is larger, in units of its guard, than the sum of |z|.
     """
 
-    def __init__(
-        self, flow: ModeFlow, piece_s: float, pieces: int, columns: Sequence[slice]
-    ) -> None:
-        """Take in `columns` the place in v of each of u, kinetic and static capacities."""
-        elements = len(flow.signs)
-        kinetic, static = columns[-2 * elements : -elements], columns[-elements:]
-        in_force = [
-            k if sign else s for sign, k, s in zip(flow.signs, kinetic, static, strict=True)
-        ]
-        starts = _piece_starts(flow, pieces, [*columns[: -2 * elements], *in_force])
-        starts = np.pad(starts, ((0, 0), (0, 0), (0, columns[-1].stop - starts.shape[2])))
-        last = starts[-1]
-        end = flow.series[:, : flow.states].sum(axis=0) @ last
-        inputs = last[flow.states : flow.states + flow.inputs] + last[flow.states + flow.inputs :]
-        rows = [*end, *(flow.force @ np.vstack([end, inputs]))]
-        self.friction = slice(len(end), len(rows))
-        """Where the friction torques (N,) at the end of the interval are."""
-        guards = np.tensordot(flow.guards, starts, axes=(2, 1))
-        self.work: list[tuple[int, slice, slice]] = []
+    def __init__(self, flow: ModeFlow, piece_s: float, layout: Layout) -> None:
+        self._pieces, self._states, self._signs = layout.pieces, flow.states, flow.signs
+        starts = _piece_starts(flow, layout)
+        ends = flow.end @ starts
+        guards = _over_pieces(flow.guards, starts)
+        slips = piece_s * linear_weights(flow.degree) @ guards[:, flow.slip_guards]
+        self._slipping = len(flow.slipping)
+        flat = [part.reshape(layout.pieces, -1, starts.shape[2]) for part in (slips, guards)]
+        by_piece = np.concatenate([ends, *flat], axis=1)
+        self._by_piece = _product(by_piece.reshape(-1, by_piece.shape[2]))
+        last = starts[-1, flow.states :]
+        driven = np.vstack([ends[-1], last[: flow.inputs] + last[flow.inputs :]])
+        rows = [ends[-1], flow.force @ driven]
+        self._friction = slice(flow.states, flow.states + len(flow.force))
+        self._work: list[tuple[int, slice, slice]] = []
         """By element that slips: its number, where its integrals are, where its capacity is."""
-        for guard, element in enumerate(flow.guarded):
-            if flow.signs[element]:
-                integrals = piece_s * _by_node(guards[guard], in_force[element])
-                stop = len(rows) + len(integrals)
-                self.work.append((element, slice(len(rows), stop), in_force[element]))
-                rows += list(integrals)
-        first = len(rows)
-        unit = np.eye(columns[-1].stop)
-        for low, high in zip(kinetic, static, strict=True):
-            rows += [*unit[low], *(unit[high] - unit[low])]
-        nodes = np.concatenate([guards[:, 0], guards[:, -1, -1:]], axis=1)
-        bounds, directions = _shortfall(flow.guards, starts)
-        none = np.zeros((len(rows) - first, len(directions)))
-        self._bounds = _blocks(np.vstack([none, np.repeat(bounds, nodes.shape[1], axis=0)]))
-        for guard in nodes:
-            rows += list(guard)
-        self._tested = slice(first, len(rows))
-        self._directions = slice(len(rows), None)
-        self._matrix = _blocks(np.vstack([*rows, *directions]))
+        first = self._friction.stop
+        for place, element in enumerate(flow.slipping):
+            where = layout.capacities[element]
+            rows.append(_by_value(slips[:, place], held=where.stop - where.start == 1))
+            self._work.append((element, slice(first, first + len(rows[-1])), where))
+            first += len(rows[-1])
+        units, directions = _shortfalls(flow.guards, starts)
+        nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
+        rows += [nodes.reshape(-1, nodes.shape[2]), directions]
+        self._guards = slice(first, first + len(rows[-2]))
+        self._shortfalls = slice(self._guards.stop, None)
+        self._whole = _product(np.vstack(rows))
 
-    def apply(self, v: np.ndarray) -> np.ndarray | None:
-        """Return the product with v, flat, or None if an event may be near or a capacity wrong."""
-        product = _times(self._matrix, v)
-        spare = product[self._tested] - _times(self._bounds, np.abs(product[self._directions]))
-        # Not `< 0`: a value that is not a number must not pass either.
-        return product if spare[spare.argmin()] >= 0.0 else None
+    def whole(self, v: np.ndarray, capacities: Values) -> Interval | None:
+        """Return what the interval ends with, or None if an event may be near."""
+        values = self._whole(v).tolist()
+        # Not `<`: a value that is not a number must not pass either.
+        if not min(values[self._guards]) >= sum(map(abs, values[self._shortfalls])):
+            return None
+        work = [0.0] * len(self._signs)
+        for element, integrals, where in self._work:
+            work[element] = sum(map(mul, values[integrals], capacities[where]))
+        return Interval(values[: self._states], self._signs, [], work, values[self._friction])
+
+    def by_piece(self, v: np.ndarray) -> Passage:
+        """Return what becomes of each piece."""
+        values = self._by_piece(v).reshape(self._pieces, -1)
+        slips = self._states + 2 * self._slipping
+        return Passage(
+            values[:, : self._states],
+            values[:, self._states : slips].reshape(self._pieces, self._slipping, 2),
+            np.all(values[:, slips:] >= 0.0, axis=1),
+        )
 
 
-def _blocks(matrix: np.ndarray) -> list[np.ndarray]:
+def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Return what multiplies a vector by a matrix."""
     height = max(1, BLOCK // max(1, matrix.shape[1]))
-    return [matrix[i : i + height].copy() for i in range(0, len(matrix), height)]
-
-
-def _times(blocks: list[np.ndarray], v: np.ndarray) -> np.ndarray:
+    blocks = [matrix[i : i + height].copy() for i in range(0, len(matrix), height)]
     if len(blocks) == 1:
-        return blocks[0].dot(v)
-    return np.concatenate([block.dot(v) for block in blocks])
+        return blocks[0].dot
+    return lambda v: np.concatenate([block.dot(v) for block in blocks])
 
 
-def _piece_starts(flow: ModeFlow, pieces: int, columns: Sequence[slice]) -> np.ndarray:
-    """Return (pieces, y, v): y at the start of each piece as linear maps of v."""
-    width = max((column.stop for column in columns), default=flow.states)
+def _piece_starts(flow: ModeFlow, layout: Layout) -> np.ndarray:
+    """Return (P, y, v): y at the start of each piece as linear maps of v."""
     states, inputs = flow.states, flow.inputs
-    starts = np.zeros((pieces, states + 2 * inputs, width))
+    starts = np.zeros((layout.pieces, states + 2 * inputs, states + layout.width))
     starts[0, :states, :states] = np.eye(states)
-    end = flow.series[:, :states].sum(axis=0)
+    values = np.eye(states + layout.width)[states:]
     for piece, start in enumerate(starts):
         if piece:
-            start[:states] = end @ starts[piece - 1]
-        for j, column in enumerate(columns):
-            if column.stop - column.start == 1:
-                start[states + j, column.start] = 1.0
-            else:
-                start[states + j, column.start + piece] = 1.0
-                start[states + inputs + j, column.start + piece] = -1.0
-                start[states + inputs + j, column.start + piece + 1] = 1.0
+            start[:states] = flow.end @ starts[piece - 1]
+        first, last = values[layout.nodes[piece : piece + 2]]
+        start[states : states + inputs] = first
+        start[states + inputs :] = last - first
     return starts
 
 
-def _by_node(guard: np.ndarray, column: slice) -> np.ndarray:
-    """Return (values of the capacity, v): the integrals of slip times the hat of each value."""
-    before, after = np.einsum('wj,jpv->wpv', linear_weights(len(guard) - 1), guard)
-    if column.stop - column.start == 1:
-        return np.sum(before + after, axis=0)[None]
-    none = np.zeros((1, guard.shape[2]))
-    return np.vstack([before, none]) + np.vstack([none, after])
+def _over_pieces(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Return rows (i, j, y) on the start of each piece as rows (P, i, j, v)."""
+    flat = rows.reshape(-1, rows.shape[2]) @ starts
+    return flat.reshape(len(starts), *rows.shape[:2], -1)
 
 
-def _shortfall(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return D (guards, r) and W (r, v): coefficients are off the lines by at most D |W v|."""
+def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
+    """Return (values, v) for `slips` (P, 2, v): the integrals that each capacity is taken by."""
+    if held:
+        return slips.sum(axis=(0, 1))[None]
+    none = np.zeros_like(slips[:1, 0])
+    return np.vstack([slips[:, 0], none]) + np.vstack([none, slips[:, 1]])
+
+
+def _shortfalls(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the units of the guards and W (r, v): in them no shortfall is above sum |W v|."""
     part = np.linspace(0.0, 1.0, guards.shape[1])[:, None]
     off = guards - (1.0 - part) * guards[:, :1] - part * guards[:, -1:]
-    # In units of each guard, as slips and torques share the directions.
-    units = np.abs(off).max(axis=(1, 2), initial=TINY)[:, None, None]
-    in_a_piece = _directions((off / units).reshape(-1, off.shape[2]))
+    units = np.abs(off).max(axis=(1, 2))
+    units[units == 0.0] = 1.0
+    off /= units[:, None, None]
+    in_a_piece = _directions(off.reshape(-1, off.shape[2]))
     directions = _directions((in_a_piece @ starts).reshape(-1, starts.shape[2]))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    parts = np.tensordot(off, starts @ directions.T, axes=(2, 1))
-    return np.abs(parts).max(axis=(1, 2)), directions
+    parts = np.abs(_over_pieces(off, starts @ directions.T))
+    return units, parts.max(axis=(0, 1, 2))[:, None] * directions
 
 
 def _directions(matrix: np.ndarray) -> np.ndarray:

@@ -1,13 +1,15 @@
 """Which mode goes on from an instant at which slips are zero."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.hybrid.forcing import Signs
 from ddct_plant.hybrid.friction_system import FrictionSystem
-from ddct_plant.hybrid.mode_flow import ModeFlow, Signs
+from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 
 SLACKS = (2.0**-44, 2.0**-34)
 """
@@ -23,12 +25,12 @@ def choose_mode(
     state: np.ndarray,
     signs: Signs,
     element: int,
-    inputs_of: Callable[[ModeFlow], np.ndarray],
-) -> tuple[np.ndarray, Signs, np.ndarray]:
+    forcing_in: Callable[[Signs], np.ndarray],
+) -> tuple[Course, list[int]]:
     """
-    Return state, mode and orders of the guards with which the motion goes on.
+    Return the course with which the motion goes on, and the orders of its guards.
 
-    `element` has reached the end of `signs`, its mode; `inputs_of` gives [w, dw] for a mode. The
+    `element` has reached the end of `signs`, its mode; `forcing_in` gives [w, dw] in a mode. The
     elements at zero slip are tried in every combination of sticking and slipping either way. A
     combination is consistent if each of their guards has a positive first derivative that is not
     zero: of the margin capacity - |f|, or of the slip times its sign. That decides ties, as a
@@ -38,48 +40,53 @@ def choose_mode(
     capacities alone would give is always among them, so that one is found.
 
     The slips of these elements become zero to the last bit. A guard's order is that of its first
-    derivative that is not zero; below it the coefficients are rounding.
+    derivative that is not zero; below it the coefficients are rounding, and become zero.
     """
+    slips = np.abs(system.h.dot(state)).tolist()
+    sizes = system.slip_sizes.dot(np.abs(state)).tolist()
     for slack in SLACKS:
-        size = slack * np.abs(system.h) @ np.abs(state)
-        at_zero = np.abs(system.h @ state) <= size
-        at_zero |= np.array(signs) == 0
-        at_zero[element] = True
-        stuck = tuple(0 if zero else sign for zero, sign in zip(at_zero, signs, strict=True))
-        projected = flows[stuck].projection @ state
-        for candidate in _candidates(stuck, at_zero, element):
-            flow = flows[candidate]
-            y = np.concatenate([projected, inputs_of(flow)])
-            orders = _orders(flow, y, at_zero, slack)
+        stuck = tuple(
+            0 if i == element or slip <= slack * size else sign
+            for i, (sign, slip, size) in enumerate(zip(signs, slips, sizes, strict=True))
+        )
+        projected = flows[stuck].projection.dot(state)
+        for candidate in _candidates(stuck, element):
+            course = flows[candidate].course(projected, forcing_in(candidate))
+            orders = _orders(course, stuck, slack)
             if orders is not None:
-                return projected, candidate, orders
+                return course, orders
     raise DdctError(
         f'friction: element {element} can neither stick nor slip in state {state.tolist()}: '
         'look for values that are not finite or far too large'
     )
 
 
-def _candidates(stuck: Signs, at_zero: np.ndarray, element: int) -> Iterator[Signs]:
-    """Yield the modes of the elements at zero slip, those with fewest slipping ones first."""
-    choices = [(0, 1, -1) if zero else (sign,) for zero, sign in zip(at_zero, stuck, strict=True)]
+@lru_cache
+def _candidates(stuck: Signs, element: int) -> list[Signs]:
+    """Return the modes of the elements at zero slip, those with fewest slipping ones first."""
 
     def slipping(signs: Signs) -> tuple[int, bool]:
         return sum(map(abs, signs)), signs[element] == 0
 
-    yield from sorted(product(*choices), key=slipping)
+    choices = [(sign,) if sign else (0, 1, -1) for sign in stuck]
+    return sorted(product(*choices), key=slipping)
 
 
-def _orders(flow: ModeFlow, y: np.ndarray, at_zero: np.ndarray, slack: float) -> np.ndarray | None:
+def _orders(course: Course, stuck: Signs, slack: float) -> list[int] | None:
     """Return the order of each guard, d+1 if it is zero throughout, or None if inconsistent."""
-    guards = flow.polynomials(y)[1]
-    significant = np.abs(guards) > slack * flow.guard_sizes(y)
-    orders = np.where(significant.any(axis=1), significant.argmax(axis=1), flow.degree + 1)
-    for guard, element in enumerate(flow.guarded):
-        if not at_zero[element]:
-            orders[guard] = 0
-        elif orders[guard] > flow.degree:
+    flow, guards = course.flow, course.guards
+    significant = np.abs(guards) > slack * course.guard_sizes()
+    orders = []
+    for guard, (element, known) in enumerate(zip(flow.guarded, significant.tolist(), strict=True)):
+        if stuck[element]:
+            orders.append(0)
+            continue
+        order = known.index(True) if True in known else flow.degree + 1
+        if order > flow.degree:
             if flow.signs[element]:
                 return None
-        elif guards[guard, orders[guard]] < 0.0:
+        elif guards[guard, order] < 0.0:
             return None
+        guards[guard, :order] = 0.0
+        orders.append(order)
     return orders

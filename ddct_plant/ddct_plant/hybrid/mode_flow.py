@@ -1,13 +1,14 @@
 """The exact flow of one mode: which elements stick, which slip, and which way."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.hybrid.forcing import Signs
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.polynomials import bernstein_of_powers, linear_weights
 
-Signs = tuple[int, ...]
-"""A mode: by element 0 where it sticks, else the sign of its slip."""
 LONGEST = 2.0
 """A piece may be this long in units of 1 / (the balanced norm of a)."""
 
@@ -50,7 +51,7 @@ class ModeFlow:
         guards, self.guarded = self._guards(system)
         self.slipping = [i for i, sign in enumerate(signs) if sign]
         """The elements that slip."""
-        self._slip_guards = [self.guarded.index(i) for i in self.slipping]
+        self.slip_guards = [self.guarded.index(i) for i in self.slipping]
         rows = np.zeros((states + len(guards), size))
         rows[:states, :states] = self.projection
         rows[states:, : states + self.inputs] = guards
@@ -61,14 +62,12 @@ class ModeFlow:
         self.powers = np.arange(self.degree + 1)
         """0, 1, ..., d."""
         self._series = self.series.reshape(-1, size)
-        self._sizes = np.abs(self.series[:, states:]).reshape(-1, size)
+        self.sizes = np.abs(self.series[:, states:]).reshape(-1, size)
         powers_of_guards = np.moveaxis(self.series[:, states:], 0, 1)
         self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
         """(guards, d+1, y): their Bernstein coefficients over a whole piece, as rows on y."""
-        end = self.series[:, :states].sum(axis=0)
-        slips = linear_weights(self.degree) @ self.guards[self._slip_guards]
-        self._piece = np.vstack([end, slips.reshape(-1, size), self.guards.reshape(-1, size)])
-        self._first_guard = states + 2 * len(self.slipping)
+        self.end = self.series[:, :states].sum(axis=0)
+        """(n, y): the state after a piece."""
 
     def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
         """Return the rows of the guards on [x, w], and by guard its element."""
@@ -85,29 +84,46 @@ class ModeFlow:
             guarded += [i] * (len(rows) - len(guarded))
         return np.array(rows), guarded
 
-    def over_a_piece(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the state (n,) after a piece, `slip_integrals` and the guards, all flat."""
-        values = self._piece.dot(y)
-        first = self._first_guard
-        return values[: self.states], values[self.states : first], values[first:]
-
-    def slip_integrals(self, guards: np.ndarray) -> list[float]:
+    def slip_integrals(self, guards: np.ndarray) -> np.ndarray:
         """
-        Return the integrals of |s| (1 - t) and |s| t over [0, 1], by element that slips.
+        Return (slipping elements, 2): the integrals of |s| (1 - t) and |s| t over [0, 1].
 
         `guards` (guards, d+1) are in Bernstein form.
         """
-        weights = linear_weights(self.degree)
-        return guards[self._slip_guards].dot(weights.T).ravel().tolist()
+        return guards[self.slip_guards].dot(linear_weights(self.degree).T)
 
-    def polynomials(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return states (d+1, n) and guards (guards, d+1) in powers of t, from y at t = 0."""
+    def course(self, state: np.ndarray, forcing: np.ndarray) -> 'Course':
+        """Return the motion from a state (n,) on, driven by [w, dw] (2 w,)."""
+        y = np.concatenate((state, forcing))
         values = self._series.dot(y).reshape(self.degree + 1, -1)
-        return values[:, : self.states], values[:, self.states :].T
+        return Course(self, y, values[:, : self.states], values[:, self.states :].T)
 
-    def guard_sizes(self, y: np.ndarray) -> np.ndarray:
+
+class Course(NamedTuple):
+    """The motion in one mode from an instant on, as polynomials in t, in lengths of a piece."""
+
+    flow: ModeFlow
+    y: np.ndarray
+    """At t = 0."""
+    states: np.ndarray
+    """(d+1, n) coefficients of t^k."""
+    guards: np.ndarray
+    """(guards, d+1) coefficients of t^k."""
+
+    def at(self, part: float) -> np.ndarray:
+        """Return the state (n,) at t = `part`."""
+        return (part**self.flow.powers).dot(self.states)
+
+    def capacities(self) -> tuple[list[float], list[float]]:
+        """Return those in force at t = 0, and their change over a piece, (N,) each."""
+        elements = len(self.flow.signs)
+        last = self.flow.states + self.flow.inputs
+        return self.y[last - elements : last].tolist(), self.y[-elements:].tolist()
+
+    def guard_sizes(self) -> np.ndarray:
         """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
-        return self._sizes.dot(np.abs(y)).reshape(self.degree + 1, -1).T
+        sizes = self.flow.sizes.dot(np.abs(self.y))
+        return sizes.reshape(self.guards.shape[1], -1).T
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:

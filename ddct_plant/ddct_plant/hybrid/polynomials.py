@@ -24,6 +24,12 @@ def bernstein_of_powers(degree: int) -> np.ndarray:
 
 
 @lru_cache
+def _from_powers(degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return 0, 1, ..., d, and what rows of coefficients are multiplied by."""
+    return np.arange(degree + 1), bernstein_of_powers(degree).T.copy()
+
+
+@lru_cache
 def linear_weights(degree: int) -> np.ndarray:
     """Return (2, d+1): the integrals over [0, 1] of p(t) (1 - t) and p(t) t, by coefficient."""
     rising = np.arange(1.0, degree + 2.0) / ((degree + 1.0) * (degree + 2.0))
@@ -38,27 +44,25 @@ def _left_half(degree: int) -> np.ndarray:
 
 def on_interval(powers: np.ndarray, end: float) -> np.ndarray:
     """Return the Bernstein coefficients on [0, end] of polynomials (..., d+1) in t^k."""
-    degree = powers.shape[-1] - 1
-    scaled = powers * end ** np.arange(degree + 1)
-    return scaled @ bernstein_of_powers(degree).T
+    exponents, to_bernstein = _from_powers(powers.shape[-1] - 1)
+    return (powers * end**exponents).dot(to_bernstein)
 
 
 def first_negative(powers: np.ndarray, end: float) -> float | None:
     """Return where in [0, end] the polynomial (d+1,) in t^k first turns negative, or None."""
     coefficients = on_interval(powers, end)
-    left = _left_half(len(powers) - 1)
-    zero = ROUNDING * float(np.abs(coefficients).max())
+    zero = ROUNDING * max(map(abs, coefficients.tolist()))
     pending = [(0.0, end, coefficients)]
     while pending:
         low, high, coefficients = pending.pop()
-        negative = coefficients < -zero
-        if not negative.any():
+        negative = [coefficient < -zero for coefficient in coefficients.tolist()]
+        if True not in negative:
             continue
         if negative[0]:
             return low
-        if negative[negative.argmax() :].all():
+        if False not in negative[negative.index(True) :]:
             return _root(powers, low, high)
-        middle = 0.5 * (low + high)
+        left, middle = _left_half(len(powers) - 1), 0.5 * (low + high)
         pending.append((middle, high, (left @ coefficients[::-1])[::-1]))
         pending.append((low, middle, left @ coefficients))
     return None

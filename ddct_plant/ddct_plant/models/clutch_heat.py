@@ -85,7 +85,7 @@ class ClutchHeat:
         b = np.array([[(1.0 - p.facing_share) / plate], [p.facing_share / facing], [0.0]])
         sampled = discretise_zoh(StateSpace(a, b, np.eye(3), np.zeros((3, 1))), PERIOD_S)
         # As plain numbers: a product so small takes numpy longer.
-        self._rows = np.hstack([sampled.a, sampled.b / PERIOD_S]).tolist()
+        self._update = np.hstack([sampled.a, sampled.b / PERIOD_S]).ravel().tolist()
         self._ambient_c = p.ambient_c
         self._above_ambient = [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
 
@@ -102,8 +102,10 @@ class ClutchHeat:
 
     def advance(self, friction_work: float) -> None:
         """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""
-        plate, facing, housing = self._above_ambient
+        p, f, h = self._above_ambient
+        pp, pf, ph, pw, fp, ff, fh, fw, hp, hf, hh, hw = self._update
         self._above_ambient = [
-            of_plate * plate + of_facing * facing + of_housing * housing + of_work * friction_work
-            for of_plate, of_facing, of_housing, of_work in self._rows
+            pp * p + pf * f + ph * h + pw * friction_work,
+            fp * p + ff * f + fh * h + fw * friction_work,
+            hp * p + hf * f + hh * h + hw * friction_work,
         ]

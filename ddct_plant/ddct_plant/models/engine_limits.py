@@ -112,6 +112,11 @@ class LimitedEngine:
     def __init__(self, limits: EngineLimits) -> None:
         """Start with fuel and without idle torque."""
         self._limits = limits
+        # As arrays: numpy would make them of the lists at every step.
+        self._speeds = np.array(limits.speed_rad_s)
+        self._friction, self._full_load = (
+            np.array(curve) for curve in (limits.friction_n_m, limits.full_load_n_m)
+        )
         self._integral = 0.0
         self._cut = False
         self.end_cause: str | None = None
@@ -124,12 +129,12 @@ class LimitedEngine:
             self.end_cause = limits.end_cause(speed)
         if self.end_cause == STALLED:
             return 0.0
-        friction = float(np.interp(speed, limits.speed_rad_s, limits.friction_n_m))
+        friction = float(np.interp(speed, self._speeds, self._friction))
         if speed >= (limits.resume_rad_s if self._cut else limits.cut_rad_s):
             self._cut = True
             return -friction
         self._cut = False
-        most = float(np.interp(speed, limits.speed_rad_s, limits.full_load_n_m))
+        most = float(np.interp(speed, self._speeds, self._full_load))
         return min(max(asked, self._idle(speed), -friction), most)
 
     def _idle(self, speed: float) -> float:

@@ -27,6 +27,14 @@ class FrictionParameters(OptionGroup, prefix='friction.'):
     static_over_kinetic: float = option(
         1.0, 'static over kinetic capacity', source=ASSUMED, at_least=1.0, at_most=3.0
     )
+    most_n_m: float = option(
+        350.0,
+        'greatest kinetic capacity, whatever is asked of the clutch',
+        'N m',
+        source='Section 1.1: greatest input torque of the C635; assumed for its clutches',
+        above=0.0,
+        at_most=1e5,
+    )
     temperature_c: tuple[float, ...] = option(
         (250.0, 300.0, 400.0),
         'facing temperatures of `temperature_share`',
@@ -91,6 +99,8 @@ class Capacity(NamedTuple):
     """(11,) while it slips."""
     static: list[float]
     """(11,) while it sticks, at least the kinetic one."""
+    temperature_c: float
+    """Of the facing, in degrees Celsius, at which it carries that."""
 
 
 class FrictionClutch:
@@ -98,8 +108,9 @@ class FrictionClutch:
     Capacity for the actuator's torque, at a facing temperature T and a slip speed w_d.
 
     c_kin = K_usura mu(T) mu(w_d) (C_a - C_kiss(T)) where that is positive and the actuator
-    presses (C_a > 0), else 0, with C_kiss(T) = kiss_torque - kiss_drift (T - 20). A requested
-    torque of zero opens the clutch beyond any kiss point, so nothing is carried there.
+    presses (C_a > 0), else 0, with C_kiss(T) = kiss_torque - kiss_drift (T - 20); at most
+    `most_n_m`. A requested torque of zero opens the clutch beyond any kiss point, so nothing is
+    carried there.
     The static capacity is that of the same slip speed times `static_over_kinetic`: so it is never
     below the kinetic one, whatever the curve over slip speed.
     """
@@ -123,16 +134,22 @@ class FrictionClutch:
         fading launch of 38 kJ 0.24 % larger and its lock-up 3 ms later.
         """
         p = self._parameters
-        gain = self._wear_gain * _curve(p.temperature_c, p.temperature_share, temperature_c)
-        gain *= _curve(p.slip_rad_s, p.slip_share, abs(slip_speed))
+        gain = self._wear_gain
+        if p.temperature_c:
+            gain *= _curve(p.temperature_c, p.temperature_share, temperature_c)
+        if p.slip_rad_s:
+            gain *= _curve(p.slip_rad_s, p.slip_share, abs(slip_speed))
         kiss = p.kiss_torque_n_m - p.kiss_drift_n_m_k * (temperature_c - AMBIENT_C)
         least = max(kiss, 0.0)
         kinetic = [gain * (torque - kiss) if torque > least else 0.0 for torque in actuator_torque]
-        return Capacity(kinetic, [p.static_over_kinetic * torque for torque in kinetic])
+        if max(kinetic) > p.most_n_m:
+            kinetic = [min(torque, p.most_n_m) for torque in kinetic]
+        static = kinetic
+        if p.static_over_kinetic != 1.0:
+            static = [p.static_over_kinetic * torque for torque in kinetic]
+        return Capacity(kinetic, static, temperature_c)
 
 
 def _curve(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    if not xs:
-        return 1.0
     # Where most runs stay; numpy takes longer than the rest of the clutch.
     return ys[0] if x <= xs[0] else float(np.interp(x, xs, ys))

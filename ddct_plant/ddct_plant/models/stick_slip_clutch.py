@@ -1,21 +1,9 @@
 """The clutch of a stick-slip run: what it can carry, and how warm it is."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from ddct_plant.models.clutch_heat import ClutchHeat
-from ddct_plant.models.friction_clutch import FrictionClutch
-
-
-class ClutchReply(NamedTuple):
-    """What the clutch answers a tick with."""
-
-    kinetic: list[float]
-    """(11,) capacity while it slips, in N m at 0, 1, ..., 10 ms, >= 0."""
-    static: list[float]
-    """(11,) the same while it sticks, at least the kinetic one."""
-    temperature_c: float
-    """Of the facing at t_k in degrees Celsius; the capacities are those at this temperature."""
+from ddct_plant.models.friction_clutch import Capacity, FrictionClutch
 
 
 class StickSlipClutch:
@@ -37,7 +25,7 @@ class StickSlipClutch:
         actuator_torque: Sequence[float],
         slip_speed: float,
         friction_work: float,
-    ) -> ClutchReply:
+    ) -> Capacity:
         """
         Return the reply to t_k for the (11,) actuator torques in N m, w_d in rad/s at t_k.
 
@@ -47,6 +35,4 @@ class StickSlipClutch:
         for _ in range(self._step, step):
             self._heat.advance(friction_work)
         self._step = step
-        temperature_c = self._heat.facing_c
-        capacity = self._friction.capacity(actuator_torque, temperature_c, slip_speed)
-        return ClutchReply(capacity.kinetic, capacity.static, temperature_c)
+        return self._friction.capacity(actuator_torque, self._heat.facing_c, slip_speed)

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS, time_of_step
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
-from ddct_plant.hybrid.motion import Event
+from ddct_plant.hybrid.interval_map import Event, Interval
 from ddct_plant.models.driveline import (
     LOCKED,
     OPEN,
@@ -18,6 +18,7 @@ from ddct_plant.models.driveline import (
     SLIPPING,
     DrivelineOutputs,
     InitialState,
+    PhaseEvent,
     driveline_outputs,
 )
 from ddct_plant.models.driveline_model import matrices_with_angles
@@ -26,6 +27,7 @@ from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 CLUTCH, WHEEL = 0, 1
 """The friction elements by number."""
 _STATES = 7
+_PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 _HELD = (0, 1, 3)
 """Of C_m, C_load, clutch capacity, holding torque: all but the clutch capacity are held."""
 
@@ -63,56 +65,55 @@ class StickSlipDriveline:
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
         self._integrator = _integrator(parameters)
-        self._state = np.zeros(_STATES)
-        self._state[:4] = (
-            initial.engine_speed,
-            initial.shaft_speed,
-            initial.wheel_speed,
-            initial.twist,
+        speeds = [initial.engine_speed, initial.shaft_speed, initial.wheel_speed]
+        state = [*speeds, initial.twist, 0.0, 0.0, 0.0]
+        friction = [initial.clutch_torque, initial.wheel_torque]
+        signs = self._integrator.mode_of(state)
+        self._now = Interval(state, signs, [], [0.0, 0.0], friction)
+        self._clutch_phase = (
+            OPEN if initial.clutch_open else _phase(signs[CLUTCH], initial.clutch_torque)
         )
-        self._signs = self._integrator.mode_of(self._state)
-        self._torques = (initial.engine_torque, initial.load_torque)
-        self._friction = [initial.clutch_torque, initial.wheel_torque]
+        self._torques = (initial.engine_torque, initial.load_torque, initial.wheel_torque)
         self._steps = 0
-        self.period = FrictionPeriod(
-            OPEN if initial.clutch_open else _phase(self._signs[CLUTCH], initial.clutch_torque),
-            _phase(self._signs[WHEEL], initial.wheel_torque),
-            [],
-            0.0,
-            0.0,
-        )
 
     @property
     def engine_speed(self) -> float:
         """w_m in rad/s at the present stamp."""
-        return float(self._state[0])
+        return self._now.state[0]
+
+    @property
+    def period(self) -> FrictionPeriod:
+        """What friction did in the period that has ended."""
+        now = self._now
+        wheel_phase = _phase(now.signs[WHEEL], self._torques[2])
+        return FrictionPeriod(self._clutch_phase, wheel_phase, now.events, *now.work)
 
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present stamp; the wheel's effort has its friction in it."""
-        engine_torque, load_torque = self._torques
-        clutch_torque, wheel_torque = self._friction
+        now = self._now
+        engine_torque, load_torque, _ = self._torques
+        clutch_torque, wheel_torque = now.friction
         return driveline_outputs(
             self._parameters,
             self._wheel_radius,
-            self._state.tolist(),
+            now.state,
             (engine_torque, clutch_torque, load_torque + wheel_torque),
-            clutch_sticks=self._signs[CLUTCH] == 0,
-            wheels_stick=self._signs[WHEEL] == 0,
-            friction=self._clutch_signals(),
+            clutch_sticks=now.signs[CLUTCH] == 0,
+            wheels_stick=now.signs[WHEEL] == 0,
+            friction={
+                'clutch_phase': _PHASE_NUMBERS[self._clutch_phase],
+                'friction_work': now.work[CLUTCH],
+                'phase_events': self._phase_events() if now.events else (),
+            },
         )
 
-    def _clutch_signals(self) -> dict[str, Any]:
-        period = self.period
+    def _phase_events(self) -> tuple[PhaseEvent, ...]:
         start_s = time_of_step(self._steps - 1)
-        return {
-            'clutch_phase': float(PHASES.index(period.clutch_phase)),
-            'friction_work': period.clutch_work,
-            'phase_events': tuple(
-                (start_s + event.time_s, event.kind)
-                for event in period.events
-                if event.element == CLUTCH and event.kind in PHASE_CHANGES
-            ),
-        }
+        return tuple(
+            (start_s + event.time_s, event.kind)
+            for event in self._now.events
+            if event.element == CLUTCH and event.kind in PHASE_CHANGES
+        )
 
     def step(
         self,
@@ -129,23 +130,15 @@ class StickSlipDriveline:
         rolling resistance and brake at the wheel, is held too. Raise ParameterError for a
         negative capacity, or a static one below the kinetic one.
         """
-        interval = self._integrator.advance(
-            self._state,
-            self._signs,
-            (engine_torque, load_torque),
-            (kinetic_torque, holding_torque),
-            (static_torque, holding_torque),
+        kinetic = static = [*kinetic_torque, holding_torque]
+        if static_torque is not kinetic_torque:
+            static = [*static_torque, holding_torque]
+        now = self._now = self._integrator.advance(
+            self._now.state, self._now.signs, (engine_torque, load_torque), kinetic, static
         )
-        self._state, self._signs = interval.state, interval.signs
-        self._torques = (engine_torque, load_torque)
-        self._friction = interval.friction
+        self._clutch_phase = _phase(now.signs[CLUTCH], kinetic_torque[-1])
+        self._torques = (engine_torque, load_torque, holding_torque)
         self._steps += 1
-        self.period = FrictionPeriod(
-            _phase(self._signs[CLUTCH], kinetic_torque[-1]),
-            _phase(self._signs[WHEEL], holding_torque),
-            interval.events,
-            *interval.work,
-        )
 
 
 def _phase(sign: int, capacity: float) -> str:

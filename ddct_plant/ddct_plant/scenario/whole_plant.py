@@ -110,7 +110,7 @@ class WholePlant:
         engine_torque = sight.told
         if self._two_input:
             engine_torque = self._engine.torque(step, engine_request, now.joint_speed[0])
-        return {
+        reply = {
             'joint_position': now.joint_position,
             'joint_speed': now.joint_speed,
             'joint_effort': now.joint_effort,
@@ -122,9 +122,11 @@ class WholePlant:
             'load_torque': self._load.torque(now.vehicle_speed, time_of_step(step)),
             'torque_request': torque_request,
             'actuator_torque': actuator_torque,
-            'engine_torque_request': engine_request,
             **self._friction.reply(step, actuator_torque, now),
         }
+        if self._two_input:
+            reply['engine_torque_request'] = engine_request
+        return reply
 
     @property
     def over(self) -> bool:

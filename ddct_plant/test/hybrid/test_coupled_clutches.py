@@ -113,10 +113,9 @@ def simulated(torque_as_states: bool) -> tuple[dict[tuple[int, str], list[float]
         nodes = PIECE_S * (PIECES * interval + np.arange(PIECES + 1))
         torque = 0.0 * nodes if torque_as_states else driving_torque(nodes)
         steps = [10.0 * (interval >= 400), 10.0 * (interval >= 900)]
-        kinetic = [first_capacity(nodes), *(np.full(PIECES + 1, step) for step in steps)]
-        static = [STATIC_RATIO * capacity for capacity in kinetic]
-        done = integrator.advance(state, signs, [torque], kinetic, static)
-        state, signs = done.state, done.signs
+        kinetic = np.concatenate([first_capacity(nodes), np.repeat(steps, PIECES + 1)])
+        done = integrator.advance(state, signs, torque, kinetic, STATIC_RATIO * kinetic)
+        state, signs = np.array(done.state), done.signs
         for event in done.events:
             time_s = nodes[0] + event.time_s
             if time_s > 0.4:

@@ -16,7 +16,7 @@ def test_a_new_cold_facing_carries_what_the_linear_clutch_transmits(wear_gain, r
     clutch = FrictionClutch(FrictionParameters(static_over_kinetic=ratio), wear_gain)
     found = clutch.capacity(RISING, 20.0, 35.0)
     linear = LinearClutch(wear_gain).transmit(RISING)
-    assert found.kinetic == [max(torque, 0.0) for torque in linear], 'to the last bit'
+    assert found.kinetic == [min(max(torque, 0.0), 350.0) for torque in linear], 'to the last bit'
     assert found.static == [ratio * torque for torque in found.kinetic]
 
 
@@ -55,6 +55,15 @@ def test_a_hot_clutch_carries_more_at_one_actuator_torque_but_opens_when_asked()
     assert found.kinetic == pytest.approx([0.0, 0.0, 50.0 - 12.0 + 0.1 * 200.0])
 
 
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_no_request_makes_it_carry_more_than_its_greatest_capacity(wear_gain):
+    """Whatever the wear; the static capacity is in proportion."""
+    clutch = FrictionClutch(FrictionParameters(1.1, most_n_m=200.0), wear_gain)
+    found = clutch.capacity([0.0, 100.0, 300.0, 2e14])
+    assert found.kinetic == [0.0, wear_gain * 100.0, 200.0, 200.0]
+    assert found.static == [1.1 * torque for torque in found.kinetic]
+
+
 @pytest.mark.parametrize(
     ('bad', 'complaint'),
     [
@@ -64,6 +73,7 @@ def test_a_hot_clutch_carries_more_at_one_actuator_torque_but_opens_when_asked()
         ({'temperature_share': (1.0,)}, 'temperature_share has 1 values for the 3'),
         ({'slip_rad_s': (0.0, 0.0), 'slip_share': (1.0, 1.0)}, 'friction.slip_rad_s goes from 0'),
         ({'slip_share': (1.0,)}, 'friction.slip_share has 1 values for the 0'),
+        ({'most_n_m': 0.0}, 'friction.most_n_m is 0 N m: it must be above 0'),
         ({'kiss_torque_n_m': -1.0}, 'friction.kiss_torque_n_m is -1'),
         ({'kiss_drift_n_m_k': float('nan')}, 'friction.kiss_drift_n_m_k is nan'),
     ],
