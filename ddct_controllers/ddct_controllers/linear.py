@@ -45,14 +45,19 @@ def sampled(controller: Given, discretisation: str | None = None) -> StateSpace:
         )
     if controller.period_s is not None:
         return controller
-    if discretisation == HOLD:
-        return discretise_zoh(controller, PERIOD_S)
+    rule = discretise_zoh if discretisation == HOLD else from_w_plane
     try:
-        return from_w_plane(controller)
+        with np.errstate(over='ignore', invalid='ignore'):
+            return rule(controller, PERIOD_S)
     except np.linalg.LinAlgError as error:
         raise ParameterError(
             f'linear controller: it has a pole at {2.0 / PERIOD_S:g} rad/s, for which '
             f'{BILINEAR} has no value: move it, or choose {HOLD}'
+        ) from error
+    except ParameterError as error:
+        raise ParameterError(
+            f'linear controller: within {PERIOD_S:g} s it grows beyond all numbers: its unstable '
+            'poles are too fast'
         ) from error
 
 

@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
         '--controller',
         default='pi',
         metavar='NAME|FILE',
-        help='one of --list, or a file that `design` wrote; default: %(default)s',
+        help='one of --list, or a controller file; default: %(default)s',
     )
     parser.add_argument(
         '--out', type=Path, metavar='DIR', help='the bag goes to DIR/<controller>/'

@@ -169,7 +169,7 @@ def _parser() -> argparse.ArgumentParser:
         '--controllers',
         default='all',
         metavar='A,B,...|all',
-        help='names of --list, or files that `design` wrote; default: %(default)s',
+        help='names of --list, or controller files; default: %(default)s',
     )
     parser.add_argument('--out', type=Path, metavar='DIR', help='folder for all of it')
     parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")

@@ -118,6 +118,8 @@ STATES = 'state_space:\n  a: [[0, 1], [-2, -3]]\n  b: [0, 1]\n  c: [4, 5]\n  d: 
             'transfer function has 2 zeros and 1 poles',
         ),
         (POLYNOMIAL, '[1, 3]', '[0, 0]', 3, 'its denominator is zero'),
+        (POLYNOMIAL, '[1, 3]', '[1, -1.0e+6]', 3, 'it grows beyond all numbers'),
+        (POLYNOMIAL, '[1, 3]', '[1e-308, 1e308, 1]', 3, 'too far apart to have roots'),
         (POLYNOMIAL, '[-1, 2]', '[-1, .nan]', 4, 'polynomial.num[1] is nan'),
         (POLYNOMIAL, '[-1, 2]', '[-1, fast]', 4, "polynomial.num[1] is 'fast': give a number"),
         (POLYNOMIAL, '[-1, 2]', '-1', 4, 'polynomial.num is -1: give a list'),

@@ -91,14 +91,20 @@ class FactoredTransferFunction:
         """
         Return a ratio of polynomials, each with its highest power first.
 
-        Raise ParameterError for one of zeros alone.
+        Raise ParameterError for one of zeros alone, or whose roots cannot be computed.
         """
         sides = {'numerator': numerator, 'denominator': denominator}
         num, den = (np.trim_zeros(np.asarray(side, dtype=float), 'f') for side in sides.values())
         for name, side in zip(sides, (num, den), strict=True):
             if not len(side):
                 raise ParameterError(f'transfer function: its {name} is zero')
-        return cls.from_roots(float(num[0] / den[0]), np.roots(num), np.roots(den))
+        try:
+            with np.errstate(over='ignore', invalid='ignore'):
+                return cls.from_roots(float(num[0] / den[0]), np.roots(num), np.roots(den))
+        except np.linalg.LinAlgError as error:
+            raise ParameterError(
+                'transfer function: its coefficients are too far apart to have roots'
+            ) from error
 
     @property
     def zeros(self) -> np.ndarray:

@@ -1,6 +1,7 @@
 """A controller in a shared library, and the loader of `c_library`."""
 
 import contextlib
+import hashlib
 import json
 import signal
 import socket
@@ -57,6 +58,7 @@ class CLibraryController(Controller):
     def __init__(self, path: Path) -> None:
         """Start the process; raise ParameterError when the library cannot be used."""
         self._where = f'{KIND}.file: {path}'
+        self._digest = hashlib.sha256(path.read_bytes()).hexdigest()
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._process = subprocess.Popen(
@@ -72,6 +74,10 @@ class CLibraryController(Controller):
             raise ParameterError(f'{self._where}: {about["error"]}')
         self.preview_steps, self.commands_engine = about['preview_steps'], about['two_input']
         self._layout = measurement_layout(self.preview_steps)
+
+    def info(self, name: str) -> dict[str, str]:
+        """Say which library it was too: one that was compiled anew is another controller."""
+        return {**super().info(name), 'library_sha256': self._digest}
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
