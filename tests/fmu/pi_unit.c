@@ -188,6 +188,18 @@ int fmi3SetFloat64(void *self, const uint32_t *refs, size_t count, const double 
 int fmi3GetFloat64(void *self, const uint32_t *refs, size_t count, double *values, size_t size) {
     return (void)self, count == size ? get_reals(refs, count, values) : ERROR;
 }
+int fmi3SetFloat32(void *self, const uint32_t *refs, size_t count, const float *values,
+                   size_t size) {
+    double wide = values[0];
+    return (void)self, count == 1 && size == 1 ? set_reals(refs, 1, &wide) : ERROR;
+}
+int fmi3GetFloat32(void *self, const uint32_t *refs, size_t count, float *values, size_t size) {
+    double wide = 0.0;
+    int status = count == 1 && size == 1 ? get_reals(refs, 1, &wide) : ERROR;
+    (void)self;
+    values[0] = (float)wide;
+    return status;
+}
 int fmi3SetInt32(void *self, const uint32_t *refs, size_t count, const int32_t *values,
                  size_t size) {
     return (void)self, count == 1 && size == 1 ? set_integer(refs[0], values[0]) : ERROR;
@@ -226,7 +238,7 @@ UNUSED(fmi3EvaluateDiscreteStates) UNUSED(fmi3ExitConfigurationMode) UNUSED(fmi3
 UNUSED(fmi3GetAdjointDerivative) UNUSED(fmi3GetBinary) UNUSED(fmi3GetBoolean)
 UNUSED(fmi3GetClock) UNUSED(fmi3GetContinuousStateDerivatives) UNUSED(fmi3GetContinuousStates)
 UNUSED(fmi3GetDirectionalDerivative) UNUSED(fmi3GetEventIndicators) UNUSED(fmi3GetFMUState)
-UNUSED(fmi3GetFloat32) UNUSED(fmi3GetInt16) UNUSED(fmi3GetInt32) UNUSED(fmi3GetInt64)
+UNUSED(fmi3GetInt16) UNUSED(fmi3GetInt32) UNUSED(fmi3GetInt64)
 UNUSED(fmi3GetInt8) UNUSED(fmi3GetIntervalDecimal) UNUSED(fmi3GetIntervalFraction)
 UNUSED(fmi3GetNominalsOfContinuousStates) UNUSED(fmi3GetNumberOfContinuousStates)
 UNUSED(fmi3GetNumberOfEventIndicators) UNUSED(fmi3GetNumberOfVariableDependencies)
@@ -236,7 +248,7 @@ UNUSED(fmi3GetUInt8) UNUSED(fmi3GetVariableDependencies) UNUSED(fmi3GetVersion)
 UNUSED(fmi3InstantiateModelExchange) UNUSED(fmi3InstantiateScheduledExecution)
 UNUSED(fmi3Reset) UNUSED(fmi3SerializeFMUState) UNUSED(fmi3SerializedFMUStateSize)
 UNUSED(fmi3SetBinary) UNUSED(fmi3SetClock) UNUSED(fmi3SetContinuousStates)
-UNUSED(fmi3SetDebugLogging) UNUSED(fmi3SetFMUState) UNUSED(fmi3SetFloat32) UNUSED(fmi3SetInt16)
+UNUSED(fmi3SetDebugLogging) UNUSED(fmi3SetFMUState) UNUSED(fmi3SetInt16)
 UNUSED(fmi3SetInt8) UNUSED(fmi3SetIntervalDecimal) UNUSED(fmi3SetIntervalFraction)
 UNUSED(fmi3SetShiftDecimal) UNUSED(fmi3SetShiftFraction) UNUSED(fmi3SetTime)
 UNUSED(fmi3SetUInt16) UNUSED(fmi3SetUInt32) UNUSED(fmi3SetUInt64) UNUSED(fmi3SetUInt8)

@@ -105,3 +105,19 @@ def test_it_sees_the_reference_ahead_and_commands_the_engine(version: int) -> No
     assert found.slip_reference.shape[1] == 5
     assert np.array_equal(found.engine_torque_request, found.torque_demand)
     assert np.ptp(found.engine_torque_request) > 1.0
+
+
+def test_inputs_and_outputs_may_be_of_single_precision() -> None:
+    file = controller_file(3)
+    single = [(f'<Float64 name="{name}"', f'<Float32 name="{name}"') for name in 'eu']
+    write_fmu(Path('pi.fmu'), 3, *single)
+    found, pi = (run_headless(settings(), name).torque_request for name in (file, 'pi'))
+    assert not np.array_equal(found, pi)
+    assert np.allclose(found, pi, rtol=0.0, atol=1e-4)
+
+
+def test_an_input_that_can_be_given_nothing_keeps_its_value() -> None:
+    file = controller_file(3, (', ahead: 0.0', ''))
+    write_fmu(Path('pi.fmu'), 3, ('<Float64 name="ahead"', '<Int8 name="ahead"'))
+    found, pi = (run_headless(settings(), name).torque_request for name in (file, 'pi'))
+    assert np.array_equal(found, pi)

@@ -48,9 +48,17 @@ _UNITS = {
     '_n_m': ('Nm',),
 }
 """By the end of our name how a tool may write its unit, but for dots, stars, hats and spaces."""
-_KINDS = {'Real': float, 'Float64': float, 'Integer': int, 'Int32': int, 'Enumeration': int}
-_KINDS |= {'Boolean': bool, 'String': str}
-"""Types of variables that may be given a start value."""
+_KINDS: Mapping[str, type] = {
+    'Real': float,
+    'Float64': float,
+    'Float32': float,
+    'Integer': int,
+    'Int32': int,
+    'Enumeration': int,
+    'Boolean': bool,
+    'String': str,
+}
+"""By type of variables that may be given a start value; inputs and outputs are of a float."""
 
 
 @dataclass(frozen=True)
@@ -153,10 +161,11 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
         known = [each.name for each in fmu.variables.values() if each.causality == causality]
         hint = close_name(name, known or fmu.variables)
         raise ParameterError(f'{key}: {fmu.path.name} has no variable of this name: {hint}')
-    if causality and (variable.causality, variable.type) != (causality, fmu.real):
+    kind = _KINDS.get(variable.type)
+    if causality and (variable.causality, kind) != (causality, float):
         raise ParameterError(
-            f'{key}: it is {variable.causality} of type {variable.type}: choose an {causality} of '
-            f'type {fmu.real}'
+            f'{key}: it is {variable.causality} of type {variable.type}: choose an {causality} '
+            'that is a real number'
         )
     if variable.shape:
         raise ParameterError(f'{key}: it is an array: export its elements one by one')
@@ -228,8 +237,10 @@ def _option(variable: Any, value: object) -> Option:
 
 
 def _require_all_inputs(fmu: Fmu, given: set[str]) -> None:
-    for variable in fmu.variables.values():
-        if variable.causality == 'input' and variable.name not in given:
+    """Raise ParameterError for an input left out, but for types that can be given nothing."""
+    inputs = [each for each in fmu.variables.values() if each.causality == 'input']
+    for variable in inputs:
+        if variable.type in _KINDS and variable.name not in given:
             raise ParameterError(
                 f'fmu.inputs: input {variable.name} of {fmu.path.name} is not among them: map it, '
                 'or give it a value under parameters'

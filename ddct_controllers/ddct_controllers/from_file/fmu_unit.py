@@ -7,7 +7,7 @@ FMPy, an optional extra, reads the file and calls the binary in it; nothing else
 import contextlib
 import weakref
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -40,8 +40,6 @@ class Fmu:
                 f'{path} is not for co-simulation by FMI 2.0 or 3.0 (FMI {version}): export it so'
             )
         self.is_fmi2 = version.startswith('2.')
-        self.real = 'Real' if self.is_fmi2 else 'Float64'
-        """Its type of inputs and outputs."""
         self.variables: Mapping[str, Any] = {v.name: v for v in self.description.modelVariables}
         """FMPy's `ModelVariable` by name."""
         self._require_binary(names)
@@ -86,9 +84,7 @@ class RunningFmu:
     ) -> None:
         """Load `fmu`; `starts` are variables with their values, the others those of each step."""
         self._fmu, self._starts = fmu, starts
-        self._inputs, self._outputs = (
-            [variable.valueReference for variable in each] for each in (inputs, outputs)
-        )
+        self._inputs, self._outputs = inputs, outputs
         self._held = contextlib.ExitStack()
         weakref.finalize(self, self._held.close)
         self._load()
@@ -105,11 +101,14 @@ class RunningFmu:
         with self._named(f'at its own time {time_s:g} s'):
             if not self._steps:
                 self._initialise(inputs)
-            self._set(self._inputs, inputs)
+            self._set(zip(self._inputs, inputs, strict=True))
             ended = self._instance.doStep(time_s, PERIOD_S)
             if ended and ended[1]:  # FMI 3.0 tells so; FMI 2.0 fails
                 raise DdctError('it asks for the end of the simulation')
-            found: list[float] = self._get(self._outputs)
+            found = [
+                getattr(self._instance, f'get{each.type}')([each.valueReference])[0]
+                for each in self._outputs
+            ]
         self._steps += 1
         return found
 
@@ -125,20 +124,21 @@ class RunningFmu:
                     folder, self._fmu.description, 'CoSimulation', logger=_listener(self._said)
                 )
             held.callback(_free, self._instance)
-            for variable, value in self._starts:
-                kind = variable.type
-                if kind == 'Enumeration':
-                    kind = 'Integer' if self._fmu.is_fmi2 else 'Int64'
-                getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
+            self._set(self._starts)
             self._held.push(held.pop_all())
-        self._set = getattr(self._instance, f'set{self._fmu.real}')
-        self._get = getattr(self._instance, f'get{self._fmu.real}')
+
+    def _set(self, values: Iterable[tuple[Any, Any]]) -> None:
+        for variable, value in values:
+            kind = variable.type
+            if kind == 'Enumeration':
+                kind = 'Integer' if self._fmu.is_fmi2 else 'Int64'
+            getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
 
     def _initialise(self, inputs: Sequence[float]) -> None:
         if self._fmu.is_fmi2:
             self._instance.setupExperiment(startTime=0.0)
         self._instance.enterInitializationMode()
-        self._set(self._inputs, inputs)
+        self._set(zip(self._inputs, inputs, strict=True))
         self._instance.exitInitializationMode()
 
     @contextlib.contextmanager
