@@ -29,7 +29,7 @@ def table_5_2_in_numbers() -> Study:
             'clutch',
             'K_usura',
             'controller',
-            '|w_d| at the end rad/s',
+            '|w_d| as the score window ends rad/s',
             'std w_sr rpm',
             'std A_x m/s^2',
             'state',
