@@ -147,12 +147,16 @@ def _phase(sign: int, capacity: float) -> str:
     return SLIPPING if capacity else OPEN
 
 
-@lru_cache
-def _integrator(parameters: DrivelineParameters) -> HybridIntegrator:
+def friction_system(parameters: DrivelineParameters) -> FrictionSystem:
+    """Return the driveline as a linear system with two friction elements, clutch and wheel."""
     a, b = matrices_with_angles(parameters)
     engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
     h = np.zeros((2, _STATES))
     h[CLUTCH, :2] = 1.0, -1.0
     h[WHEEL, 2] = 1.0
-    system = FrictionSystem(a, np.hstack([engine, load]), np.hstack([clutch, load]), h)
-    return HybridIntegrator(system, SUBSTEP_S, SUBSTEPS, _HELD)
+    return FrictionSystem(a, np.hstack([engine, load]), np.hstack([clutch, load]), h)
+
+
+@lru_cache
+def _integrator(parameters: DrivelineParameters) -> HybridIntegrator:
+    return HybridIntegrator(friction_system(parameters), SUBSTEP_S, SUBSTEPS, _HELD)

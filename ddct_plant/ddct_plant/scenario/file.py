@@ -18,6 +18,7 @@ from ddct_plant.files.schema_version import require_schema_version
 from ddct_plant.files.yaml_text import dump_yaml, line_of, parse_yaml, parse_yaml_with_lines
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.csv_profiles import with_points
+from ddct_plant.scenario.plant import require_driveline
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
@@ -59,7 +60,9 @@ def load_scenario(
         content = with_points(content, Path(name_or_file).parent, set_keys)
         scenario = scenario_from_mapping(content)
         origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
-        return consistent(scenario, origins, _number(start_before))
+        scenario = consistent(scenario, origins, _number(start_before))
+        require_driveline(scenario.driveline)
+        return scenario
     except ParameterError as error:
         line = line_of(str(error), _in_file(lines, set_keys))
         where = f'scenario {name_or_file}: line {line}' if line else f'scenario {name_or_file}'

@@ -1,6 +1,9 @@
 """The models of a run, as its settings choose them; nodes and the headless loop take them here."""
 
+import math
+
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import options_of
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
 from ddct_plant.models.driveline import Driveline, InitialState
@@ -8,10 +11,21 @@ from ddct_plant.models.engine import Engine
 from ddct_plant.models.friction_clutch import FrictionClutch
 from ddct_plant.models.holding import HoldingTorque, air_and_slope
 from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.stick_slip_clutch import StickSlipClutch
-from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
+from ddct_plant.models.stick_slip_driveline import StickSlipDriveline, friction_system
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
+
+
+def require_driveline(parameters: DrivelineParameters) -> None:
+    """Raise ParameterError with a key if clutch and wheels cannot stick: H_S G_S is singular."""
+    try:
+        friction_system(parameters)
+    except (ParameterError, ArithmeticError) as error:
+        raise ParameterError(
+            f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})'
+        ) from error
 
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
@@ -26,9 +40,21 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
         return model(scenario.driveline, scenario.vehicle, initial)
     except ParameterError as error:
         raise ParameterError(
-            f'scenario {scenario.name}: driveline cannot be integrated with the clutch '
-            f'{settings.clutch}: give inertias, damping and stiffness of a car ({error})'
+            f'scenario {scenario.name}: {_least_usual(scenario.driveline)}: the driveline cannot '
+            f'be integrated with the clutch {settings.clutch}: give inertias, damping and '
+            f'stiffness of a car ({error})'
         ) from error
+
+
+def _least_usual(parameters: DrivelineParameters) -> str:
+    """Return the value that is furthest from its default, as a ratio, with its key."""
+    ratios = {
+        name: abs(math.log(getattr(parameters, name)) - math.log(option.default))
+        for name, option in options_of(DrivelineParameters).items()
+        if option.default > 0.0 and getattr(parameters, name) > 0.0
+    }
+    name = max(ratios, key=lambda name: ratios[name])
+    return f'{parameters.prefix}{name} is {getattr(parameters, name):g}'
 
 
 def make_engine(settings: RunSettings) -> Engine:

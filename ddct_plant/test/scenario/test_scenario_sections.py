@@ -70,6 +70,13 @@ def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
     [
         ('friction: {static_over_kinetic: 0.9}', 'line 5: friction.static_over_kinetic is 0.9'),
         ('friction:\n  slip_rad_s: [0]\n', 'line 5: friction.slip_share has 0 values for the 1'),
+        ('friction: {most_n_m: 0}', 'line 5: friction.most_n_m is 0 N m: it must be above 0'),
+        (
+            'driveline:\n  engine_inertia: 1e308\n  shaft_inertia: 1e308\n  vehicle_inertia: 1e20',
+            'line 7: driveline.shaft_inertia is 1e+308: give inertias, damping and stiffness of a '
+            'car (friction system: h g of the elements (0, 1) is singular',
+        ),
+        ('driveline: {total_ratio: 1e-200}', 'line 5: driveline.total_ratio is 1e-200: give'),
         ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'line 7: heat.facing_j_k is -163 J/K'),
         ('closing: {margin: 0.9}', 'line 5: closing.margin is 0.9'),
         ('closing:\n  dwell_s: 0.015', 'line 6: closing.dwell_s is 0.015 s'),
