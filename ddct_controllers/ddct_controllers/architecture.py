@@ -1,6 +1,5 @@
 """Control architectures of the thesis: how open loop and feedback make one torque request."""
 
-import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
@@ -9,6 +8,7 @@ import numpy as np
 
 from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
+from ddct_controllers.places import place_of_error, place_of_method
 from ddct_plant.base.checks import require_finite
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.base.timebase import time_of_step
@@ -105,10 +105,11 @@ class Architecture:
                 'diverges in this scenario, or its options do not suit it'
             ) from error
         except Exception as error:
-            place = traceback.extract_tb(error.__traceback__)[-1]
+            package = type(self._controller).__module__.partition('.')[0]
+            place = place_of_error(error, package) or place_of_method(self._controller, 'update')
             raise ForeignError(
                 f'{self._name}: it failed at step {measurement.step} ({type(error).__name__}: '
-                f'{error}, in {place.filename} line {place.lineno}): mend the controller'
+                f'{error}, in {place}): mend the controller'
             ) from error
 
     def _feedback_off(self, measurement: Measurement) -> Command:
@@ -122,6 +123,13 @@ class Architecture:
 
     def _checked(self, command: object, step: int) -> Command:
         """Return the command with plain floats; raise DdctError for any other answer."""
+        try:
+            return self._plain(command, step)
+        except DdctError as error:
+            place = place_of_method(self._controller, 'update')
+            raise DdctError(f'{error}: mend {place}') from error
+
+    def _plain(self, command: object, step: int) -> Command:
         if not isinstance(command, Command):
             raise DdctError(
                 f'{self._name}: its answer at step {step} is of type {type(command).__name__}: '

@@ -116,7 +116,7 @@ class Controller(ABC):
     """
 
     options: ClassVar[Options | None] = None
-    """What `controllers.<name>` of a scenario may hold, by name; None leaves it unchecked."""
+    """What `controllers.<name>` of a scenario may hold, by name; None, as {}, is nothing."""
     registered_name: str = ''
     """What errors call it: the registry gives it the name under which it was asked for."""
     computed_from: str = UNSTATED
@@ -182,8 +182,8 @@ class ControllerContext:
     """
     The scenario's section `controllers.<name>`.
 
-    A controller that declares `options` gets every one of them, checked, the default where the
-    scenario gives none. One that does not gets the section as it stands and checks it itself.
+    A controller gets every one of the `options` that it declares, checked, the default where the
+    scenario gives none. What it does not declare is refused.
     """
 
 
@@ -210,19 +210,21 @@ class ControllerSpec(Generic[Made]):
 
     def values(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
         """Return every option's value, what is given or the default, checked."""
-        if self.options is None:
-            return given
+        options = self.options or {}
         section = f'controllers.{self.name}'
-        if given and not self.options:
+        if given and not options:
             names = ', '.join(map(str, given))
-            raise ParameterError(f'{section}: {names} given, but {self.name} takes no options')
-        if unknown := given.keys() - self.options.keys():
+            how = f': declare it, {_declaration(given)}' if self.options is None else ''
+            raise ParameterError(
+                f'{section}: {names} given, but {self.name} takes no options{how}'
+            )
+        if unknown := given.keys() - options.keys():
             raise ParameterError(
                 f'{section}.{min(unknown, key=str)} is not a key of {self.name}: it has '
-                f'{", ".join(self.options)}'
+                f'{", ".join(options)}'
             )
         values = {}
-        for key, option in self.options.items():
+        for key, option in options.items():
             value = given.get(key, option.default)
             if value is REQUIRED:
                 unit = f', in {option.unit}' if option.unit else ''
@@ -232,3 +234,9 @@ class ControllerSpec(Generic[Made]):
             unset = value is None and option.default is None
             values[key] = None if unset else option.checked(f'{section}.{key}', value)
         return values
+
+
+def _declaration(given: Mapping[str, Any]) -> str:
+    """Return how a class declares what it was given."""
+    name, value = next(iter(given.items()))
+    return f"in its class: options = {{{name!r}: Option({value!r}, 'what it is', 'its unit')}}"

@@ -34,10 +34,34 @@ Chosen = str | ControllerSpec[Controller]
 """A controller by its name or file, or how one is made that has neither."""
 
 
+def own_controller_names() -> list[str]:
+    """Return the names of the controllers that come with this package."""
+    return list(_own_controllers())
+
+
 def controller_names() -> list[str]:
     """Return every name that `make_controller` takes besides files, our own first."""
-    own = list(_own_controllers())
+    own = own_controller_names()
     return own + sorted(point.name for point in _entry_points() if point.name not in own)
+
+
+def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> list[str]:
+    """
+    Return the names of `controller_names` whose controllers can be built for a run.
+
+    `tell` gets a line about each of a third party that cannot. One that the scenario has options
+    for is asked for: it stays, and making it raises.
+    """
+    trusted = {*own_controller_names(), *settings.scenario.controllers}
+    names = []
+    for name in controller_names():
+        try:
+            if name not in trusted:
+                make_controller(name, settings)
+            names.append(name)
+        except DdctError as error:
+            tell(f'{error}; left out')
+    return names
 
 
 def make_controller(

@@ -152,6 +152,18 @@ def test_a_bad_option_of_a_third_partys_controller_is_named(add_entry_point, cha
     assert str(caught.value) == complaint
 
 
+@pytest.mark.parametrize('factory', ['make_third', 'Third'])
+def test_what_a_third_partys_controller_does_not_declare_is_refused(add_entry_point, factory):
+    add_entry_point('third', f'{__name__}:{factory}')
+    settings = RunSettings(load_scenario('thesis', ['controllers.third.gian=2.5']))
+    with pytest.raises(ParameterError) as caught:
+        make_controller('third', settings)
+    assert str(caught.value) == (
+        'controllers.third: gian given, but third takes no options: declare it, in its class: '
+        "options = {'gian': Option(2.5, 'what it is', 'its unit')}"
+    )
+
+
 @pytest.mark.parametrize('options', [{'gain': 0.1}, ['gain'], 3])
 def test_options_that_are_no_declaration_name_the_controller(
     add_entry_point, monkeypatch, options

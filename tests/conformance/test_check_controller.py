@@ -215,7 +215,7 @@ def test_the_program_fails_with_one_line_that_names_the_checks(
     states = {each['name']: each['state'] for each in report['checks']}
     assert (states['sign'], states['stability'], states['reset']) == (FAIL, FAIL, PASS)
     assert_one_line(
-        errors.partition('\n')[2], 'check-controller', 'WrongSign fails: sign, stability'
+        errors.partition('\n')[2], 'ddct check-controller', 'WrongSign fails: sign, stability'
     )
 
 

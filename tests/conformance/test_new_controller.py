@@ -83,7 +83,7 @@ def test_a_name_that_cannot_be_used_is_refused(
     capfd: pytest.CaptureFixture[str], tmp_path: Path, name: str, words: str
 ) -> None:
     assert new_controller.main([name, '--out', str(tmp_path / 'new')]) == 1
-    assert_one_line(capfd.readouterr().err, 'new-controller', words)
+    assert_one_line(capfd.readouterr().err, 'ddct new-controller', words)
     assert not (tmp_path / 'new').exists()
 
 
@@ -91,5 +91,5 @@ def test_a_folder_that_is_there_stays_as_it_is(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert new_controller.main(['mine', '--out', str(tmp_path)]) == 1
-    assert_one_line(capfd.readouterr().err, 'new-controller', f'{tmp_path} exists already')
+    assert_one_line(capfd.readouterr().err, 'ddct new-controller', f'{tmp_path} exists already')
     assert list(tmp_path.iterdir()) == []

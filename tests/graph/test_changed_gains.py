@@ -1,15 +1,21 @@
 """Options of a controller as parameters; gains change while it runs, all of a request or none."""
 
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
+import pytest
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
 from support.in_process_graph import GraphOf
 from support.runs import plan
+from support.third_party import EXAMPLE, example_entry_points, install
 
+from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.settings import RunSettings
 
 UNSET = {'highest_torque_n_m', 'lowest_slip_rpm', 'iteration_limit'}
 """Options of mpc3 without a value."""
@@ -50,3 +56,25 @@ def test_every_option_of_a_controller_is_a_parameter_that_reaches_it(graph_of: G
     assert 'largest rate of the clutch torque request' in described.description
     assert described.description.endswith('[N m/s] (above 0, at most 1e+06)')
     assert described.floating_point_range[0].to_value == 1e6
+
+
+def test_options_of_a_third_party_are_set_alike_by_set_a_file_and_parameters(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    install(monkeypatch, tmp_path / 'site', EXAMPLE, example_entry_points())
+    wanted = {'proportional_gain': 0.3, 'dead_zone_rpm': 2.0}
+    keys = tuple(f'controllers.dead_zone.{name}={value}' for name, value in wanted.items())
+    file = tmp_path / 'mine.yaml'
+    file.write_text(scenario_to_yaml(load_scenario('thesis', keys)), encoding='utf-8')
+    from_set = graph_of(plan('dead_zone', changes=keys)).add('controller')
+    settings = RunSettings(load_scenario(str(file)))
+    from_file = graph_of(RunPlan(settings, 'dead_zone')).add('controller')
+    given = {f'gains.{name}': value for name, value in wanted.items()}
+    from_parameters = graph_of(plan('dead_zone')).add('controller', given)
+    nodes: list[Any] = [from_set, from_file, from_parameters]
+    for node in nodes:
+        assert declared(node, wanted) == wanted
+        controller = node._controller
+        assert (controller._gain, controller._dead_zone_rpm) == (0.3, 2.0)
+        described = node.describe_parameter('gains.dead_zone_rpm').description
+        assert described == 'half the width of the dead zone [rpm] (at least 0)'

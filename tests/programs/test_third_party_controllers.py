@@ -1,6 +1,9 @@
 """A controller of another package works everywhere by its name alone; a broken one is named."""
 
 import json
+import re
+import sys
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -9,7 +12,9 @@ from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install
 
-from ddct_bringup.programs import bringup, compare
+from ddct_bringup.programs import bringup, compare, ddct
+from ddct_controllers import registry
+from ddct_controllers.pi import PI
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -88,6 +93,35 @@ def test_a_gain_that_the_example_does_not_take_is_named(
     assert not (tmp_path / 'runs').exists()
 
 
+@pytest.mark.parametrize(
+    'command',
+    [
+        ['design', 'margins'],
+        ['compare', '--headless', '--duration', '0.7', '--out', 'runs'],
+        ['bringup', '--list'],
+    ],
+    ids=['margins', 'compare', 'list'],
+)
+def test_a_controller_that_cannot_be_had_stops_only_what_asks_for_it(
+    command: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    install(monkeypatch, tmp_path / 'absent', SUPPORT, {'absent': 'no_such_package:make'})
+    monkeypatch.setattr(registry, '_own_controllers', lambda: {'pi': PI})
+    monkeypatch.setattr(registry, '_entry_points', lambda: entry_points(name='absent'))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, 'argv', ['ddct', *command])
+    assert ddct.main() == 0
+    printed = capfd.readouterr()
+    (line,) = [each for each in (printed.out + printed.err).splitlines() if 'no_such' in each]
+    assert "controller 'absent': the entry point no_such_package:make cannot be loaded" in line
+    assert re.search(r'^(controllers:)? *pi\b', printed.out, re.MULTILINE)
+    monkeypatch.setattr(sys, 'argv', ['ddct', 'design', 'margins', '--controller', 'absent'])
+    assert ddct.main() == 1
+
+
 @pytest.mark.usefixtures('broken')
 @pytest.mark.parametrize(
     ('name', 'words'),
@@ -122,7 +156,10 @@ def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words)
+    place = f'{SUPPORT}/support/broken_controllers.py line '
+    assert_one_line(
+        capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words, place
+    )
     assert not (out / name).exists()
 
 
@@ -136,7 +173,8 @@ def test_a_graph_names_the_controller_whose_status_is_no_text(
     )
     assert run.wait() == 1
     words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
-    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words)
+    place = f'{SUPPORT}/support/broken_controllers.py line '
+    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words, place)
 
 
 @pytest.mark.usefixtures('broken')
@@ -150,6 +188,7 @@ def test_compare_names_the_controller_whose_linear_model_is_none(
         "ddct compare: controller 'bad_linear_model': its linear_model cannot be"
     )
     assert 'it is of type list' in last
+    assert f'{SUPPORT}/support/broken_controllers.py line ' in last
 
 
 @pytest.mark.usefixtures('broken')

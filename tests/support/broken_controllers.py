@@ -3,7 +3,14 @@
 import math
 from typing import Any
 
-from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
+from ddct_controllers.interface import (
+    Command,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+    Measurement,
+)
+from ddct_plant.base.options import Option
 
 
 class _Broken(Controller):
@@ -22,9 +29,14 @@ class _Broken(Controller):
         return self._answer
 
 
-def make_not_a_number(context: ControllerContext) -> Controller:
-    """Return a controller that commands NaN from the step on that the scenario sets."""
-    return _Broken(Command(math.nan), context.gains.get('good_until_step', 0))
+def _make_not_a_number(context: ControllerContext) -> Controller:
+    return _Broken(Command(math.nan), context.gains['good_until_step'])
+
+
+make_not_a_number = ControllerSpec(
+    'not_a_number', _make_not_a_number, {'good_until_step': Option(0, 'first step with NaN')}
+)
+"""A controller that commands NaN from the step on that the scenario sets."""
 
 
 def make_infinite(context: ControllerContext) -> Controller:

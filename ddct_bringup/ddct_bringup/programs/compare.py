@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 from ddct_bringup.programs.report import REPORT_FILE, write_report
@@ -24,7 +25,11 @@ from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
-from ddct_controllers.registry import controller_label, controller_names
+from ddct_controllers.registry import (
+    controller_label,
+    controller_names,
+    working_controllers,
+)
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.printable import printable
@@ -34,6 +39,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 PROGRAM = 'ddct compare'
 SCORES_FILE = 'scores.json'
+_ALL = 'all'
 
 _EPILOG = """\
 examples:
@@ -66,6 +72,8 @@ def _compare(argv: list[str]) -> int:
     limits = load_limits(options.limits)
     names = _controllers(options.controllers)
     settings = settings_of(options, [controller_label(name) for name in names])
+    if options.controllers == _ALL:
+        names = working_controllers(settings, partial(complain, PROGRAM))
     plans = [RunPlan(settings, name, options.layout) for name in names]
     with held(options.out):
         failed = _run_all(plans, settings, options, limits)
@@ -90,7 +98,7 @@ def _run_all(
     ]
     entries = [run.entry for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(entries, limits))
-    _report(entries, settings, options, limits)
+    _report(entries, plans, options, limits)
     failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
     if len(failed) == len(plans):
         tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
@@ -134,20 +142,21 @@ def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
 
 
 def _report(
-    entries: list[Entry], settings: RunSettings, options: argparse.Namespace, limits: Limits
+    entries: list[Entry], plans: list[RunPlan], options: argparse.Namespace, limits: Limits
 ) -> None:
+    settings = plans[0].settings
     if options.json:
         write_json(options.json, scores_document(entries, limits))
     stream = sys.stderr if options.json == STDOUT else sys.stdout
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)
     print_comparison(entries, settings, options.overrides, stream)
-    for source, names in computed_from(_controllers(options.controllers)).items():
+    for source, names in computed_from([plan.controller for plan in plans]).items():
         print(f'computed from {source}: {printable(", ".join(names))}', file=stream)
 
 
 def _controllers(text: str) -> list[str]:
-    if text == 'all':
+    if text == _ALL:
         return controller_names()
     names = [name.strip() for name in text.split(',') if name.strip()]
     if not names:
@@ -167,7 +176,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         '--controllers',
-        default='all',
+        default=_ALL,
         metavar='A,B,...|all',
         help='names of --list, or controller files; default: %(default)s',
     )

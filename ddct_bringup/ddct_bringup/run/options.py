@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ddct_controllers.interface import UNSTATED
-from ddct_controllers.registry import controller_names, controller_spec
+from ddct_controllers.registry import Chosen, controller_names, controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
 from ddct_plant.base.printable import printable
@@ -86,7 +86,7 @@ def print_choices() -> None:
     print_table(controller_options_table())
 
 
-def computed_from(names: Sequence[str]) -> dict[str, list[str]]:
+def computed_from(names: Sequence[Chosen]) -> dict[str, list[str]]:
     """Return by what they are computed from the controllers, files by their own names."""
     found: dict[str, list[str]] = {}
     for name in names:
@@ -94,7 +94,7 @@ def computed_from(names: Sequence[str]) -> dict[str, list[str]]:
             spec = controller_spec(name)
             found.setdefault(spec.computed_from, []).append(spec.name)
         except DdctError:  # a third party's that cannot be loaded; the table of options says why
-            found.setdefault(UNSTATED, []).append(name)
+            found.setdefault(UNSTATED, []).append(str(name))
     return found
 
 

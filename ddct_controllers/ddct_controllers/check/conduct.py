@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, place_of_method
+from ddct_controllers.check.outcome import CheckFailedError
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.trial import more_slip, played
 from ddct_controllers.check.watch import watched
 from ddct_controllers.interface import Controller
+from ddct_controllers.places import place_of_method
 from ddct_plant.base.errors import DdctError, ForeignError
 
 PLAIN = (bool, int, float, str, list, tuple, dict, set, np.ndarray, np.generic, type(None))

@@ -5,9 +5,10 @@ import statistics
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, place_of_method
+from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_controllers.places import place_of_method
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 

@@ -11,15 +11,15 @@ from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
-PROGRAM = 'check-controller'
+PROGRAM = 'ddct check-controller'
 _DESCRIPTION = """\
 Try a controller alone and in the closed loop, and say what is wrong with it: where, and what to
 do. The exit code is 1 when a check fails."""
 _EPILOG = """\
 examples:
-  check-controller mine                             a controller of an installed package
-  check-controller designs/mine.yaml --json -       one in a file
-  check-controller mine --set controllers.mine.gain=0.2"""
+  ddct check-controller mine                             a controller of an installed package
+  ddct check-controller designs/mine.yaml --json -       one in a file
+  ddct check-controller mine --set controllers.mine.gain=0.2"""
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, place_of_method
+from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.trial import PROBE_RAD_S, more_slip, played
 from ddct_controllers.interface import Measurement
+from ddct_controllers.places import place_of_method
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 

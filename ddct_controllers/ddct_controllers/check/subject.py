@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, place_of_error, root_cause
+from ddct_controllers.check.outcome import CheckFailedError, root_cause
 from ddct_controllers.check.trial import (
     Change,
     Heard,
@@ -19,6 +19,7 @@ from ddct_controllers.check.trial import (
 from ddct_controllers.check.watch import Printed
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.pi import PiController
+from ddct_controllers.places import place_of_error
 from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.scenario.settings import RunSettings

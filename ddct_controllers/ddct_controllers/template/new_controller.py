@@ -13,7 +13,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import ProgramParser, run_program
 
-PROGRAM = 'new-controller'
+PROGRAM = 'ddct new-controller'
 TEMPLATES = Path(__file__).parent / 'files'
 FILES = {
     'pyproject.toml': 'pyproject.toml.in',
@@ -24,7 +24,7 @@ FILES = {
 """What is written, by its name, and the template of it."""
 _EPILOG = """\
 examples:
-  new-controller my_slip --out my_slip
+  ddct new-controller my_slip --out my_slip
 
 Then edit my_slip/my_slip.py; my_slip/README.md has the commands to install, check and score it."""
 

@@ -15,6 +15,7 @@ from ddct_controllers.design.analysis.worst_corner import (
     worst_corner,
 )
 from ddct_controllers.interface import Controller
+from ddct_controllers.places import place_of_method
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
@@ -51,11 +52,10 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     }
 
 
-def _controller_evidence(
-    controller: Chosen, settings: RunSettings, corners: PlantCorners
-) -> Evidence:
-    name = controller_label(controller)
-    model = _linear_model(name, make_controller(controller, settings))
+def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCorners) -> Evidence:
+    name = controller_label(chosen)
+    controller = make_controller(chosen, settings)
+    model = _linear_model(name, controller)
     entry: Evidence = {'controller': name, 'linear': model is not None}
     if model is None:
         return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
@@ -67,7 +67,7 @@ def _controller_evidence(
         }
         worst = _corner_evidence(model, corners)
     except (DdctError, np.linalg.LinAlgError) as error:
-        raise _unusable(name, error) from error
+        raise _unusable(name, controller, error) from error
     return entry | {
         'nominal': wear[1.0],
         'stable_wear_gain': _stable_wear_gain(wear[1.0]),
@@ -81,21 +81,25 @@ def _linear_model(name: str, controller: Controller) -> StateSpace | None:
     try:
         model: object = controller.linear_model()
     except Exception as error:
-        raise _unusable(name, f'{type(error).__name__}: {error}') from error
+        reason = f'{type(error).__name__}: {error}'
+        raise _unusable(name, controller, reason) from error
     if model is None:
         return None
     if not isinstance(model, StateSpace):
-        raise _unusable(
-            name, f'it is of type {type(model).__name__}, not ddct_plant.linear.lti.StateSpace'
-        )
+        kind = f'it is of type {type(model).__name__}, not ddct_plant.linear.lti.StateSpace'
+        raise _unusable(name, controller, kind)
     if model.d.shape != (1, 1):
         outputs, inputs = model.d.shape
-        raise _unusable(name, f'it has {inputs} inputs and {outputs} outputs: give one of each')
+        reason = f'it has {inputs} inputs and {outputs} outputs: give one of each'
+        raise _unusable(name, controller, reason)
     return model
 
 
-def _unusable(name: str, reason: object) -> DdctError:
-    return DdctError(f'controller {name!r}: its linear_model cannot be used: {reason}')
+def _unusable(name: str, controller: Controller, reason: object) -> DdctError:
+    place = place_of_method(controller, 'linear_model')
+    return DdctError(
+        f'controller {name!r}: its linear_model cannot be used: {reason}: mend {place}'
+    )
 
 
 def loop_evidence(

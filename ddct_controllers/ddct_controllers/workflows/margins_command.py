@@ -1,12 +1,14 @@
 """Subcommand `design margins`: the robustness of linear controllers in the loop as it runs."""
 
 import argparse
+from functools import partial
 from typing import Any
 
-from ddct_controllers.registry import controller_names
+from ddct_controllers.registry import working_controllers
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
+from ddct_plant.program.command_line import complain
 from ddct_plant.program.table import Table, print_table, text_or_dash
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
@@ -58,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
     """Print the table, write the JSON, and return the exit code."""
     settings = RunSettings(scenario_of(options, options.overrides), wear_gain=options.wear_gain)
     every = options.controller == 'all'
-    names = controller_names() if every else [options.controller]
+    tell = partial(complain, 'ddct design')
+    names = working_controllers(settings, tell) if every else [options.controller]
     evidence = frequency_evidence(names, settings)
     linear = [entry for entry in evidence['controllers'] if entry['linear']]
     if not linear:

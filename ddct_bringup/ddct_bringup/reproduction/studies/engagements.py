@@ -16,7 +16,7 @@ from ddct_bringup.reproduction.studies.study import (
     headers,
     study_run,
 )
-from ddct_controllers.registry import controller_names
+from ddct_controllers.registry import own_controller_names
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
@@ -66,11 +66,11 @@ def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
 
 
 def cases_of(scenario: str, clutch: str) -> list[Case]:
-    """Return every controller at every wear gain, in the order of the table."""
+    """Return every packaged controller at every wear gain, in the order of the table."""
     return [
         (scenario, clutch, wear_gain, controller)
         for wear_gain in WEAR_GAINS
-        for controller in controller_names()
+        for controller in own_controller_names()
     ]
 
 
