@@ -12,7 +12,7 @@ from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install
 
-from ddct_bringup.programs import bringup, compare, ddct
+from ddct_bringup.programs import bringup, compare, ddct, score
 from ddct_controllers import registry
 from ddct_controllers.pi import PI
 from ddct_controllers.registry import make_controller
@@ -31,7 +31,7 @@ def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising', 'bad_status')
-    names = (*answers, 'bad_linear_model', 'no_controller', 'nothing')
+    names = (*answers, 'slow', 'bad_linear_model', 'no_controller', 'nothing')
     targets = {name: f'support.broken_controllers:make_{name}' for name in names}
     targets['absent'] = 'no_such_package.controllers:make'
     install(monkeypatch, tmp_path / 'site', SUPPORT, targets)
@@ -175,6 +175,18 @@ def test_a_graph_names_the_controller_whose_status_is_no_text(
     words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
     place = f'{SUPPORT}/support/broken_controllers.py line '
     assert_one_line(run.errors(), 'ddct bringup', 'node controller', words, place)
+
+
+@pytest.mark.usefixtures('broken')
+def test_a_controller_that_outlasts_its_period_is_marked_in_the_terminal(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    options = ['--headless', '--duration', '1.2', '--out', str(tmp_path / 'runs')]
+    slow = 'too slow for real time: its updates take'
+    assert bringup.main(['--controller', 'slow', *options]) == 0
+    assert f'ddct bringup: {slow}' in capfd.readouterr().err
+    assert score.main([str(tmp_path / 'runs')]) == 0
+    assert f'slow: {slow}' in capfd.readouterr().out
 
 
 @pytest.mark.usefixtures('broken')

@@ -1,6 +1,7 @@
 """Controllers of third parties that do everything wrong."""
 
 import math
+import time
 from typing import Any
 
 from ddct_controllers.interface import (
@@ -71,6 +72,17 @@ def make_bad_linear_model(context: ControllerContext) -> Controller:
 def make_raising(context: ControllerContext) -> Controller:
     """Return a controller that divides by zero."""
     return _Broken(ZeroDivisionError('float division by zero'))
+
+
+class _Slow(_Broken):
+    def update(self, measurement: Measurement) -> Command:
+        time.sleep(0.011)
+        return super().update(measurement)
+
+
+def make_slow(context: ControllerContext) -> Controller:
+    """Return a controller whose updates outlast their period."""
+    return _Slow(Command(0.0))
 
 
 def make_no_controller(context: ControllerContext) -> object:

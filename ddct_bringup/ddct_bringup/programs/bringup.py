@@ -14,6 +14,7 @@ from ddct_bringup.run.output_folder import StagedFolder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.tables import slow_notes
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label
@@ -72,6 +73,8 @@ def _run(plan: RunPlan, folder: StagedFolder, options: argparse.Namespace, limit
     if changes := entry['scenario_changes']:
         print(f'{PROGRAM}: {scenario_title(entry["scenario"], changes)}', file=sys.stderr)
     _tell(recording, folder.final)
+    for note in slow_notes(entry):
+        print(f'{PROGRAM}: {note}', file=sys.stderr)
     verdict = entry['verdict']
     print(f'{PROGRAM}: state {verdict["state"]}, limits {verdict["limits"]}', file=sys.stderr)
 

@@ -13,6 +13,7 @@ from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
 from ddct_bringup.verdict.verdict import BEYOND
 from ddct_plant.base.printable import printable
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.differences import scenario_title
 
 UNDEFINED = '-'
@@ -150,6 +151,7 @@ def run_notes(run: Entry) -> list[str]:
     notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
     if run['valid'] and run['fallbacks']:
         notes.append(fallback_note(run))
+    notes += slow_notes(run)
     if run['before_schema']:
         notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes
@@ -165,6 +167,17 @@ def beyond_notes(runs: Sequence[Entry]) -> list[str]:
                 found = beyond.setdefault(f'{limit} ({each["source"]})', [])
                 found.append(f'{run["bag"]} {each["value"]:.4g}')
     return [f'{limit}: {", ".join(found)}' for limit, found in beyond.items()]
+
+
+def slow_notes(run: Entry) -> list[str]:
+    """Return that a controller's updates outlast their period, if more than 1 % of them do."""
+    median, most = (_in_ms(run['metrics'][f'update_time_{name}_us']) for name in ('median', 'p99'))
+    if median is None or most is None or most <= 1e3 * PERIOD_S:
+        return []
+    return [
+        f'too slow for real time: its updates take {median:.1f} ms in the median, 1 % of them '
+        f'more than {most:.1f} ms; the period is {1e3 * PERIOD_S:g} ms'
+    ]
 
 
 def fallback_note(run: Entry) -> str:

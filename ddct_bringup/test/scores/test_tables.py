@@ -228,3 +228,9 @@ def test_of_several_scenarios_each_run_tells_its_own():
     assert '\npi: thesis\n' in text
     assert '\nls8: thesis, 1 value changed: load.slope_rad=0.05\n' in text
     assert 'thesis' not in text.splitlines()[0]
+
+
+@pytest.mark.parametrize(('p99_us', 'slow'), [(9_999.0, False), (10_001.0, True)])
+def test_a_controller_whose_updates_outlast_the_period_is_marked(p99_us, slow):
+    text = printed([run(update_time_median_us=8_000.0, update_time_p99_us=p99_us)])
+    assert ('pi: too slow for real time: its updates take 8.0 ms in the median' in text) == slow

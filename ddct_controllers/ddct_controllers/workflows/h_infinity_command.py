@@ -13,6 +13,7 @@ from ddct_controllers.design.h_infinity.recipes import (
 )
 from ddct_controllers.design.h_infinity.report import (
     design_record,
+    lacks,
     printed_record,
     provenance,
     uncertainty_record,
@@ -29,13 +30,15 @@ from ddct_controllers.workflows.design_output import (
     show,
     write_design,
 )
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_text
+from ddct_plant.program.command_line import complain
 from ddct_plant.program.page_tables import fill_tables, read_page
 
 _DESCRIPTION = """\
 Chapter 3 of the thesis: specifications to weights, synthesis, cleaning, discretisation, and
-what the closed loop then does. A controller is given only when its closed loop was verified.
+what the closed loop then does. A controller is given only when its sampled loop meets the
+specifications and is stable at every corner of the driveline, or with --write-anyway.
 --weights thesis: K and w_2 as printed. fitted: those that lead to nearly the printed Hinf1.
 sampled: as printed with one more on the torque, and hold and delay in the plant; run this one.
 Without --rise-time and --overshoot they are the thesis's 0.3 s and 8 %.
@@ -45,7 +48,7 @@ _EXAMPLES = """\
 examples:
   ddct design h-infinity
   ddct design h-infinity --weights fitted --method lmi
-  ddct design h-infinity --weights sampled --rise-time 0.4 --overshoot 10 --name mine --out designs
+  ddct design h-infinity --weights fitted --rise-time 0.5 --overshoot 15 --name mine --out designs
   ddct compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
 _DEFAULTS = THESIS_SPECIFICATIONS
 _DEFAULT_RECIPE = 'thesis'
@@ -66,6 +69,7 @@ def add_parser(subparsers: Any) -> None:
     add('--effort', type=float, metavar='TORQUE', help='N m per rpm that cost 1 (sampled)')
     add('--back-off', type=float, metavar='FACTOR', help='level over the optimum (riccati)')
     add('--method', choices=METHODS, default=METHODS[0], help='(default: riccati)')
+    add('--write-anyway', action='store_true', help='what a design lacks is told and noted only')
     add_design_options(parser)
     parser.set_defaults(run=run)
 
@@ -92,18 +96,29 @@ def run(options: argparse.Namespace) -> int:
     if options.method == 'lmi' and options.back_off is not None:
         raise ParameterError('--back-off is for --method riccati: the LMIs give their optimum')
     design = design_h_infinity(weights, method=options.method)
-    designed = DesignedController(
-        name,
-        design.cleaned,
-        provenance(options.weights, specifications, design),
-        BILINEAR if weights.sampled else HOLD,
-    )
     uncertainty = uncertainty_record()
     record = design_record(name, options.weights, specifications, design, PlantCorners())
+    missing = lacks(record)
     tables = design_tables([record], uncertainty)
-    show(options, tables.values(), record | {'uncertainty': uncertainty})
+    show(options, tables.values(), record | {'uncertainty': uncertainty, 'lacks': missing})
+    if missing:
+        _tell(options, name, '; '.join(missing))
+    origin = provenance(options.weights, specifications, design) | {'lacks': missing}
+    discretisation = BILINEAR if weights.sampled else HOLD
+    designed = DesignedController(name, design.cleaned, origin, discretisation)
     write_design(options, designed, specifications)
     return 0
+
+
+def _tell(options: argparse.Namespace, name: str, missing: str) -> None:
+    """Say what a design lacks; raise DdctError where it was asked for and may not lack it."""
+    asked = (options.rise_time, options.overshoot, options.out)
+    if any(each is not None for each in asked) and not options.write_anyway:
+        raise DdctError(
+            f'{name} is not given: {missing}: ask for less, choose other weights, or add '
+            '--write-anyway'
+        )
+    complain('ddct design', f'{name}: {missing}')
 
 
 def page_tables() -> dict[str, Any]:

@@ -18,6 +18,10 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
+LACKING = [
+    'it overshoots by 12.1 %, 10 % are allowed',
+    ' of 128 corners (driveline +-20 %, wear 0.7 to 1.3)',
+]
 SETTINGS = RunSettings(load_scenario('thesis'))
 
 
@@ -48,15 +52,52 @@ def test_the_json_has_every_figure(capsys):
 def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
     """The same G_c(z) as the registry's to the last bit, and three charts."""
     options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(tmp_path)]
-    assert main(options) == 0
+    assert main([*options, '--write-anyway']) == 0
     path = tmp_path / 'mine.yaml'
     assert f'bringup --controller {path}' in capsys.readouterr().out
     built = make_controller(str(path), SETTINGS).linear_model()
     expected = synthesised_controller(f'hinf_{weights}')
     for part in 'abcd':
         assert np.array_equal(getattr(built, part), getattr(expected, part))
-    assert load_designed(str(path)).provenance['weights']['recipe'] == weights
+    provenance = load_designed(str(path)).provenance
+    assert provenance['weights']['recipe'] == weights
+    assert provenance['lacks']
     assert len(list(tmp_path.glob('mine_*.png'))) == 3
+
+
+@pytest.mark.parametrize(
+    ('options', 'lacking'),
+    [
+        (['--weights', 'thesis', '--rise-time', '0.4', '--overshoot', '10'], LACKING),
+        (['--weights', 'thesis', '--rise-time', '0.5', '--overshoot', '15'], LACKING[1:]),
+        (['--weights', 'sampled'], ['it rises in ', 'it overshoots by 21.8 %, 8 % are allowed']),
+    ],
+)
+def test_a_design_that_lacks_something_is_not_written_and_says_what(
+    tmp_path, capsys, options, lacking
+):
+    command = ['h-infinity', *options, '--out', str(tmp_path / 'designs')]
+    assert main(command) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('ddct design: mine is not given: ') and error.count('\n') == 1
+    assert all(words in error for words in lacking)
+    assert error.count(';') == len(lacking) - 1
+    assert not (tmp_path / 'designs').exists()
+
+
+def test_a_design_that_meets_its_specifications_is_written(tmp_path, capsys):
+    options = ['--weights', 'fitted', '--rise-time', '0.5', '--overshoot', '15']
+    assert main(['h-infinity', *options, '--out', str(tmp_path)]) == 0
+    assert capsys.readouterr().err == ''
+    assert load_designed(str(tmp_path / 'mine.yaml')).provenance['lacks'] == []
+
+
+def test_specifications_that_are_not_met_are_an_error_also_without_a_file(capsys):
+    options = ['h-infinity', '--rise-time', '0.4', '--overshoot', '10']
+    assert main(options) == 1
+    assert LACKING[0] in capsys.readouterr().err
+    assert main([*options, '--write-anyway']) == 0
+    assert capsys.readouterr().err.startswith(f'ddct design: mine: {LACKING[0]}')
 
 
 def test_a_bilinear_controller_comes_back_from_its_file(tmp_path):

@@ -11,7 +11,12 @@ from ddct_controllers.design.analysis.loops import (
 )
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
 from ddct_controllers.design.analysis.step_response import step_figures
-from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
+from ddct_controllers.design.analysis.worst_corner import (
+    PARAMETER_SPREAD,
+    WEAR_GAINS,
+    PlantCorners,
+    worst_corner,
+)
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
 from ddct_controllers.design.h_infinity.uncertainty import (
@@ -56,6 +61,27 @@ def design_record(
         'pulse_transfer_function': dataclasses.asdict(factored_form(design.sampled)),
         'corners': _corner_record(design.sampled, corners) if corners else None,
     }
+
+
+def lacks(record: Record) -> list[str]:
+    """Return in what a design with its corners falls short of its specifications, empty if not."""
+    asked, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
+    found = []
+    if loop['rise_time_s'] is None or loop['rise_time_s'] > asked['rise_time_s']:
+        reached = 'never' if loop['rise_time_s'] is None else f'in {loop["rise_time_s"]:.3g} s'
+        found.append(f'it rises {reached}, {asked["rise_time_s"]:g} s are asked for')
+    if loop['overshoot'] > asked['overshoot']:
+        found.append(
+            f'it overshoots by {100.0 * loop["overshoot"]:.3g} %, '
+            f'{100.0 * asked["overshoot"]:g} % are allowed'
+        )
+    if corners['unstable']:
+        found.append(
+            f'its loop is unstable at {corners["unstable"]} of {corners["corners"]} corners '
+            f'(driveline +-{100.0 * PARAMETER_SPREAD:g} %, wear {WEAR_GAINS[0]:g} to '
+            f'{WEAR_GAINS[-1]:g})'
+        )
+    return found
 
 
 def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Record:
