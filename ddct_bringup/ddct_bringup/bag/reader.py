@@ -1,8 +1,8 @@
 """Read a recorded bag back into a trajectory and what else it says; needs no ROS."""
 
 from collections import defaultdict
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes, note_run_info
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
@@ -50,6 +50,8 @@ class Recording:
     """Per reply topic, at how many stamps the last reply had to be held; real time only."""
     realtime: RealtimeFacts
     """What `/diagnostics` says; empty in lock-step."""
+    absent: Mapping[str, str] = field(default_factory=dict)
+    """Of a log of another tool: quantities that it does not have, NaN here, and why."""
 
     @cached_property
     def settings(self) -> RunSettings | None:
@@ -66,6 +68,11 @@ class Recording:
             )
         except (DdctError, TypeError, ValueError):
             return None
+
+    @property
+    def measured(self) -> bool:
+        """Whether it is the log of another tool: then nothing of ours lies beside it."""
+        return self.facts.mode == MEASURED
 
     @property
     def before_schema(self) -> bool:

@@ -18,6 +18,10 @@ _LARGEST = 1e9
 """Of any number, in its unit."""
 
 
+MEASURED = 'measured'
+"""Mode of the log of another tool, and what stands where it tells no fact."""
+
+
 @dataclass(frozen=True)
 class RunFacts:
     """The facts that scoring needs and scores repeat."""
@@ -29,7 +33,7 @@ class RunFacts:
     clutch: str
     wear_gain: float
     mode: str
-    """'lockstep' or 'realtime'."""
+    """'lockstep' or 'realtime', MEASURED of a log of another tool."""
     seed: int
     control_start_s: float
     """When feedback starts, scenario time."""

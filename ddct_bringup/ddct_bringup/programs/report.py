@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from ddct_bringup.bag.measured_run import add_columns_option
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.output import require_chart_library, require_writable
 from ddct_bringup.report.runs import (
@@ -21,6 +22,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
+from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
 PROGRAM = 'ddct report'
@@ -52,7 +54,8 @@ def _report(argv: list[str]) -> int:
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with held(*filter(is_ours, places)):
         bags = with_progress(bags_in(options.runs), 'reading')
-        runs = in_order([read_run(*bag, limits) for bag in bags])
+        columns = load_columns(options.columns) if options.columns else None
+        runs = in_order([read_run(*bag, limits, columns) for bag in bags])
         write_report(runs, options.out, limits)
     for run in runs:
         if not run.entry['valid']:
@@ -91,8 +94,9 @@ def _parser() -> argparse.ArgumentParser:
         metavar='RUN',
         type=Path,
         nargs='+',
-        help='a bag folder, an .mcap file, or a folder that is searched for bags',
+        help='a bag folder, an .mcap file, a folder that is searched for bags, or a CSV log',
     )
+    add_columns_option(parser)
     parser.add_argument(
         '--out',
         default=REPORT_FILE,

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in, with_progress
@@ -23,6 +23,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.measured.columns import ColumnMap, load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
 PROGRAM = 'ddct score'
@@ -82,9 +83,10 @@ def _scored(
     bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace, limits: Limits
 ) -> list[Entry]:
     runs = []
+    columns = load_columns(options.columns) if options.columns else None
     for bag, folder in with_progress(bags, 'scoring'):
         try:
-            runs.append(_score_one(bag, folder, options, limits))
+            runs.append(_score_one(bag, folder, options, limits, columns))
         except DdctError as error:
             entry = unreadable_entry(bag, error, relative_to=folder)
             complain(PROGRAM, entry['reason'])
@@ -93,13 +95,17 @@ def _scored(
 
 
 def _score_one(
-    bag: Path, folder: Path | None, options: argparse.Namespace, limits: Limits
+    bag: Path,
+    folder: Path | None,
+    options: argparse.Namespace,
+    limits: Limits,
+    columns: ColumnMap | None,
 ) -> Entry:
-    if options.repair:
+    if options.repair and not is_log(bag):
         repair = repair_bag(bag)
         if repair.original is not None:
             complain(PROGRAM, repair)
-    recording = read_bag(bag)
+    recording = read_recording(bag, columns)
     name = bag_name(bag, folder)
     for line in recording.custom_data.get('adjusted', '').splitlines():
         complain(PROGRAM, f'{name}: {line}')
@@ -129,9 +135,10 @@ def _parser() -> argparse.ArgumentParser:
         metavar='BAG|FOLDER',
         type=Path,
         nargs='+',
-        help='a bag folder, an .mcap file, or a folder that is searched for bags',
+        help='a bag folder, an .mcap file, a folder that is searched for bags, or a CSV log',
     )
     parser.add_argument('--json', metavar='FILE', help="write scores.json to FILE; '-': stdout")
+    add_columns_option(parser)
     add_limits_option(parser)
     parser.add_argument('--csv', metavar='FILE', help="write a CSV table to FILE; '-': stdout")
     parser.add_argument(

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.measured_run import read_recording
+from ddct_bringup.bag.reader import Recording
 from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scoring import (
@@ -16,6 +17,7 @@ from ddct_bringup.scores.scoring import (
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
+from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
@@ -51,12 +53,14 @@ class ReportRun:
         return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
 
 
-def read_run(bag: Path, folder: Path | None, limits: Limits) -> ReportRun:
+def read_run(
+    bag: Path, folder: Path | None, limits: Limits, columns: ColumnMap | None = None
+) -> ReportRun:
     """Read and judge a bag, which is named relative to the folder; never raises DdctError."""
     try:
-        recording = read_bag(bag)
+        recording = read_recording(bag, columns)
         entry = score_recording(recording, bag_name(bag, folder), limits)
-        timing = read_timing(recording.path.parent)
+        timing = None if recording.measured else read_timing(recording.path.parent)
         return ReportRun(entry, recording, timing, recording.settings)
     except DdctError as error:
         return ReportRun(unreadable_entry(bag, error, relative_to=folder))

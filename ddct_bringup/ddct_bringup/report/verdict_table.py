@@ -6,6 +6,7 @@ from typing import Any
 
 from ddct_bringup.report.columns import number_text
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.verdict import NO_LIMIT
 
@@ -53,8 +54,14 @@ class VerdictRow:
 def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
     """Return one row per criterion; a run that was not judged has a value in none."""
     judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
+    reasons = [run.entry.get(NOT_COMPUTED, {}) for run in runs]
     return [
-        _row(criterion, [each.get(criterion.name) for each in judged]) for criterion in CRITERIA
+        _row(
+            criterion,
+            [each.get(criterion.name) for each in judged],
+            [each.get(criterion.name, criterion.undefined) for each in reasons],
+        )
+        for criterion in CRITERIA
     ]
 
 
@@ -74,7 +81,9 @@ def value_text(value: float | None) -> str:
     return number_text(value, '.0f' if large else '.4g')
 
 
-def _row(criterion: Criterion, found: Sequence[dict[str, Any] | None]) -> VerdictRow:
+def _row(
+    criterion: Criterion, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
+) -> VerdictRow:
     # All runs of a page are of one scenario, so one limit applies to all.
     limited = next((each for each in found if each and each['limit'] is not None), None)
     return VerdictRow(
@@ -83,13 +92,13 @@ def _row(criterion: Criterion, found: Sequence[dict[str, Any] | None]) -> Verdic
         unit=unit_text(criterion.unit),
         limit=value_text(limited['limit']) if limited else '',
         source=limited['source'] if limited else '',
-        cells=tuple(_cell(criterion, each) for each in found),
+        cells=tuple(_cell(*each) for each in zip(found, reasons, strict=True)),
     )
 
 
-def _cell(criterion: Criterion, found: dict[str, Any] | None) -> VerdictCell:
+def _cell(found: dict[str, Any] | None, undefined: str) -> VerdictCell:
     if found is None:
         return VerdictCell(None, value_text(None), NO_LIMIT, NOT_JUDGED)
     value = found['value']
-    why_dash = criterion.undefined if value is None else ''
+    why_dash = undefined if value is None else ''
     return VerdictCell(value, value_text(value), found['state'], why_dash)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.scores.scoring import Entry
 from ddct_plant.base.printable import printable
 from ddct_plant.graph.topics import (
@@ -30,7 +31,8 @@ def scores_csv(runs: Sequence[Entry]) -> str:
 def score_row(run: Entry) -> dict[str, Any]:
     """Return what a table says of a run, by column."""
     row = {**run, **run['metrics'], **_verdict(run)}
-    return {key: value for key, value in row.items() if key not in ('metrics', 'verdict')}
+    nested = ('metrics', 'verdict', NOT_COMPUTED)
+    return {key: value for key, value in row.items() if key not in nested}
 
 
 def signals_csv(recording: Recording) -> str:

@@ -15,6 +15,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.failed_run import failed_run
 from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
+from ddct_bringup.scores.measured import NOT_COMPUTED, not_computed
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
 from ddct_bringup.verdict.criteria import JudgedRun
@@ -51,6 +52,8 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
 
     What a failed run recorded has no score. Raise DdctError for timing that cannot be used.
     """
+    if recording.measured:
+        return score_run(recording, bag, limits, None)
     if failure := failed_run(recording.path.parent):
         return _entry_without_score(bag, recording.facts, failure.reason)
     return score_run(recording, bag, limits, read_timing(recording.path.parent))
@@ -67,17 +70,20 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
     )
     metrics = computed.as_dict()
     reason = why_invalid(recording)
+    verdict = _verdict(recording, metrics, limits, valid=not reason)
+    lacking = not_computed(recording, metrics, verdict)
     return {
         'bag': bag,
         **{name: getattr(facts, name) for name in _FACT_NAMES},
         'valid': not reason,
         'reason': reason,
         'metrics': metrics,
-        'verdict': _verdict(recording, metrics, limits, valid=not reason),
+        'verdict': verdict,
         'fallbacks': fallbacks_in(recording.trajectory),
         'safe_state': None if facts.lockstep else safe_state(recording),
         'before_schema': recording.before_schema,
         'scenario_changes': _scenario_changes(recording),
+        **({NOT_COMPUTED: lacking} if recording.measured else {}),
     }
 
 
@@ -134,7 +140,8 @@ def why_invalid(recording: Recording) -> str:
     reasons = [] if facts.lockstep else why_not_real_time(recording)
     if trajectory.steps < facts.steps and not _engine_end(recording):
         reasons.insert(0, _why_early(recording))
-    return '; '.join([*reasons, *not_finite(trajectory)])
+    wrong = [] if recording.measured else not_finite(trajectory)
+    return '; '.join([*reasons, *wrong])
 
 
 def not_finite(trajectory: Trajectory) -> list[str]:

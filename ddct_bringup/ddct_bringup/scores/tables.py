@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
 from ddct_bringup.verdict.verdict import BEYOND
@@ -152,6 +153,10 @@ def run_notes(run: Entry) -> list[str]:
     if run['valid'] and run['fallbacks']:
         notes.append(fallback_note(run))
     notes += slow_notes(run)
+    figures: dict[str, list[str]] = {}
+    for name, why in run.get(NOT_COMPUTED, {}).items():
+        figures.setdefault(why, []).append(name)
+    notes += [f'{why}: no {", ".join(names)}' for why, names in figures.items()]
     if run['before_schema']:
         notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes

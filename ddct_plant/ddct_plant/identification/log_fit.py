@@ -24,7 +24,7 @@ DETERMINED = 0.25
 """Largest relative standard deviation of a parameter that a log determines."""
 DAMPING_DETERMINED = 0.05
 """The same of a damping, over the torque per speed of the log."""
-RATIOS = (1.0, 60.0)
+RATIOS = (1.5, 60.0)
 """Total ratios that gearbox and final drive of a car or truck can have."""
 _ROLLING = 1.0
 """Wheel speed in rad/s from which the ratio of the speeds says something."""

@@ -1,0 +1,212 @@
+"""A log of another tool as a recording, so that it is scored and shown as a bag is."""
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import OptionGroup, close_name, option
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
+from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
+from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
+from ddct_plant.measured.columns import ColumnMap
+from ddct_plant.measured.log import MeasuredLog, read_log
+
+NEEDED = ('engine_speed', 'shaft_speed')
+TORSION = 'torsion_speed'
+"""What is computed of shaft_speed, wheel_speed and the total ratio."""
+_LONGEST_GAP_S = 0.1
+_SLOWEST_S = 0.02
+"""Between samples of what has modes of the driveline in it."""
+_AVERAGED_BELOW_S = 0.5 * PERIOD_S
+_JOINT_SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed', TORSION)
+_JOINT_EFFORTS = ('engine_torque', 'clutch_torque', 'load_torque', 'driveshaft_torque')
+_SINGLE = ('vehicle_speed', 'vehicle_accel', 'engine_torque', 'load_torque', 'torque_request')
+
+
+@dataclass(frozen=True)
+class MeasuredRun(OptionGroup, prefix='run.'):
+    """What a log cannot say itself: `run` of a column map."""
+
+    controller: str = option(MEASURED, 'what tables call the controller', kind=str)
+    scenario: str = option(MEASURED, 'what tables call the drive; logs of one name compare')
+    start_s: float | None = option(
+        None, "the log's time at scenario time 0", 's', otherwise='that of the first row'
+    )
+    control_start_s: float = option(
+        0.0,
+        'scenario time at which the engagement begins, a multiple of 10 ms',
+        's',
+        at_least=0.0,
+        whole_periods=True,
+    )
+    score_window_s: tuple[float, ...] = option(
+        (),
+        '`[first, last]` sample of the figures over a window, multiples of 10 ms; none: control '
+        'start to the end',
+        's',
+        many=True,
+        at_least=0.0,
+        rising=True,
+        whole_periods=True,
+    )
+    total_ratio: float | None = option(
+        None, 'w_p over w_r with a stiff driveshaft; w_sr needs it', above=0.0
+    )
+    wear_gain: float = option(1.0, 'what tables say of the clutch', above=0.0, at_most=3.0)
+
+    def __post_init__(self) -> None:
+        """Check every option; raise ParameterError that names a bad one."""
+        super().__post_init__()
+        if self.score_window_s and len(self.score_window_s) != 2:
+            raise ParameterError('run.score_window_s: give two times, [first, last]')
+
+
+def add_columns_option(parser: argparse.ArgumentParser) -> None:
+    """Add --columns to a program that takes logs of other tools beside bags."""
+    parser.add_argument(
+        '--columns',
+        metavar='FILE',
+        help='which column of a CSV log is what, in which unit',
+    )
+
+
+def is_log(path: Path) -> bool:
+    """Say whether a path is a log of another tool rather than a bag."""
+    return path.suffix.lower() == '.csv'
+
+
+def read_recording(path: Path, columns: ColumnMap | None) -> Recording:
+    """Read a bag, or a CSV log by its columns; raise DdctError of either."""
+    if not is_log(path):
+        return read_bag(path)
+    if columns is None:
+        raise DdctError(f'{path}: a CSV log needs a column map: give --columns FILE')
+    return read_measured_run(path, columns)
+
+
+def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
+    """
+    Return a CSV log as a recording on the grid of 10 ms.
+
+    Samples closer than 5 ms are averaged over the 10 ms around each instant, others are read by
+    what they do between samples. What the log does not have is NaN, with the reason in `absent`.
+    Raise DdctError for a log that cannot be read, is too short, or has a gap over 0.1 s.
+    """
+    log = read_log(path, columns, NEEDED)
+    run = _run(columns.run)
+    start_s = log.time_s[0] if run.start_s is None else run.start_s
+    steps = int(np.floor((log.time_s[-1] - start_s) / PERIOD_S + 1e-6))
+    if start_s < log.time_s[0] - 1e-6 or steps < 1:
+        raise DdctError(
+            f'{path}: it has {log.time_s[0]:g} to {log.time_s[-1]:g} s, which run.start_s, '
+            f'{start_s:g} s, does not begin: give a time within'
+        )
+    grid_s = start_s + PERIOD_S * np.arange(steps + 1)
+    values = {name: _on_grid(log, name, grid_s) for name in log.signals}
+    absent = {}
+    if run.total_ratio and 'wheel_speed' in values:
+        values[TORSION] = values['shaft_speed'] / run.total_ratio - values['wheel_speed']
+    else:
+        absent[TORSION] = 'w_sr needs the column wheel_speed and run.total_ratio'
+    for name in (*_JOINT_EFFORTS, *_SINGLE, 'slip_reference'):
+        if name not in values:
+            absent[name] = f'the log has no {name}'
+    for name, of in (('vehicle_accel', 'vehicle_accel'), (TORSION, 'wheel_speed')):
+        if name in values and (apart := _apart(log, of)) > _SLOWEST_S:
+            del values[name]
+            absent[name] = f'the samples of {of} are {apart:g} s apart, more than {_SLOWEST_S:g} s'
+    return Recording(
+        path=path,
+        trajectory=_trajectory(values, steps),
+        facts=_facts(run, steps),
+        custom_data={'scenario_yaml': f'{SCHEMA_KEY}: 1\n', 'version': MEASURED},
+        run_info={},
+        counts={},
+        missed={},
+        realtime=RealtimeFacts(),
+        absent=absent,
+    )
+
+
+def _run(content: Mapping[str, Any]) -> MeasuredRun:
+    known = [field.name for field in fields(MeasuredRun)]
+    for key in content:
+        if key not in known:
+            raise DdctError(f'unknown key run.{key}: {close_name(key, known, "run.")}')
+    return MeasuredRun(**content)
+
+
+def _facts(run: MeasuredRun, steps: int) -> RunFacts:
+    duration_s = time_of_step(steps)
+    window = (run.control_start_s, duration_s)
+    if run.score_window_s:
+        window = (run.score_window_s[0], run.score_window_s[1])
+    return RunFacts(
+        controller=run.controller,
+        architecture=MEASURED,
+        scenario=run.scenario,
+        clutch=MEASURED,
+        wear_gain=run.wear_gain,
+        mode=MEASURED,
+        seed=0,
+        control_start_s=run.control_start_s,
+        score_window_s=window,
+        duration_s=duration_s,
+    )
+
+
+def _on_grid(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
+    times, values = log.samples(name)
+    if not times.size:
+        raise DdctError(f'{log.path}: {name} has no value in any row: leave it out of the columns')
+    wanted = (times >= grid_s[0] - _LONGEST_GAP_S) & (times <= grid_s[-1] + _LONGEST_GAP_S)
+    edges = np.concatenate([[grid_s[0]], times[wanted], [grid_s[-1]]])
+    longest = int(np.argmax(np.diff(edges)))
+    if edges[longest + 1] - edges[longest] > _LONGEST_GAP_S:
+        raise DdctError(
+            f'{log.path}: {name} has no sample from {edges[longest]:g} to {edges[longest + 1]:g} '
+            f's, more than {_LONGEST_GAP_S:g} s: score the parts, or mend the log'
+        )
+    if _apart(log, name) >= _AVERAGED_BELOW_S:
+        return log.at(name, grid_s)
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    first = np.searchsorted(times, grid_s - 0.5 * PERIOD_S)
+    last = np.searchsorted(times, grid_s + 0.5 * PERIOD_S)
+    few = last == first
+    means = (sums[last] - sums[first]) / np.where(few, 1, last - first)
+    return np.where(few, log.at(name, grid_s), means)
+
+
+def _apart(log: MeasuredLog, name: str) -> float:
+    times = log.samples(name)[0]
+    return float(np.median(np.diff(times))) if len(times) > 1 else np.inf
+
+
+def _trajectory(values: Mapping[str, np.ndarray], steps: int) -> Trajectory:
+    """Return every signal that a run without sticking has; NaN for what is not there."""
+    count = steps + 1
+    nothing = np.full(count, np.nan)
+    columns: dict[str, Any] = {
+        signal.name: nothing if signal.unit else ((),) * count
+        for topic in recorded_topics(RunKind())
+        for signal in topic.signals_in(RunKind())
+    }
+    for name, width in (('joint_position', len(JOINTS)), ('actuator_torque', SUBSTEPS + 1)):
+        columns[name] = np.full((count, width), np.nan)
+    columns['clutch_torque'] = columns['actuator_torque']
+    columns['joint_speed'] = np.column_stack([values.get(n, nothing) for n in _JOINT_SPEEDS])
+    columns['joint_effort'] = np.column_stack([values.get(n, nothing) for n in _JOINT_EFFORTS])
+    columns['slip_speed'] = values['engine_speed'] - values['shaft_speed']
+    columns['slip_reference'] = values.get('slip_reference', nothing)[:, None]
+    columns['slip_reference_rate'] = nothing[:, None]
+    columns |= {name: values.get(name, nothing) for name in _SINGLE}
+    return Trajectory.of_columns(columns)

@@ -1,0 +1,165 @@
+"""`identify --from LOG`: a log of another tool, or a bag, becomes a scenario that runs."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.other_car import COLUMNS, TRUE, drive, write_csv
+from support.runs import expected, plan, record
+
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.identify import main
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / 'map.yaml').write_text(COLUMNS)
+    write_csv(tmp_path / 'drive.csv', 3, drive(1))
+    return tmp_path
+
+
+def identify(folder: Path, *options: str) -> int:
+    log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
+    return main([*log, *options])
+
+
+def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_csv(folder / 'other.csv', 4, drive(2))
+    out, report = folder / 'mycar.yaml', folder / 'report.json'
+    check = ['--check', str(folder / 'other.csv')]
+    assert identify(folder, *check, '--out', str(out), '--json', str(report)) == 0
+    printed = capsys.readouterr().out
+    assert 'intervals of 95 %' in printed
+    content = json.loads(report.read_text())
+    rows = {row['name']: row for row in content['parameters']}
+    assert {row['state'] for row in rows.values()} == {'fitted'}
+    held = [rows[n]['lowest'] <= value <= rows[n]['highest'] for n, value in TRUE.items()]
+    assert sum(held) >= 6
+    signals = {each['signal']: each for each in content['held_out']['signals']}
+    assert all(each['nrmse'] < 0.02 for each in signals.values())
+    assert signals['shaft_speed']['white'] is True
+    scenario = load_scenario(str(out))
+    assert scenario.name == 'mycar'
+    assert 'drive.csv' in scenario.description
+    assert [each.partition(',')[0] for each in scenario.adjusted] == ['gear is now none']
+    assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
+    assert run_headless(RunSettings(scenario), 'pi').steps == scenario.steps
+
+
+def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The car is heavier than the base scenario's; ls8 was not among what was fitted."""
+    heavy = ('vehicle.mass_kg=1900', 'driveline.engine_inertia=0.3')
+    recording = record(plan('pi', 'headless', duration_s=3.0, changes=heavy), tmp_path / 'pi')
+    random = np.random.default_rng(0)
+    lines = signals_csv(recording).splitlines()
+    names = lines[0].split(',')
+    speeds = [n for n in names if n.endswith('speed_rad_s') and n[0] in 'epw']
+    for number, line in enumerate(lines[1:], 1):
+        cells = dict(zip(names, line.split(','), strict=True))
+        for name in speeds:
+            cells[name] = repr(float(cells[name]) + 0.05 * random.standard_normal())
+        lines[number] = ','.join(cells.values())
+    (tmp_path / 'noisy.csv').write_text('\n'.join(lines) + '\n')
+    out = tmp_path / 'mine.yaml'
+    fixed = ['--fix', 'engine_damping']
+    assert main(['--from', str(tmp_path / 'noisy.csv'), '--out', str(out), *fixed]) == 0
+    truth = expected(plan('ls8', 'headless', duration_s=3.0, changes=heavy))
+    found = run_headless(RunSettings(load_scenario(str(out), ['duration_s=3.0'])), 'ls8')
+    thesis = expected(plan('ls8', 'headless', duration_s=3.0))
+    spread = np.std(truth.slip_speed)
+    assert np.sqrt(np.mean((found.slip_speed - truth.slip_speed) ** 2)) < 0.02 * spread
+    assert np.sqrt(np.mean((thesis.slip_speed - truth.slip_speed) ** 2)) > 0.05 * spread
+    assert 'Prediction of' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+def test_a_bag_needs_no_columns_and_gives_back_its_driveline(
+    tmp_path: Path, clutch: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = plan('pi', 'headless', duration_s=1.5, clutch=clutch)
+    record(run, tmp_path / 'pi')
+    assert main(['--from', str(tmp_path / 'pi'), '--json', '-']) == 0
+    content = json.loads(capsys.readouterr().out)
+    true = vars(run.settings.scenario.driveline)
+    for row in content['parameters']:
+        scale = max(true[row['name']], 0.01)
+        tight = 1e-3 if clutch == 'linear' else 0.1
+        assert row['used'] == pytest.approx(true[row['name']], abs=tight * scale), row['name']
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'complaint'),
+    [
+        ('unit: rpm}\n  shaft', 'unit: rad/s}\n  shaft', 'is it in another unit than rad/s?'),
+        ('nMot', 'nMotor', "no column 'nMotor': did you mean nMot?"),
+        ('unit: Nm', 'unit: rpm', "columns.clutch_torque: unit 'rpm': choose from N m, Nm, kN m"),
+        (', unit: Nm', '', 'columns.clutch_torque: give {column: NAME, unit: UNIT}'),
+        ('clutch_torque', 'clutch_torqe', 'unknown columns.clutch_torqe: did you mean'),
+        (
+            '  clutch_torque: {column: MdKup, unit: Nm}\n',
+            '',
+            'map has no clutch_torque',
+        ),
+        ('unit: Nm', 'unit: Nm, between: spline', "between is 'spline': choose from linear, held"),
+        ('time:', 'vehicle_speed:', "unit 'ms': choose from m/s, km/h"),
+        ('columns:', 'colums:', 'give columns by quantity'),
+    ],
+)
+def test_a_wrong_column_map_is_refused_in_one_line(
+    folder: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, complaint: str
+) -> None:
+    (folder / 'map.yaml').write_text(COLUMNS.replace(old, new))
+    assert identify(folder) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert complaint in line
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        (lambda lines: [*lines[:9], lines[4], *lines[9:]], 'line 10, column Zeit: the time goes'),
+        (lambda lines: [*lines[:9], lines[9][12:], *lines[10:]], 'line 10'),
+        (lambda lines: [*lines[:9], lines[9].replace(';', ';x', 1)], "line 10, column nMot: 'x"),
+        (lambda lines: lines[:30], ' rows have all of engine_speed'),
+        (lambda lines: lines[:2], 'no row of numbers below the header'),
+        (lambda lines: [*lines[:9], ';' + lines[9].partition(';')[2]], 'the time is empty'),
+    ],
+)
+def test_a_bad_log_is_refused_in_one_line_with_its_place(
+    folder: Path, capsys: pytest.CaptureFixture[str], change: object, complaint: str
+) -> None:
+    file = folder / 'drive.csv'
+    assert callable(change)
+    file.write_text('\n'.join(change(file.read_text().splitlines())) + '\n')
+    assert identify(folder, '--hold-out', '0.1') == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert complaint in line
+    assert str(file) in line
+
+
+@pytest.mark.parametrize(
+    ('options', 'complaint'),
+    [
+        (['--fix', 'total_ratio'], '--columns, --check, --fix, --set and --out need a log'),
+        (['--from', 'a.csv', '--as-printed'], '--as-printed is about the thesis'),
+        (['--from', 'a.csv', '--hold-out', '1.5'], '--hold-out is 1.5: give a share'),
+        (['--from', 'none.csv'], 'none.csv: cannot be read'),
+        (['--from', 'none.mcap'], 'none.mcap: cannot be read as a bag'),
+        (['--from', 'a.csv', '--columns', 'none.yaml'], '--columns none.yaml: cannot be read'),
+        (['--from', 'a.csv', '--out', 'my car.yaml'], 'my car'),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(
+    capsys: pytest.CaptureFixture[str], options: list[str], complaint: str
+) -> None:
+    assert main(options) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert complaint in line

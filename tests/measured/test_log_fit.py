@@ -1,0 +1,180 @@
+"""A fit to a log finds the car behind it, within its intervals, and names what it cannot know."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from support.other_car import LASTS_S, NOISE_RAD_S, ROLLING_N_M, SPEEDS, TRUE, drive
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.log_check import predict
+from ddct_plant.identification.log_fit import LogFit, fit_log
+from ddct_plant.identification.log_stretches import stretches_of, white_noise
+from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.models.parameters import DrivelineParameters
+
+START = DrivelineParameters()
+"""Another car than the one of the logs."""
+SEEDS = 12
+
+
+def drag(wheel_speed: np.ndarray) -> np.ndarray:
+    return 0.4032 * 0.3211344993404892**3 * wheel_speed**2
+
+
+def log_of(signals: dict[str, np.ndarray], time_s: np.ndarray | None = None) -> MeasuredLog:
+    times = drive().time_s if time_s is None else time_s
+    return MeasuredLog(Path('a.csv'), '', times, signals)
+
+
+def hits(fit: LogFit) -> list[bool]:
+    found = []
+    for name in fit.std:
+        lowest, highest = fit.interval(name) or (np.nan, np.nan)
+        found.append(lowest <= TRUE[name] <= highest)
+    return found
+
+
+@pytest.fixture(scope='module')
+def fit() -> LogFit:
+    return fit_log(log_of(drive().noisy(0)), START, drag)
+
+
+def test_every_parameter_of_a_car_of_other_code_is_found_from_another_start(fit: LogFit) -> None:
+    assert fit.undetermined == ()
+    assert fit.values == pytest.approx(TRUE, rel=0.05)
+    assert fit.load_torque == pytest.approx(ROLLING_N_M, abs=10.0)
+    assert sum(hits(fit)) >= 7
+
+
+@pytest.mark.slow
+def test_intervals_of_95_percent_hold_the_true_values_at_that_rate(fit: LogFit) -> None:
+    """Of 96 intervals 91 are expected, with a deviation of 2."""
+    true = DrivelineParameters(**TRUE)
+    held = [hits(fit_log(log_of(drive().noisy(seed)), true, drag)) for seed in range(SEEDS)]
+    assert sum(map(sum, held)) >= 85
+    assert all(len(each) == 8 for each in held)
+
+
+@pytest.mark.slow
+def test_noise_of_the_torques_widens_the_intervals_and_they_still_hold(fit: LogFit) -> None:
+    true = DrivelineParameters(**TRUE)
+    fits = [fit_log(log_of(drive().noisy(seed, 1.0)), true, drag) for seed in range(2)]
+    held = [each for one in fits for each in hits(one)]
+    assert sum(held) >= 0.8 * len(held)
+    for one in fits:
+        assert all(one.std[name] > fit.std[name] for name in one.std)
+        assert one.std.get('shaft_inertia', 1.0) > 5.0 * fit.std['shaft_inertia']
+
+
+def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
+    """Of the same size, but with a memory of 0.08 s; the sum over slow noise tells less."""
+    random = np.random.default_rng(1)
+    noise = lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], random.standard_normal((3, 601)))
+    signals = dict(drive().signals)
+    for name, size, each in zip(SPEEDS, NOISE_RAD_S, noise, strict=True):
+        signals[name] = signals[name] + size * each
+    slow = fit_log(log_of(signals), DrivelineParameters(**TRUE), drag)
+    assert slow.noise.order >= 1
+    for name in ('engine_inertia', 'total_ratio', 'vehicle_inertia'):
+        assert slow.std[name] > 2.0 * fit.std[name]
+    assert sum(hits(slow)) >= 6
+
+
+def test_white_noise_is_measured_without_the_signal() -> None:
+    torque = drive().clutch_torque
+    assert white_noise(torque) < 1e-6
+    noise = 2.0 * np.random.default_rng(0).standard_normal(len(torque))
+    assert white_noise(torque + noise) == pytest.approx(2.0, rel=0.15)
+
+
+def test_data_that_took_no_part_are_predicted_and_a_wrong_car_is_noticed(fit: LogFit) -> None:
+    other = replace(log_of(drive(2).noisy(7)), time_s=drive(2).time_s)
+    stretches = stretches_of(other, drag)
+    predictions = {each.signal: each for each in predict(fit, stretches)}
+    assert max(each.nrmse or 1.0 for each in predictions.values()) < 0.02
+    assert [each.white for each in predictions.values()] == [True, True, True, None]
+    wrong = replace(fit, values={**fit.values, 'halfshaft_stiffness': 6000.0})
+    assert not all(each.white for each in predict(wrong, stretches)[1:3])
+
+
+def test_what_the_log_does_not_show_is_named_and_kept() -> None:
+    """The engine runs at constant speed, so neither its inertia nor its damping can be known."""
+    signals = dict(drive().noisy(0))
+    random = np.random.default_rng(5)
+    count = len(drive().time_s)
+    signals['engine_speed'] = 190.0 + 0.2 * random.standard_normal(count)
+    signals['engine_torque'] = signals['clutch_torque'] + 0.02 * 190.0
+    fit = fit_log(log_of(signals), START, drag)
+    assert 'engine_inertia' in fit.undetermined
+    assert fit.values['engine_inertia'] == START.engine_inertia
+    assert fit.interval('engine_inertia') is None
+    assert {'halfshaft_stiffness', 'vehicle_inertia'} <= set(fit.std)
+
+
+def test_a_log_at_constant_speed_shows_the_ratio_at_most_and_without_it_nothing() -> None:
+    random, count = np.random.default_rng(5), len(drive().time_s)
+    levels = {'engine_speed': 190.0, 'shaft_speed': 150.0, 'wheel_speed': 12.0}
+    signals = {n: each + 0.1 * random.standard_normal(count) for n, each in levels.items()}
+    signals |= {'engine_torque': np.full(count, 6.0), 'clutch_torque': np.full(count, 6.0)}
+    fit = fit_log(log_of(signals), START, drag)
+    assert set(fit.std) <= {'total_ratio', 'engine_damping', 'shaft_damping'}
+    assert {'engine_inertia', 'halfshaft_stiffness', 'vehicle_inertia'} <= set(fit.undetermined)
+    with pytest.raises(
+        DdctError, match='the log determines none of engine_inertia, shaft_inertia'
+    ):
+        fixed = ('total_ratio', 'engine_damping', 'shaft_damping')
+        fit_log(log_of(signals), START, drag, fixed)
+
+
+def test_a_fixed_parameter_keeps_its_value(fit: LogFit) -> None:
+    start = replace(START, total_ratio=12.5)
+    fixed = fit_log(log_of(drive().noisy(0)), start, drag, ('total_ratio',))
+    assert fixed.values['total_ratio'] == 12.5
+    assert 'total_ratio' not in fixed.std
+    assert fixed.std['vehicle_inertia'] <= 1.01 * fit.std['vehicle_inertia']
+
+
+def test_gaps_uneven_steps_and_several_rates_cost_little() -> None:
+    """Torques every 8 ms, speeds every 16 ms with jitter, none for 0.3 s, one torque lost."""
+    full, signals = drive(), dict(drive().noisy(0))
+    rows = np.arange(len(full.time_s))
+    for name in ('engine_speed', 'shaft_speed', 'wheel_speed'):
+        signals[name] = np.where(rows % 2 | ((rows > 300) & (rows < 338)), np.nan, signals[name])
+    signals['engine_torque'] = np.where(rows == 100, np.nan, signals['engine_torque'])
+    signals['wheel_speed'][rows % 22 == 4] = np.nan
+    log = log_of(signals)
+    stretches = stretches_of(log, drag)
+    assert [len(each.time_s) > 100 for each in stretches] == [True, True]
+    assert stretches[1].time_s[0] - stretches[0].time_s[-1] > 0.3
+    fit = fit_log(log, START, drag)
+    assert fit.values == pytest.approx(TRUE, rel=0.1)
+    assert sum(hits(fit)) >= 6
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        ({'wheel_speed': 30.0 / np.pi}, 'shaft_speed over wheel_speed is 1.31[0-9] as a rule'),
+        ({'wheel_speed': np.nan}, '0 rows have all of engine_speed, shaft_speed, wheel_speed'),
+    ],
+)
+def test_logs_that_cannot_be_are_refused(change: dict[str, float], complaint: str) -> None:
+    signals = {name: each * change.get(name, 1.0) for name, each in drive().noisy(0).items()}
+    with pytest.raises(DdctError, match=complaint):
+        fit_log(log_of(signals), START, drag)
+
+
+def test_a_log_of_holes_alone_is_refused() -> None:
+    signals = dict(drive().noisy(0))
+    rows = np.arange(len(drive().time_s))
+    holes = np.where(rows % 30 < 12, np.nan, 0.0)
+    signals['clutch_torque'] = signals['clutch_torque'] + holes
+    with pytest.raises(DdctError, match='no 40 samples in a row without a gap'):
+        fit_log(log_of(signals), START, drag)
+
+
+def test_the_drive_of_the_other_car_lasts_as_long_as_it_says() -> None:
+    assert drive().time_s[-1] == pytest.approx(LASTS_S)

@@ -1,0 +1,188 @@
+"""`score` and `report` take logs of other tools; what the columns do not allow is null."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
+from support.runs import plan, record
+
+from ddct_bringup.programs import report, score
+from ddct_bringup.run.failed_run import NOTE_FILE
+from ddct_bringup.scores.csv_text import signals_csv
+from ddct_bringup.scores.measured import NEEDS
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.verdict.limits_file import packaged_limits
+
+OURS = """\
+columns:
+  time: {column: time_s, unit: s}
+  engine_speed: {column: engine_speed_rad_s, unit: rad/s}
+  shaft_speed: {column: primary_shaft_speed_rad_s, unit: rad/s}
+  wheel_speed: {column: wheel_speed_rad_s, unit: rad/s}
+  clutch_torque: {column: primary_shaft_effort_n_m, unit: N m}
+  driveshaft_torque: {column: driveshaft_effort_n_m, unit: N m}
+  vehicle_accel: {column: vehicle_accel_m_s2, unit: m/s^2}
+  slip_reference: {column: slip_reference_rad_s, unit: rad/s}
+  torque_request: {column: torque_request_n_m, unit: N m}
+run: {controller: pi, scenario: bench, control_start_s: 0.6, score_window_s: [0.6, 1.7]}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    run = (
+        '  vehicle_accel: {column: ax, unit: g}\nrun: {control_start_s: 0.5, total_ratio: 12.5}\n'
+    )
+    (tmp_path / 'map.yaml').write_text(COLUMNS + run)
+    write_csv(tmp_path / 'drive.csv', 3, drive(1))
+    return tmp_path
+
+
+def scored(folder: Path, *options: str) -> dict:
+    out = folder / 'scores.json'
+    columns = ['--columns', str(folder / 'map.yaml')]
+    code = score.main([str(folder / 'drive.csv'), *columns, '--json', str(out), *options])
+    (run,) = json.loads(out.read_text())['runs']
+    assert code == (0 if run['valid'] else 1)
+    return run
+
+
+def test_our_own_signals_as_a_foreign_log_have_the_figures_of_the_bag(tmp_path: Path) -> None:
+    recording = record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
+    assert recording.settings is not None
+    ratio = recording.settings.scenario.driveline.total_ratio
+    (tmp_path / 'drive.csv').write_text(signals_csv(recording))
+    (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
+    found, wanted = scored(tmp_path), score_recording(recording, 'pi', packaged_limits())
+    of_time = ('update_time_median_us', 'update_time_p99_us', 'missed_steps', 'resends')
+    for name, value in wanted['metrics'].items():
+        if name not in (*of_time, 'worst_lateness_us'):
+            assert found['metrics'][name] == pytest.approx(value, rel=1e-9), name
+    assert found['verdict']['state'] == wanted['verdict']['state']
+    for ours, theirs in zip(
+        wanted['verdict']['criteria'], found['verdict']['criteria'], strict=True
+    ):
+        if ours['name'] != 'deadline_misses':
+            same = None if ours['value'] is None else pytest.approx(ours['value'], rel=1e-9)
+            assert theirs['value'] == same, ours['name']
+    assert found['not_computed'] == {}
+    assert (found['mode'], found['scenario'], found['controller']) == ('measured', 'bench', 'pi')
+
+
+def test_what_the_columns_do_not_allow_is_null_with_its_reason(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = scored(folder)
+    metrics, reasons = run['metrics'], run['not_computed']
+    assert run['valid'] is True
+    assert metrics['steps'] == round(100 * LASTS_S)
+    exact = drive(1)
+    window = exact.time_s >= 0.5
+    assert metrics['acceleration_std_m_s2'] == pytest.approx(np.std(exact.accel[window]), rel=0.02)
+    twist_speed = exact.speeds[:, 1] / TRUE['total_ratio'] - exact.speeds[:, 2]
+    true_std = 30.0 / np.pi * np.hypot(np.std(twist_speed[window]), np.hypot(0.2 / 12.5, 0.02))
+    assert metrics['torsion_speed_std_rpm'] == pytest.approx(true_std, rel=0.2)
+    slip = exact.speeds[:, 0] - exact.speeds[:, 1]
+    work = np.trapezoid(np.abs(slip * exact.clutch_torque), exact.time_s)
+    assert metrics['friction_energy_j'] == pytest.approx(work, rel=0.01)
+    assert metrics['slip_rmse_rpm'] is None
+    assert reasons['slip_rmse_rpm'] == 'the log has no slip_reference'
+    assert reasons['request_variation'] == 'the log has no torque_request'
+    assert 'friction_energy_j' not in reasons
+    assert 'the log has no slip_reference: no slip_rmse_rpm' in capsys.readouterr().out
+
+
+def test_a_log_of_two_speeds_alone_still_has_its_engagement(folder: Path) -> None:
+    lines = COLUMNS.splitlines(keepends=True)
+    (folder / 'map.yaml').write_text(''.join(lines[:4]))
+    run = scored(folder)
+    assert run['metrics']['slip_final_rpm'] is not None
+    assert set(run['not_computed']) == {
+        name
+        for names in NEEDS.values()
+        for name in names
+        if {**run['metrics'], **_values(run)}[name] is None
+    }
+    assert run['not_computed']['peak_jerk'] == 'the log has no vehicle_accel'
+    assert 'run.total_ratio' in run['not_computed']['torsion_speed_std_rpm']
+
+
+def test_what_lies_beside_a_log_is_not_its_own(folder: Path) -> None:
+    """A run of ours that failed may have been in the same folder."""
+    (folder / NOTE_FILE).write_text('{}')
+    assert scored(folder)['valid'] is True
+
+
+def test_every_named_figure_is_a_metric_or_a_criterion() -> None:
+    named = {name for names in NEEDS.values() for name in names}
+    assert named <= set(Metrics.__dataclass_fields__) | set(CRITERION_UNITS)
+
+
+def test_the_report_shows_a_log_and_says_why_a_cell_is_empty(folder: Path) -> None:
+    page = folder / 'report.html'
+    columns = ['--columns', str(folder / 'map.yaml')]
+    assert report.main([str(folder / 'drive.csv'), *columns, '--out', str(page)]) == 0
+    text = page.read_text()
+    assert 'drive.csv' in text
+    assert 'the log has no torque_request' in text
+
+
+def test_a_fast_log_is_averaged_and_a_slow_acceleration_refused(folder: Path) -> None:
+    time_s = np.arange(0.0, 2.0, 0.001)
+    noise = np.random.default_rng(0).standard_normal(len(time_s))
+    rows = [
+        f'{t:.3f},{100.0 - 20.0 * t + 3.0 * e:.6f},60.0,{t if k % 50 == 0 else ""}\n'
+        for k, (t, e) in enumerate(zip(time_s, noise, strict=True))
+    ]
+    (folder / 'drive.csv').write_text('t,m,p,a\n' + ''.join(rows))
+    quantities = {'engine_speed': 'm', 'shaft_speed': 'p'}
+    lines = ['columns:', '  time: {column: t, unit: s}']
+    lines += [f'  {name}: {{column: {c}, unit: rad/s}}' for name, c in quantities.items()]
+    lines += ['  vehicle_accel: {column: a, unit: m/s^2}']
+    (folder / 'map.yaml').write_text('\n'.join(lines) + '\n')
+    run = scored(folder, '--signals-csv', str(folder / 'signals'))
+    assert run['valid'], run['reason']
+    assert run['not_computed']['peak_jerk'].startswith('the samples of vehicle_accel are 0.05 s')
+    (file,) = (folder / 'signals').iterdir()
+    table = np.genfromtxt(file, delimiter=',', names=True)
+    left = table['slip_speed_rad_s'] - (40.0 - 20.0 * table['time_s'])
+    assert np.std(left[1:-1]) == pytest.approx(3.0 / np.sqrt(10.0), rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ('old', 'new', 'complaint'),
+    [
+        ('total_ratio: 12.5', 'ratio: 12.5', 'unknown key run.ratio: did you mean'),
+        ('0.5', '0.501', 'run.control_start_s is 0.501 s: give a multiple of 0.01 s'),
+        ('0.5', '0.5, start_s: 1.0', 'run.start_s, 1 s, does not begin'),
+        ('0.5', '0.5, score_window_s: [1.0]', 'run.score_window_s: give two times'),
+        ('nEin', 'nAus', "no column 'nAus'"),
+    ],
+)
+def test_a_wrong_map_makes_an_invalid_entry_with_its_reason(
+    folder: Path, old: str, new: str, complaint: str
+) -> None:
+    text = (folder / 'map.yaml').read_text()
+    (folder / 'map.yaml').write_text(text.replace(old, new))
+    run = scored(folder)
+    assert run['valid'] is False
+    assert complaint in run['reason']
+
+
+def test_a_hole_in_the_log_is_said_and_a_log_needs_its_map(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert score.main([str(folder / 'drive.csv')]) == 1
+    assert 'a CSV log needs a column map: give --columns FILE' in capsys.readouterr().err
+    lines = (folder / 'drive.csv').read_text().splitlines(keepends=True)
+    (folder / 'drive.csv').write_text(''.join([*lines[:200], *lines[250:]]))
+    run = scored(folder)
+    assert 'has no sample from 701.576 to 701.984 s, more than 0.1 s' in run['reason']
+
+
+def _values(run: dict) -> dict:
+    return {each['name']: each['value'] for each in run['verdict']['criteria']}
