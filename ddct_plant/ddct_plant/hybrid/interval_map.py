@@ -50,8 +50,8 @@ class Passage(NamedTuple):
     """(P, n): the state after each."""
     slips: np.ndarray
     """(P, slipping elements, 2): the integrals of |s| (1 - t) and |s| t, t from 0 to 1 in it."""
-    lasts: np.ndarray
-    """(P,) whether the mode lasts throughout a piece at whose start it is in force."""
+    lasts: int
+    """How many pieces go by before one in which a guard may turn negative."""
 
 
 class IntervalMap:
@@ -79,12 +79,19 @@ class IntervalMap:
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
         """By element that slips: its number, where its integrals are, where its capacity is."""
+        self._held_work: list[tuple[int, int, int]] = []
+        """The same of those whose capacity is held."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
             where = layout.capacities[element]
-            rows.append(_by_value(slips[:, place], held=where.stop - where.start == 1))
-            self._work.append((element, slice(first, first + len(rows[-1])), where))
-            first += len(rows[-1])
+            held = where.stop - where.start == 1
+            rows.append(_by_value(slips[:, place], held=held))
+            integrals = slice(first, first + len(rows[-1]))
+            if held:
+                self._held_work.append((element, first, where.start))
+            else:
+                self._work.append((element, integrals, where))
+            first = integrals.stop
         units, directions = _shortfalls(flow.guards, starts)
         nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
         rows += [nodes.reshape(-1, nodes.shape[2]), directions]
@@ -101,16 +108,22 @@ class IntervalMap:
         work = [0.0] * len(self._signs)
         for element, integrals, where in self._work:
             work[element] = sum(map(mul, values[integrals], capacities[where]))
+        for element, integral, place in self._held_work:
+            work[element] = values[integral] * capacities[place]
         return Interval(values[: self._states], self._signs, [], work, values[self._friction])
 
     def by_piece(self, v: np.ndarray) -> Passage:
         """Return what becomes of each piece."""
         values = self._by_piece(v).reshape(self._pieces, -1)
         slips = self._states + 2 * self._slipping
+        # Not `<`: a value that is not a number must not pass either.
+        safe = values[:, slips:] >= 0.0
+        first = int(safe.argmin())
+        lasts = self._pieces if safe.flat[first] else first // safe.shape[1]
         return Passage(
             values[:, : self._states],
             values[:, self._states : slips].reshape(self._pieces, self._slipping, 2),
-            np.all(values[:, slips:] >= 0.0, axis=1),
+            lasts,
         )
 
 

@@ -59,8 +59,7 @@ class Motion:
         passage = self._maps[self._signs].by_piece(
             np.concatenate((self._state, values[layout.shifts[first]]))
         )
-        lasts = passage.lasts[: layout.pieces - first]
-        count = len(lasts) if lasts.all() else int(lasts.argmin())
+        count = min(passage.lasts, layout.pieces - first)
         if count:
             self._state = passage.ends[count - 1]
             nodes = values[layout.nodes[first : first + count + 1]]
