@@ -12,7 +12,6 @@ The state that a run reached: one word, by the rules of the limits file.
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import linregress
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
@@ -172,8 +171,8 @@ def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:
     times = ((at[1:] + at[:-1]) * PERIOD_S / 2.0)[(len(at) - 1) // 2 :]
     if len(middles) < FEWEST_SWINGS or _met(cycle, rules.engaged_slip):
         return False
-    line = linregress(times, np.sign(middles[-1]) * middles)
-    return bool(line.slope - DOUBT * line.stderr >= rules.runaway_growth)
+    (slope, _), spread = np.polyfit(times, np.sign(middles[-1]) * middles, 1, cov=True)
+    return bool(slope - DOUBT * np.sqrt(spread[0, 0]) >= rules.runaway_growth)
 
 
 def _met(slip: np.ndarray, band: float) -> bool:
