@@ -20,10 +20,14 @@ def write(folder: Path, name: str = 'my_slip') -> None:
 
 
 def python(site: Path, code: str) -> str:
-    """Return what Python prints where the packages in `site` are installed."""
+    """
+    Return what Python prints where the packages in `site` are installed.
+
+    The folder of the package lies in the current one, which Python searches first.
+    """
     done = subprocess.run(
         [sys.executable, '-c', f'import site; site.addsitedir({str(site)!r})\n{code}'],
-        cwd=site,
+        cwd=site.parent,
         capture_output=True,
         text=True,
         timeout=WITHIN_S,
@@ -65,7 +69,7 @@ def test_the_entry_point_leads_to_the_class(tmp_path: Path) -> None:
     project = tomllib.loads((tmp_path / 'x' / 'pyproject.toml').read_text(encoding='utf-8'))
     points = project['project']['entry-points']['ddct.controllers']
     assert points == {'gain_2_high': 'gain_2_high:Gain2High'}
-    code = (tmp_path / 'x' / 'gain_2_high.py').read_text(encoding='utf-8')
+    code = (tmp_path / 'x' / 'src' / 'gain_2_high.py').read_text(encoding='utf-8')
     assert 'class Gain2High(Controller):' in code
 
 

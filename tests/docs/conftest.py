@@ -33,7 +33,7 @@ def install_example(site: Path) -> None:
         'my_slip = my_slip:MySlip\n'
     )
     write_package('my_slip', site / 'new')
-    (site / 'new' / 'my_slip.py').rename(site / 'my_slip.py')
+    (site / 'new' / 'src' / 'my_slip.py').rename(site / 'my_slip.py')
 
 
 @pytest.fixture(scope='session')

@@ -28,7 +28,7 @@ class Guardian:
     def __init__(self) -> None:
         """Start it."""
         self._process = subprocess.Popen(
-            [sys.executable, '-m', 'ddct_bringup.processes.guardian'],
+            [sys.executable, '-P', '-m', 'ddct_bringup.processes.guardian'],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

@@ -32,7 +32,7 @@ class LiveView:
         """Start it on a port, 0 for a free one, in the present ROS domain."""
         self._printed = os.memfd_create('live')
         self._process = subprocess.Popen(
-            [sys.executable, '-m', 'ddct_bringup.programs.live', '--port', str(port)],
+            [sys.executable, '-P', '-m', 'ddct_bringup.programs.live', '--port', str(port)],
             stdin=subprocess.DEVNULL,
             stdout=self._printed,
             stderr=subprocess.STDOUT,

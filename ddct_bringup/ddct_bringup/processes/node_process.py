@@ -34,7 +34,8 @@ class NodeProcess:
         self._limit_s = START_S
         self._silent_s = 0.0
         self._segments: set[str] = set()
-        command = [sys.executable, '-m', spec.module]
+        # -P: a file of the current folder must not hide a module of the same name.
+        command = [sys.executable, '-P', '-m', spec.module]
         command += ['--ros-args', '--params-file', str(parameter_file)]
         self.process = subprocess.Popen(
             command,

@@ -19,7 +19,9 @@ LATE_SHARE = 0.05
 MOST_RATE_N_M_S = 3500.0
 """Ten times per second from no clutch torque to all of it, 350 N m."""
 HALF = 0.5
-"""Of a step that slip follows within a second: engagements take one or two."""
+"""Of a step: who follows less within a second is too slow for engagements of one or two."""
+WELL = 0.8
+"""Share of a step that a good loop follows within a second."""
 
 
 def update_time(subject: Subject) -> str:
@@ -66,13 +68,13 @@ def unit(subject: Subject) -> str:
     else:
         return found
     other = subject.step_response(factor)
-    if other.diverges or other.followed < HALF:
-        return f'{found}, and {what} of the torque would not mend it'
+    if other.diverges or other.followed < WELL:
+        return f'{found}, and {what} of the torque does not make it a good loop'
     raise CheckFailedError(
         f'{found}; with {what} of its torque the loop is stable and follows to '
         f'{other.followed:.0%}. That is 30/pi, rpm in a rad/s: look at the units in '
         f'{place_of_method(subject.sample, "update")}; slip_error_rpm is in rpm, the speeds and '
-        'slip_reference are in rad/s'
+        'slip_reference are in rad/s. If they are right, change the gain'
     )
 
 

@@ -18,7 +18,7 @@ TEMPLATES = Path(__file__).parent / 'files'
 FILES = {
     'pyproject.toml': 'pyproject.toml.in',
     'README.md': 'README.md.in',
-    '{name}.py': 'controller.py.in',
+    'src/{name}.py': 'controller.py.in',
     'test_{name}.py': 'test_controller.py.in',
 }
 """What is written, by its name, and the template of it."""
@@ -26,7 +26,7 @@ _EPILOG = """\
 examples:
   ddct new-controller my_slip --out my_slip
 
-Then edit my_slip/my_slip.py; my_slip/README.md has the commands to install, check and score it."""
+Then edit my_slip/src/my_slip.py. my_slip/README.md has the commands to install, check, score it."""
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -78,6 +78,7 @@ def write_package(name: str, folder: Path) -> None:
     """Write the files of the controller `name` into the new `folder`; DdctError if it is taken."""
     try:
         folder.mkdir(parents=True)
+        (folder / 'src').mkdir()
     except FileExistsError as error:
         raise DdctError(f'{folder} exists already: choose another --out') from error
     except OSError as error:
