@@ -26,7 +26,7 @@ _EPILOG = """\
 examples:
   ddct new-controller my_slip --out my_slip
 
-Then edit my_slip/src/my_slip.py. my_slip/README.md has the commands to install, check, score it."""
+Then edit my_slip/src/my_slip.py. The commands to install, check and score it are in its README."""
 
 
 def main(argv: list[str] | None = None) -> int:
