@@ -12,6 +12,7 @@ from urllib.parse import unquote, urlparse
 from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, root_cause
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.watch import AskedGains
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.registry import ENTRY_POINT_GROUP
 from ddct_controllers.template.install_command import install_command
@@ -39,6 +40,8 @@ def entry_point(subject: Subject) -> str:
 
 def _advice(subject: Subject, error: DdctError) -> str:
     """Return what more there is to say of a name that leads nowhere."""
+    if is_controller_file(subject.name):
+        return ''
     if not subject.points:
         for folder, _, names in _installed_from_folders():
             if subject.name in names:

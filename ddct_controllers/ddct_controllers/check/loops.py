@@ -1,12 +1,12 @@
 """Checks in the closed loop: time, rate, unit, linear model, stability."""
 
 import math
-import statistics
 
 import numpy as np
 
 from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
 from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.trial import closed_trial
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.timebase import PERIOD_S
@@ -15,7 +15,9 @@ from ddct_plant.linear.lti import StateSpace
 RPM_FACTOR = 30.0 / math.pi
 """rpm in a rad/s."""
 LATE_SHARE = 0.05
-"""Of updates that may take longer than their period on a busy machine."""
+"""Of updates that may take longer than their period."""
+AGAIN = 2
+"""More runs of a controller that seems slow."""
 MOST_RATE_N_M_S = 3500.0
 """Ten times per second from no clutch torque to all of it, 350 N m."""
 HALF = 0.5
@@ -25,19 +27,35 @@ WELL = 0.8
 
 
 def update_time(subject: Subject) -> str:
-    """Check that an update takes less than its period."""
-    times_ms = sorted(1e3 * each for each in subject.closed.update_s)
-    median, slow = statistics.median(times_ms), times_ms[int((1.0 - LATE_SHARE) * len(times_ms))]
+    """
+    Check that an update takes less than its period.
+
+    Another process can take the machine away for as long; so where it seems slow, each update
+    counts with the least time of three runs.
+    """
+    least = np.array(subject.closed.update_s)
+    for _ in range(AGAIN):
+        if _slowest(least) < PERIOD_S and not subject.closed.too_slow:
+            break
+        subject.closed = closed_trial(subject.settings, subject.make())
+        updates = min(len(least), len(subject.closed.update_s))
+        least = np.minimum(least[:updates], subject.closed.update_s[:updates])
+    slowest = _slowest(least)
     found = (
-        f'median {median:.3f} ms, {1.0 - LATE_SHARE:.0%} within {slow:.3f} ms, of {len(times_ms)} '
-        'updates'
+        f'median {1e3 * np.median(least):.3f} ms, {1.0 - LATE_SHARE:.0%} within '
+        f'{1e3 * slowest:.3f} ms, of {len(least)} updates'
     )
-    if slow > 1e3 * PERIOD_S:
+    if slowest >= PERIOD_S or subject.closed.too_slow:
         raise CheckFailedError(
             f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; move what can '
             f'be computed before to __init__, from {place_of_method(subject.sample, "update")}'
         )
     return found
+
+
+def _slowest(times_s: np.ndarray) -> float:
+    """Return the time in s within which all but LATE_SHARE of the updates are done."""
+    return float(np.quantile(times_s, 1.0 - LATE_SHARE))
 
 
 def rate(subject: Subject) -> str:
