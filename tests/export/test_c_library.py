@@ -159,7 +159,8 @@ class InPython(Controller):
             TEMPLATE.replace('DDCT_DESCRIPTION(my_state, 0, 0)', '{1, 96, 16, 8, 0, 0}'),
             'its measurement_bytes is 96, this ddct has 80',
         ),
-        (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, -1, 0)'), 'is not filled in'),
+        (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, -1, 0)'), 'its preview_steps is -1'),
+        (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, 0, 7)'), 'its commands_engine 7'),
     ],
 )
 def test_a_library_of_another_interface_is_refused_in_one_line(library, source, complaint):
@@ -188,6 +189,16 @@ def test_a_failure_in_c_ends_the_run_with_one_line(library, tmp_path, capsys, bo
     assert complaint in line
 
 
+@pytest.mark.parametrize(
+    'source',
+    [TEMPLATE.replace('s->integral_rpm_s = 0.0;', '(void)s;'), command('')],
+    ids=['state that reset leaves', 'torque that update leaves'],
+)
+def test_what_c_leaves_unwritten_is_no_zero(library, source):
+    with pytest.raises(DdctError, match='its torque at step 60 is nan'):
+        run_headless(SETTINGS, library(source))
+
+
 def test_a_loop_without_end_is_ended(library, monkeypatch, tmp_path):
     code = Path(host.__file__).read_text().replace('MOST_SECONDS = 10', 'MOST_SECONDS = 1')
     (tmp_path / 'host.py').write_text(code)
@@ -201,7 +212,10 @@ def test_a_loop_without_end_is_ended(library, monkeypatch, tmp_path):
 @pytest.mark.parametrize(
     ('content', 'complaint'),
     [
-        ('{file: none.so}', 'none.so is not there: compile it first'),
+        (
+            '{file: none.so}',
+            'none.so cannot be read (No such file or directory): compile',
+        ),
         ('{file: mine.yaml}', 'it cannot be loaded'),
         ('{file: 3}', 'c_library.file is 3: give the path of a shared library'),
         ('{path: a.so}', 'c_library: key file is missing'),

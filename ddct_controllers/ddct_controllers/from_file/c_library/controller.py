@@ -31,8 +31,10 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import read_file
 
 KIND = 'c_library'
+MOST_LIBRARY_BYTES = 1 << 30
 _CALLS = {RESET: 'reset', UPDATE: 'update', HOLD: 'hold'}
 
 
@@ -45,8 +47,6 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
 
     def make(context: ControllerContext) -> Controller:
         with file.located():
-            if not path.is_file():
-                raise ParameterError(f'{KIND}.file: {path} is not there: compile it first')
             return CLibraryController(path)
 
     return ControllerSpec(file.name, make, {}, UNSTATED)
@@ -58,7 +58,12 @@ class CLibraryController(Controller):
     def __init__(self, path: Path) -> None:
         """Start the process; raise ParameterError when the library cannot be used."""
         self._where = f'{KIND}.file: {path}'
-        self._digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        try:
+            self._digest = hashlib.sha256(read_file(path, MOST_LIBRARY_BYTES)).hexdigest()
+        except OSError as error:
+            raise ParameterError(
+                f'{self._where} cannot be read ({error.strerror}): compile it first'
+            ) from error
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._process = subprocess.Popen(

@@ -6,6 +6,7 @@ message each; the process ends when the other end does.
 """
 
 import json
+import math
 import re
 import signal
 import socket
@@ -28,6 +29,7 @@ ANSWER = struct.Struct('ddi')
 """Clutch torque, engine torque, and what the function returned."""
 MOST_BYTES = 1 << 16
 """Of a message."""
+MOST_PREVIEW_STEPS = 1000
 MOST_SECONDS = 10
 """Of a call: the alarm then ends the process."""
 _EXAMPLE = 'start from the template in docs/c_controller.md'
@@ -59,14 +61,19 @@ class Library:
         try:
             self._library = ffi.dlopen(path)
         except OSError as error:
-            raise LibraryError(f'it cannot be loaded ({error})') from error
+            reason = str(error).partition('.  Additionally')[0]
+            raise LibraryError(f'it cannot be loaded ({reason})') from error
         (version,) = re.findall(r'define DDCT_INTERFACE_VERSION (\d+)', header)
         about = self._symbol('ddct_controller')
         self._require('interface_version', about.interface_version, int(version))
         self._require('measurement_bytes', about.measurement_bytes, self._size('measurement'))
         self._require('command_bytes', about.command_bytes, self._size('command'))
-        if min(about.state_bytes, about.preview_steps) < 0 or about.commands_engine not in (0, 1):
-            raise LibraryError('its ddct_controller is not filled in: use DDCT_DESCRIPTION')
+        preview = range(MOST_PREVIEW_STEPS + 1)
+        if about.preview_steps not in preview or about.commands_engine not in (0, 1):
+            raise LibraryError(
+                f'its preview_steps is {about.preview_steps} and its commands_engine '
+                f'{about.commands_engine}: give 0 to {MOST_PREVIEW_STEPS} and 0 or 1'
+            )
         self.preview_steps: int = about.preview_steps
         self.commands_engine = bool(about.commands_engine)
         self._calls = {
@@ -85,12 +92,14 @@ class Library:
         """Carry out one request."""
         kind = request[0]
         if kind == RESET or (kind == HOLD and self._calls[HOLD] is None):
+            # NaN, so that what is not set shows at once, and not after a second run.
+            self._ffi.buffer(self._state)[:] = b'\xff' * self._ffi.sizeof(self._state)
             self._calls[RESET](self._state)
             return ANSWER.pack(0.0, 0.0, 0)
         self._take(request[1:])
         if kind == HOLD:
             return ANSWER.pack(0.0, 0.0, self._calls[HOLD](self._state, self._measurement))
-        command = self._ffi.new('ddct_command *')
+        command = self._ffi.new('ddct_command *', (math.nan, math.nan))
         status = self._calls[UPDATE](self._state, self._measurement, command)
         return ANSWER.pack(command.clutch_torque, command.engine_torque, status)
 

@@ -39,7 +39,7 @@ typedef struct {
     const double *slip_reference_rate;
 } ddct_measurement;
 
-/* The answer, which holds over the coming period. */
+/* The answer, which holds over the coming period. Both are NaN before the call. */
 typedef struct {
     /* N m: the clutch is asked for open_loop_torque + clutch_torque. */
     double clutch_torque;
@@ -67,7 +67,8 @@ typedef struct {
 
 extern const ddct_description ddct_controller;
 
-/* Return to the state before the first step. Called before all others. */
+/* Return to the state before the first step. Called before all others. Every byte of the state is
+ * 0xff before it, which makes each double NaN: set all that the others read. */
 void ddct_controller_reset(void *state);
 
 /* Advance by one period. Return 0, or a number above 0 that is recorded with the command, or one
