@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from trajectory_msgs.msg import JointTrajectory
 
-K_P, K_I, PERIOD_S, RPM = 0.103, 0.0223, 0.01, 30.0 / math.pi
+K_P, K_I, PERIOD_S, RPM = 0.2, 0.6, 0.01, 30.0 / math.pi
 ABOUT = DiagnosticStatus(name='controller', values=[KeyValue(key='controller', value='own_pi')])
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -48,9 +48,11 @@ def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path
         timeout=WITHIN_S,
     )
     assert done.returncode == 0, done.stderr
-    assert re.search(r'own_pi .* yes *$', done.stdout, re.MULTILINE), 'valid'
+    assert re.search(r'own_pi .* engaged .* yes *$', done.stdout, re.MULTILINE), 'and valid'
 
-    ours = run_headless(RunSettings(load_scenario('thesis'), architecture='base'), 'pi')
+    gains = ('proportional_gain=0.2', 'integral_gain=0.6')
+    scenario = load_scenario('thesis', [f'controllers.pi.{gain}' for gain in gains])
+    ours = run_headless(RunSettings(scenario, architecture='base'), 'pi')
     own = read_bag(tmp_path / 'runs' / 'own').trajectory
     for signal in all_signals():
         if signal.name != 'status':
