@@ -1,6 +1,7 @@
 """The interface for Python: runs, what can be asked of them, and what is refused."""
 
 import json
+import pickle
 import threading
 import warnings
 
@@ -154,6 +155,12 @@ def test_what_a_scenario_moves_by_itself_is_warned_of_and_nothing_is_printed(cap
         warnings.simplefilter('error')
         api.run('pi', duration=SHORT_S)
     assert capfd.readouterr() == ('', '')
+
+
+def test_a_run_of_a_named_controller_goes_between_processes(worn):
+    copy = pickle.loads(pickle.dumps(worn))
+    assert copy.trajectory.sha256() == worn.trajectory.sha256()
+    assert (copy.entry, copy.settings) == (worn.entry, worn.settings)
 
 
 def test_runs_in_threads_are_those_of_the_main_one(worn):
