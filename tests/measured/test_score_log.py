@@ -1,10 +1,12 @@
 """`score` and `report` take logs of other tools; what the columns do not allow is null."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support.documented import ROOT
 from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
@@ -16,6 +18,7 @@ from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_plant.measured.columns import QUANTITIES
 
 OURS = """\
 columns:
@@ -115,6 +118,15 @@ def test_what_lies_beside_a_log_is_not_its_own(folder: Path) -> None:
     """A run of ours that failed may have been in the same folder."""
     (folder / NOTE_FILE).write_text('{}')
     assert scored(folder)['valid'] is True
+
+
+def test_the_page_lists_the_quantities_with_their_units() -> None:
+    page = (ROOT / 'docs' / 'own_car.md').read_text(encoding='utf-8')
+    rows = re.findall(r'^\| `(\w+)` \| ([^|]+) \|', page, re.MULTILINE)
+    assert [name for name, _ in rows] == list(QUANTITIES)
+    for name, units in rows:
+        if units != 'as above':
+            assert QUANTITIES[name].unit in units.split(', '), name
 
 
 def test_every_named_figure_is_a_metric_or_a_criterion() -> None:

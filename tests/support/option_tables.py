@@ -8,6 +8,7 @@ import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
 
+from ddct_bringup.bag.measured_run import MeasuredRun
 from ddct_controllers.mpc.costs import BASIS, thesis_settings
 from ddct_controllers.mpc.options import program_options
 from ddct_controllers.registry import controller_spec
@@ -55,6 +56,11 @@ def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
     return Table('', OPTION_HEADERS[:-1], rows)
 
 
+def _without_source(group: type, prefix: str = '') -> Table:
+    rows = option_rows(options_of(group), prefix)
+    return Table('', OPTION_HEADERS[:-1], [_code(row)[:-1] for row in rows])
+
+
 def _code(row: Sequence[str]) -> tuple[str, ...]:
     return (f'`{row[0]}`', *row[1:])
 
@@ -62,9 +68,8 @@ def _code(row: Sequence[str]) -> tuple[str, ...]:
 _OF_EVERY_MPC = tuple(program_options(thesis_settings(BASIS)))
 TABLES = {
     'scenario': _scenario(),
-    'run': Table(
-        '', OPTION_HEADERS[:-1], [_code(row)[:-1] for row in option_rows(options_of(RunSettings))]
-    ),
+    'run': _without_source(RunSettings),
+    'measured_run': _without_source(MeasuredRun, MeasuredRun.prefix),
     'pi': _controllers('pi'),
     'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),
     'mpc4': _controllers('mpc4', 'mpc4_wear', without=_OF_EVERY_MPC[3:]),

@@ -141,16 +141,22 @@ def _content(
             'time_s': [float(held_out.time_s[0]), float(held_out.time_s[-1])],
             'signals': [vars(each) | {'white': each.white} for each in predictions],
         },
-        'notes': _notes(fit),
+        'notes': _notes(fit, predictions),
     }
 
 
-def _notes(fit: LogFit) -> list[str]:
+def _notes(fit: LogFit, predictions: list[Prediction]) -> list[str]:
     notes = []
     if fit.undetermined:
         notes.append(
             f'the log does not determine {", ".join(fit.undetermined)}: the scenario keeps its '
             'value, and the other intervals hold for that value'
+        )
+    coloured = [each.signal for each in predictions if each.white is False]
+    if coloured:
+        notes.append(
+            f'what is left of {", ".join(coloured)} is not white: the model lacks something that '
+            'the log has, which the intervals do not count'
         )
     for name, (lowest, highest) in USUAL.items():
         if name in fit.std and not lowest <= fit.values[name] <= highest:
