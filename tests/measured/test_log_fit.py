@@ -66,7 +66,9 @@ def test_noise_of_the_torques_widens_the_intervals_and_they_still_hold(fit: LogF
     assert sum(held) >= 0.8 * len(held)
     for one in fits:
         assert all(one.std[name] > fit.std[name] for name in one.std)
-        assert one.std.get('shaft_inertia', 1.0) > 5.0 * fit.std['shaft_inertia']
+        # Left as it is, this noise pulls J_p by 5 % on average, and the deviation is below 2 %.
+        assert one.std['shaft_inertia'] > 0.03
+        assert one.values['shaft_inertia'] == pytest.approx(TRUE['shaft_inertia'], rel=0.05)
 
 
 def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
