@@ -13,9 +13,9 @@ ON, OFF = 'closing={}', 'closing=null'
 
 
 @lru_cache
-def run(scenario, controller, change, wear_gain=1.0):
+def run(scenario, controller, *changes, wear_gain=1.0):
     settings = RunSettings(
-        load_scenario(scenario, [change]), clutch='stick_slip', wear_gain=wear_gain
+        load_scenario(scenario, changes), clutch='stick_slip', wear_gain=wear_gain
     )
     trajectory = run_headless(settings, controller)
     return Locking(trajectory, settings.scenario.control_start_step, None), trajectory
@@ -29,13 +29,21 @@ def run(scenario, controller, change, wear_gain=1.0):
         ('thesis', 'torque_estimator'),
         ('launch', 'mpc3'),
         ('launch_hill', 'ls8'),
-        ('tip_in', 'pi'),
     ],
 )
 def test_a_run_that_parts_again_without_it_stays_locked_with_it(scenario, controller):
     assert run(scenario, controller, OFF)[0].releases > 0
     locking, trajectory = run(scenario, controller, ON)
     assert locking.releases == 0
+    assert dict(trajectory.status[-1])['closing'] == 'closed'
+
+
+def test_a_tip_in_parts_only_the_plates_of_a_clutch_that_cannot_carry_the_swing():
+    assert run('tip_in', 'pi', OFF)[0].releases > 0
+    assert run('tip_in', 'pi', ON, 'friction.most_n_m=500')[0].releases == 0
+    locking, trajectory = run('tip_in', 'pi', ON)
+    assert trajectory.torque_request.max() > trajectory.clutch_torque.max() == 350.0
+    assert locking.releases == 1
     assert dict(trajectory.status[-1])['closing'] == 'closed'
 
 
@@ -49,7 +57,7 @@ def test_it_changes_nothing_before_the_lock():
 
 def test_a_worn_clutch_that_feedback_has_locked_stays_locked():
     for controller in ('ls8', 'mpc_offset_free'):
-        locking, trajectory = run('thesis', controller, ON, 0.7)
+        locking, trajectory = run('thesis', controller, ON, wear_gain=0.7)
         assert (locking.releases, dict(trajectory.status[-1])['closing']) == (0, 'closed')
 
 
