@@ -61,7 +61,7 @@ class Run:
     def settings(self) -> RunSettings:
         """What was simulated; raise DdctError for a bag whose scenario cannot be built here."""
         if self.recording.settings is None:
-            raise DdctError(f'{self.recording.path}: its scenario cannot be built by this version')
+            raise DdctError(f'{self.entry["bag"]}: its scenario cannot be built by this version')
         return self.recording.settings
 
     @property
@@ -148,10 +148,10 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
     """
     Return a run of each controller, all with the same options of `run`.
 
-    A mapping gives their names; 'all' stands for every name of `controller_names()`.
+    A mapping gives their names. Text is as the option of `ddct compare`: 'pi,ls8', or 'all'.
     """
-    if controllers == 'all':
-        controllers = controller_names()
+    if isinstance(controllers, str):
+        controllers = controller_names() if controllers == 'all' else controllers.split(',')
     if isinstance(controllers, Mapping):
         chosen = [chosen_from(each, name) for name, each in controllers.items()]
     else:

@@ -12,7 +12,6 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory_bag import write_trajectory
-from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
@@ -164,7 +163,7 @@ def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
     run_info = run_info_of(plan.settings, plan.name, controller, plan.steps)
     data = custom_data(plan.settings, plan.name, plan.steps)
     recording = Recording(
-        path=bag_file(Path(plan.name), plan.name),
+        path=Path(),
         trajectory=trajectory,
         facts=RunFacts.from_custom_data(data),
         custom_data=data,

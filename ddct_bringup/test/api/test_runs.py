@@ -134,6 +134,16 @@ def test_controllers_are_compared_with_the_options_of_each():
     assert alone.trajectory.sha256() != api.run(Soft, duration=SHORT_S).trajectory.sha256()
 
 
+def test_controllers_may_be_given_as_on_the_command_line():
+    assert [each.controller for each in api.compare('pi,ls8', duration=SHORT_S)] == ['pi', 'ls8']
+
+
+def test_a_run_that_is_not_kept_has_no_path_whatever_lies_beside(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert api.run('pi', duration=SHORT_S, out='.').path is not None
+    assert api.run('pi', duration=SHORT_S).path is None
+
+
 def test_a_mapping_names_the_controllers():
     soft = Soft(type('Context', (), {'gains': {'gain': 0.2}})())
     runs = api.compare({'first': soft, 'second': Soft}, duration=SHORT_S)
