@@ -16,9 +16,8 @@ from ddct_controllers.check import program
 from ddct_controllers.check.checks import CHECKS, check_controller
 from ddct_controllers.check.outcome import FAIL, PASS, SKIPPED, Outcome
 from ddct_controllers.interface import Controller
-from ddct_controllers.registry import controller_names, make_controller
+from ddct_controllers.registry import controller_names
 from ddct_controllers.template.install_command import install_command
-from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -66,7 +65,7 @@ RIGHT = [
     if inspect.isclass(value) and issubclass(value, Controller) and value is not Controller
 ]
 POINTS = {
-    **{name: f'wrong_controllers:{name}' for name in (*WRONG, 'SwallowsGains')},
+    **{name: f'wrong_controllers:{name}' for name in WRONG},
     **{name: f'right_controllers:{name}' for name in RIGHT},
     'from_function': 'right_controllers:from_function',
     'misspelt': 'wrong_controllers:Proportinal',
@@ -113,16 +112,6 @@ def test_a_name_that_leads_nowhere_is_explained(name: str, words: list[str]) -> 
     assert found.keys() == {'entry point'}
     for word in words:
         assert word in found['entry point']
-
-
-@pytest.mark.usefixtures('installed')
-def test_a_gain_that_nobody_declared_is_refused_by_the_registry_or_named() -> None:
-    try:
-        make_controller('SwallowsGains', SETTINGS, {'gian': 1.0})
-    except DdctError:
-        assert failed(outcomes_of('SwallowsGains')) == {}
-    else:
-        assert 'the gain no_such_gain' in failed(outcomes_of('SwallowsGains'))['options']
 
 
 @pytest.mark.usefixtures('installed')

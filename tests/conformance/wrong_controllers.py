@@ -139,13 +139,6 @@ class UndeclaredGain(Proportional):
         self._gain = context.gains.get('gain', GAIN)
 
 
-class SwallowsGains(Proportional):
-    options: ClassVar[Options | None] = None
-
-    def __init__(self, context: ControllerContext) -> None:
-        self._gain = {'gain': GAIN, **context.gains}['gain']
-
-
 class RandomNumbers(Proportional):
     def update(self, measurement: Measurement) -> Command:
         return Command(-GAIN * measurement.slip_error_rpm + random.gauss(0.0, 0.1))

@@ -5,6 +5,7 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import wraps
 
 import numpy as np
 
@@ -53,36 +54,32 @@ class Heard:
         return len(self.update_s) >= TIMED and statistics.median(self.update_s) > PERIOD_S
 
 
-class _Listening(Controller):
-    """Passes all on to a controller and writes down what it hears; `scale` multiplies torques."""
+def _listen(controller: Controller, heard: Heard, scale: float) -> None:
+    """Write down what an object hears and how long it takes, and multiply its torques."""
+    hold, update = controller.hold, controller.update
 
-    def __init__(self, controller: Controller, heard: Heard, scale: float) -> None:
-        self._controller, self._heard, self._scale = controller, heard, scale
-        self.registered_name = controller.registered_name
-        self.preview_steps = controller.preview_steps
-        self.commands_engine = controller.commands_engine
+    @wraps(hold)
+    def heard_hold(measurement: Measurement) -> None:
+        heard.measured.append((False, measurement))
+        hold(measurement)
 
-    def reset(self) -> None:
-        self._controller.reset()
-
-    def hold(self, measurement: Measurement) -> None:
-        self._heard.measured.append((False, measurement))
-        self._controller.hold(measurement)
-
-    def update(self, measurement: Measurement) -> Command:
-        self._heard.measured.append((True, measurement))
+    @wraps(update)
+    def heard_update(measurement: Measurement) -> Command:
+        heard.measured.append((True, measurement))
         started = time.perf_counter()
-        command = self._controller.update(measurement)
-        self._heard.update_s.append(time.perf_counter() - started)
-        return self._scaled(command, measurement) if self._scale != 1.0 else command
+        command = update(measurement)
+        heard.update_s.append(time.perf_counter() - started)
+        return command if scale == 1.0 else _scaled(command, measurement, scale)
 
-    def _scaled(self, command: Command, measurement: Measurement) -> Command:
-        engine = command.engine_torque
-        if engine is not None:
-            engine = measurement.engine_torque + self._scale * (engine - measurement.engine_torque)
-        return replace(
-            command, clutch_torque=self._scale * command.clutch_torque, engine_torque=engine
-        )
+    # Wrapped in the object itself: errors still name its class and its lines.
+    vars(controller).update(hold=heard_hold, update=heard_update)
+
+
+def _scaled(command: Command, measurement: Measurement, scale: float) -> Command:
+    demand, engine = measurement.engine_torque, command.engine_torque
+    if engine is not None:
+        engine = demand + scale * (engine - demand)
+    return replace(command, clutch_torque=scale * command.clutch_torque, engine_torque=engine)
 
 
 def more_slip(measurement: Measurement) -> Measurement:
@@ -103,14 +100,15 @@ def closed_trial(
     scale: float = 1.0,
 ) -> Heard:
     """
-    Run `controller` on the plant with a slip reference that falls to zero along a ramp.
+    Run a new object, which stays wrapped, on the plant with a slip reference that falls to zero along a ramp.
 
     `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Raise what the
     controller raises, as a DdctError that names it.
     """
     heard = Heard()
     plant = WholePlant(settings, two_input=controller.commands_engine)
-    architecture = make_architecture(settings, _Listening(controller, heard, scale))
+    _listen(controller, heard, scale)
+    architecture = make_architecture(settings, controller)
     start, probe = settings.scenario.control_start_step, probe_step(settings)
     from_speed = 0.0
     for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
