@@ -100,7 +100,7 @@ def closed_trial(
     scale: float = 1.0,
 ) -> Heard:
     """
-    Run a new object, which stays wrapped, on the plant with a slip reference that falls to zero along a ramp.
+    Run a new object, which stays wrapped, on the plant; its slip reference falls to zero.
 
     `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Raise what the
     controller raises, as a DdctError that names it.
