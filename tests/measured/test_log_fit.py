@@ -85,6 +85,16 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
     assert sum(hits(slow)) >= 6
 
 
+def test_a_start_that_is_far_off_is_not_taken_for_noise() -> None:
+    """With 2 N m on the torques, which hide what J_p and c_sa do: those are named instead."""
+    fit = fit_log(log_of(drive(2).noisy(0, 2.0)), START, drag)
+    assert {'engine_damping', 'halfshaft_stiffness'} <= set(fit.std)
+    assert 'shaft_inertia' in fit.undetermined
+    assert fit.values['total_ratio'] == pytest.approx(TRUE['total_ratio'], rel=0.01)
+    for name in ('engine_inertia', 'engine_damping', 'halfshaft_stiffness', 'vehicle_inertia'):
+        assert fit.values[name] == pytest.approx(TRUE[name], rel=0.1), name
+
+
 def test_white_noise_is_measured_without_the_signal() -> None:
     torque = drive().clutch_torque
     assert white_noise(torque) < 1e-6

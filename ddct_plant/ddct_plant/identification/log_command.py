@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError
@@ -79,7 +80,8 @@ def identify_log(options: argparse.Namespace) -> int:
     columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
     fitted, held_out = _logs(options, columns)
     known_load = _known_load(base)
-    fit = fit_log(fitted, base.driveline, known_load, options.fix)
+    with Console(stderr=True).status('fitting the driveline'):
+        fit = fit_log(fitted, base.driveline, known_load, options.fix)
     predictions = predict(fit, stretches_of(held_out, known_load))
     content = _content(fit, predictions, fitted, held_out)
     if options.json != STDOUT:

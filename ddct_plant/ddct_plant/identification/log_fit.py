@@ -28,6 +28,8 @@ RATIOS = (1.5, 60.0)
 """Total ratios that gearbox and final drive of a car or truck can have."""
 _ROLLING = 1.0
 """Wheel speed in rad/s from which the ratio of the speeds says something."""
+PULLED = 0.4
+"""Share of these by which the noise of the torques may move a parameter."""
 _MORE_NOISE = 4
 """How often the noise of the torques is doubled to see what it does to the fit."""
 KnownLoad = Callable[[np.ndarray], np.ndarray]
@@ -92,7 +94,8 @@ def fit_log(
         x, covariance = problem.solve()
         moved = problem.moved_by(x, noisier) if noisier else np.zeros(len(x))
         std = np.sqrt(np.diag(covariance) + moved**2)
-        found = [name for name, each in zip(problem.free, std, strict=True) if _weak(name, each)]
+        of_each = zip(problem.free, std, np.abs(moved), strict=True)
+        found = [name for name, *size in of_each if _is_weak(name, *size)]
         if not found:
             return _result(problem, x - moved, std, weak, stretches)
         weak += found
@@ -115,8 +118,10 @@ def _ratio(log: MeasuredLog, stretches: Sequence[Stretch]) -> float:
     return ratio
 
 
-def _weak(name: str, std: float) -> bool:
-    return std > (DAMPING_DETERMINED if name in DAMPINGS else DETERMINED)
+def _is_weak(name: str, std: float, moved: float) -> bool:
+    """Say whether a parameter is too uncertain, or pulled too far to be moved back on a line."""
+    most = DAMPING_DETERMINED if name in DAMPINGS else DETERMINED
+    return std > most or moved > PULLED * most
 
 
 def _result(

@@ -15,6 +15,8 @@ DAMPINGS = ('engine_damping', 'shaft_damping')
 _PRIOR_STD = float(np.log(10.0))
 """Of a logarithm around its start, so that what the log does not show stays where it was."""
 _BOUND = float(np.log(1000.0))
+_LEAST_SPREAD = 1e-9
+"""In rad/s, of a speed that does not change."""
 _MOST_ROUNDS = 5
 _SETTLED = 0.05
 """Change of every estimate, over its deviation, after which no further round is made."""
@@ -36,7 +38,8 @@ class LogProblem:
         torques = np.concatenate([each.torques[:, :2].ravel() for each in stretches])
         speeds = np.concatenate([each.speeds[:, :2].ravel() for each in stretches])
         self.damping = float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
-        self.noise = NoiseModel(np.zeros((3, 0)), np.eye(3))
+        spread = np.vstack([np.diff(each.speeds, axis=0) for each in stretches]).std(axis=0)
+        self.noise = NoiseModel(np.zeros((3, 0)), np.diag(np.maximum(spread, _LEAST_SPREAD)))
 
     def values(self, x: np.ndarray) -> dict[str, float]:
         """Return every parameter by name."""
@@ -49,8 +52,13 @@ class LogProblem:
         return found
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
-        """Fit, and model the noise, in turn; return x and its covariance."""
-        x = np.zeros(len(self.free))
+        """
+        Fit, and model the noise, in turn; return x and its covariance.
+
+        The first fit takes the noise as white: what a wrong start leaves is no noise, and to
+        whiten it would hide the way.
+        """
+        x, _ = self._fitted(np.zeros(len(self.free)), self._stretches)
         for _ in range(_MOST_ROUNDS):
             left = [residuals_of(self.values(x), each)[0] for each in self._stretches]
             self.noise = fit_noise(left, len(x) + NUISANCE * len(left))
