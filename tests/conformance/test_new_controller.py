@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from support.complaints import assert_one_line
 
+from ddct_controllers.template import install_command as install_module
 from ddct_controllers.template import new_controller
 from ddct_controllers.template.install_command import install_command
 
@@ -52,6 +53,20 @@ def test_the_package_installs_by_its_own_command_and_its_tests_pass(tmp_path: Pa
     assert 'lqi, my_slip' in python(site, listing).splitlines()[0]
     tests = f'import pytest\nassert pytest.main(["-q", {str(folder)!r}, "-p", "no:cacheprovider"])'
     assert '3 passed' in python(site, f'{tests} == 0')
+
+
+@pytest.mark.parametrize(
+    ('pip', 'program'),
+    [(True, f'{sys.executable} -m pip install '), (False, 'uv pip install --python ')],
+)
+def test_an_environment_without_uv_of_its_own_is_told_what_it_has(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, pip: bool, program: str
+) -> None:
+    monkeypatch.setattr(sys, 'prefix', str(tmp_path))
+    monkeypatch.setattr(install_module, 'find_spec', lambda name: object() if pip else None)
+    command = install_command('DIR')
+    assert command.startswith(program)
+    assert command.endswith(' --no-build-isolation -e DIR')
 
 
 def test_what_it_prints_next_is_what_the_readme_says(
