@@ -5,6 +5,7 @@ import threading
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,16 +24,22 @@ from ddct_bringup.scores.scoring import Entry, score_recording, score_run
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import load_limits
 from ddct_controllers.from_python import chosen_from
-from ddct_controllers.registry import Chosen, controller_label, controller_names
+from ddct_controllers.registry import (
+    Chosen,
+    controller_label,
+    controller_names,
+    working_controllers,
+)
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name, options_of
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
 """Held while a graph runs: its ROS domain is in the environment, which all threads share."""
+_OF_THE_RECORD = ('headless', 'out', 'overwrite', 'limits')
+"""Options of `run` that change nothing of what a controller is built for."""
 
 
 @dataclass(frozen=True)
@@ -129,9 +136,7 @@ def run(
     whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)
-    changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
-    described = _scenario(str(scenario), changes)
-    ready = _settings(described, [controller_label(chosen), *beside], settings)
+    ready = _ready([controller_label(chosen), *beside], scenario, set, duration, **settings)
     plan = RunPlan(ready, chosen, 'headless' if headless else 'processes')
     judged_by = load_limits(None if limits is None else Path(limits))
     if out is not None:
@@ -148,14 +153,21 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
     """
     Return a run of each controller, all with the same options of `run`.
 
-    A mapping gives their names. Text is as the option of `ddct compare`: 'pi,ls8', or 'all'.
+    A mapping gives their names. Text is as the option of `ddct compare`: 'pi,ls8', or 'all', which
+    warns of a third party's controller that cannot be built, and leaves it out.
     """
-    if isinstance(controllers, str):
-        controllers = controller_names() if controllers == 'all' else controllers.split(',')
+    if controllers == 'all':
+        described = {key: options[key] for key in options if key not in _OF_THE_RECORD}
+        tell = partial(warnings.warn, stacklevel=3)
+        controllers = working_controllers(_ready(controller_names(), **described), tell)
+    elif isinstance(controllers, str):
+        controllers = [name.strip() for name in controllers.split(',') if name.strip()]
     if isinstance(controllers, Mapping):
         chosen = [chosen_from(each, name) for name, each in controllers.items()]
     else:
         chosen = [chosen_from(each) for each in controllers]
+    if not chosen:
+        raise ParameterError('controllers is empty: name at least one')
     labels = [controller_label(each) for each in chosen]
     return [run(each, beside=labels, **options) for each in chosen]
 
@@ -172,18 +184,22 @@ def table(runs: Iterable[Run]) -> Any:
     return _pandas().DataFrame([score_row(each.entry) for each in runs])
 
 
-def _scenario(name_or_file: str, changes: Mapping[str, Any]) -> Scenario:
-    scenario = load_scenario(name_or_file, {key: _plain(changes[key]) for key in changes})
-    for line in scenario.adjusted:
-        warnings.warn(f'scenario {scenario.name}: {line}', stacklevel=3)
-    return scenario
-
-
-def _settings(scenario: Scenario, labels: list[str], given: Mapping[str, Any]) -> RunSettings:
+def _ready(
+    labels: list[str],
+    scenario: str | Path = 'thesis',
+    set: Mapping[str, Any] | None = None,
+    duration: float | None = None,
+    **given: Any,
+) -> RunSettings:
+    """Return the settings of a run, or of runs, with the controllers called `labels`."""
+    changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
+    described = load_scenario(str(scenario), {key: _plain(changes[key]) for key in changes})
+    for line in described.adjusted:
+        warnings.warn(f'scenario {described.name}: {line}', stacklevel=3)
     known = options_of(RunSettings)
     if unknown := sorted(given.keys() - known.keys()):
         raise ParameterError(f'unknown option {unknown[0]}: {close_name(unknown[0], known)}')
-    return run_settings(scenario, labels, {key: _plain(given[key]) for key in given})
+    return run_settings(described, labels, {key: _plain(given[key]) for key in given})
 
 
 def _plain(value: Any) -> Any:

@@ -4,6 +4,7 @@ import json
 import pickle
 import threading
 import warnings
+from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from ddct_bringup import api
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.headless import run_headless
+from ddct_controllers import registry
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -135,7 +137,27 @@ def test_controllers_are_compared_with_the_options_of_each():
 
 
 def test_controllers_may_be_given_as_on_the_command_line():
-    assert [each.controller for each in api.compare('pi,ls8', duration=SHORT_S)] == ['pi', 'ls8']
+    runs = api.compare('pi, ls8,', duration=SHORT_S)
+    assert [each.controller for each in runs] == ['pi', 'ls8']
+    with pytest.raises(api.ParameterError, match='controllers is empty'):
+        api.compare(' ')
+
+
+def test_a_broken_controller_of_another_package_does_not_stop_the_comparison_of_all(
+    monkeypatch, tmp_path
+):
+    points = [
+        EntryPoint('absent', 'no_such_package:make', registry.ENTRY_POINT_GROUP),
+        EntryPoint('soft', f'{__name__}:Soft', registry.ENTRY_POINT_GROUP),
+    ]
+    monkeypatch.setattr(registry, '_entry_points', lambda: points)
+    monkeypatch.setattr(registry, 'own_controller_names', lambda: ['pi'])
+    with pytest.warns(UserWarning, match="'absent'.*no_such_package.*; left out") as warned:
+        runs = api.compare('all', duration=SHORT_S, out=tmp_path, wear_gain=0.9)
+    assert [each.controller for each in runs] == ['pi', 'soft']
+    assert [each.filename for each in warned] == [__file__]
+    with pytest.raises(api.DdctError, match='no_such_package'):
+        api.compare('pi,absent', duration=SHORT_S)
 
 
 def test_a_run_that_is_not_kept_has_no_path_whatever_lies_beside(tmp_path, monkeypatch):

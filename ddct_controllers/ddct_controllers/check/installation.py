@@ -2,7 +2,6 @@
 
 import importlib.metadata
 import inspect
-import json
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ from ddct_controllers.registry import ENTRY_POINT_GROUP
 from ddct_controllers.template.install_command import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
+from ddct_plant.files.json_text import parse_json
 
 
 def entry_point(subject: Subject) -> str:
@@ -92,7 +92,7 @@ def _installed_from_folders() -> Iterator[tuple[Path, bool, set[str]]]:
     """Yield by distribution its folder, whether it is linked, and the controllers it has there."""
     for distribution in importlib.metadata.distributions():
         try:
-            origin = json.loads(distribution.read_text('direct_url.json') or '{}')
+            origin = parse_json(distribution.read_text('direct_url.json') or '{}')
             folder = Path(unquote(urlparse(origin['url']).path))
             text = (folder / 'pyproject.toml').read_text(encoding='utf-8')
             points = tomllib.loads(text)['project']['entry-points'][ENTRY_POINT_GROUP]

@@ -2,7 +2,6 @@
 
 import contextlib
 import hashlib
-import json
 import signal
 import socket
 import subprocess
@@ -32,6 +31,7 @@ from ddct_controllers.interface import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_file
+from ddct_plant.files.json_text import parse_json
 
 KIND = 'c_library'
 MOST_LIBRARY_BYTES = 1 << 30
@@ -73,7 +73,7 @@ class CLibraryController(Controller):
                 stdout=2,  # what C prints is no result of the program
             )
         self._end = weakref.finalize(self, _end, self._channel, self._process)
-        about = json.loads(self._received('it was loaded'))
+        about = parse_json(self._received('it was loaded').decode())
         if 'error' in about:
             self._end()
             raise ParameterError(f'{self._where}: {about["error"]}')

@@ -137,7 +137,8 @@ def main() -> None:
         try:
             library = Library(path)
         except LibraryError as error:
-            channel.send(json.dumps({'error': str(error)}).encode())
+            words = str(error).encode(errors='replace').decode()  # a path may be no UTF-8
+            channel.send(json.dumps({'error': words}).encode())
             return
         about = {'preview_steps': library.preview_steps, 'two_input': library.commands_engine}
         channel.send(json.dumps(about).encode())
