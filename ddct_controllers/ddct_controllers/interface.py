@@ -2,7 +2,8 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, ClassVar, Generic, TypeVar
 
 from ddct_plant.base.errors import ParameterError
@@ -121,6 +122,8 @@ class Controller(ABC):
     """What errors call it: the registry gives it the name under which it was asked for."""
     computed_from: str = UNSTATED
     """As `ControllerSpec` has it, from where the registry takes it."""
+    digests: Mapping[str, str] = MappingProxyType({})
+    """Likewise."""
     preview_steps: int = 0
     """How many steps beyond the present one the controller wants the reference for."""
     commands_engine: bool = False
@@ -158,7 +161,11 @@ class Controller(ABC):
         return {}
 
     def info(self, name: str) -> dict[str, str]:
-        """Say for `run_info` what it is called, if it commands the engine, and its exact gains."""
+        """
+        Say for `run_info` what it is called, and from which files exactly it was made.
+
+        Also whether it commands the engine, and its exact gains.
+        """
         gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
         two_input = str(self.commands_engine).lower()
         return {
@@ -166,6 +173,7 @@ class Controller(ABC):
             'two_input': two_input,
             'computed_from': self.computed_from,
             **gains,
+            **self.digests,
         }
 
     def set_gain(self, name: str, value: float) -> None:
@@ -203,6 +211,8 @@ class ControllerSpec(Generic[Made]):
     SCENARIO for one computed from the scenario's driveline; THESIS for one that stays what it is
     whatever the driveline: printed, or tuned to the thesis's rows. UNSTATED for others.
     """
+    digests: Mapping[str, str] = field(default_factory=dict)
+    """SHA-256 of the files that it is made of, by their key on `run_info`."""
 
     def __call__(self, context: ControllerContext) -> Made:
         """Make the controller; raise ParameterError for an option that it does not take."""

@@ -79,6 +79,7 @@ def make_controller(
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name
     controller.computed_from = spec.computed_from
+    controller.digests = spec.digests
     return controller
 
 

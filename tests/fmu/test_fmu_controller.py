@@ -1,6 +1,7 @@
 """A PI controller in an FMU is the PI controller: to the bit, in every way to run it."""
 
 import gc
+import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +65,13 @@ def test_every_instance_is_freed_and_no_file_stays(
     gc.collect()
     assert list((folder / 'tmp').iterdir()) == []
     assert (folder / 'events').read_text().split() == 2 * ['instantiated', 'freed']
+
+
+@pytest.mark.parametrize('version', VERSIONS)
+def test_it_is_known_by_the_digests_of_both_files(version: int) -> None:
+    told = make_controller(controller_file(version), settings()).info('mine')
+    for key, file in (('controller_file_sha256', 'mine.yaml'), ('fmu_sha256', 'pi.fmu')):
+        assert told[key] == hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
 @pytest.mark.parametrize('version', VERSIONS)

@@ -1,5 +1,6 @@
 """A controller file as it was read: its values, their lines, and errors that name both."""
 
+import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -9,9 +10,11 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.input_file import read_file, read_text_file
 from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
 
+MOST_BINARY_BYTES = 1 << 30
+"""Of a library or an FMU that a controller file names."""
 SUFFIXES = ('.yaml', '.yml')
 FORMAT = 'ddct-linear-controller-1'
 """Value of the key `format`, where one is given."""
@@ -43,16 +46,13 @@ class ControllerFile:
     """As YAML has it; `keys` checks that it is a mapping."""
     lines: Mapping[str, int]
     """By dotted path, as `parse_yaml_with_lines` gives them."""
+    digests: Mapping[str, str]
+    """SHA-256 of the file and of the one that it names, by their key on `run_info`."""
 
     @property
     def name(self) -> str:
         """What the controller is called; it names the folder of the bag."""
         return str(self.content['name'])
-
-    @property
-    def folder(self) -> Path:
-        """Relative paths in the file start here."""
-        return self.path.parent
 
     def keys(
         self, kind: str, required: Sequence[str] = (), optional: Sequence[str] = ()
@@ -64,6 +64,24 @@ class ControllerFile:
             raise ParameterError(f'format is {content["format"]!r}: it must be {FORMAT}')
         mapping('provenance', content.get('provenance') or {})
         return content
+
+    def named_file(self, kind: str, value: object, what: str) -> Path:
+        """
+        Return the path of the file that the key `<kind>.file` names, and note its digest.
+
+        Relative paths start at the controller file. Raise ParameterError when it cannot be read.
+        """
+        if not isinstance(value, str) or not value:
+            raise ParameterError(f'{kind}.file is {value!r}: give the path of {what}')
+        path = self.path.parent / value
+        try:
+            data = read_file(path, MOST_BINARY_BYTES)
+        except OSError as error:
+            raise ParameterError(
+                f'{kind}.file: {path} cannot be read ({error.strerror}): give {what}'
+            ) from error
+        self.digests[f'{kind}_sha256'] = hashlib.sha256(data).hexdigest()
+        return path
 
     @contextmanager
     def located(self) -> Iterator[None]:
@@ -84,9 +102,11 @@ def read_controller_file(file: str) -> ControllerFile:
     except OSError as error:
         raise DdctError(f'controller file {path}: cannot be read ({error.strerror})') from error
     try:
-        return ControllerFile(path, *parse_yaml_with_lines(text))
+        content, lines = parse_yaml_with_lines(text)
     except ParameterError as error:
         raise ParameterError(f'controller file {path}: {error}') from error
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return ControllerFile(path, content, lines, {'controller_file_sha256': digest})
 
 
 def mapping(

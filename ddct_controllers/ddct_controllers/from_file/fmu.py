@@ -120,10 +120,9 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     keys = mapping(
         KIND, file.keys(KIND)[KIND], ('file', 'inputs', 'outputs'), optional=('parameters',)
     )
-    if not isinstance(keys['file'], str):
-        raise ParameterError(f'fmu.file is {keys["file"]!r}: give the path of the FMU')
+    path = file.named_file(KIND, keys['file'], 'an FMU')
     try:
-        fmu = Fmu(file.folder / keys['file'])
+        fmu = Fmu(path)
     except ParameterError as error:
         raise ParameterError(f'fmu.file: {error}') from error
     fed = [

@@ -30,8 +30,6 @@ class Fmu:
             self.description = self.fmpy.read_model_description(path, validate=False)
             with zipfile.ZipFile(path) as file:
                 names = file.namelist()
-        except OSError as error:
-            raise ParameterError(f'{path} cannot be read ({error.strerror})') from error
         except Exception as error:
             raise ParameterError(f'{path} is no FMU ({_line(error)}): export it again') from error
         version = self.description.fmiVersion

@@ -1,6 +1,7 @@
 """The kinds of controller files, and the one way from a file to its controller."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from ddct_controllers.from_file.c_library.controller import c_library_spec
 from ddct_controllers.from_file.controller_file import (
@@ -33,7 +34,7 @@ def load_spec(file: str) -> ControllerSpec[Controller]:
     """Return how the controller in a file is made; raise DdctError that names file and line."""
     source = read_controller_file(file)
     with source.located():
-        return KINDS[_kind(source)](source)
+        return replace(KINDS[_kind(source)](source), digests=source.digests)
 
 
 def _kind(file: ControllerFile) -> str:

@@ -143,7 +143,8 @@ def test_a_controller_that_is_not_linear_is_refused_with_the_reason(stub, capsys
 
 
 def test_controllers_that_are_not_linear_are_named_below_the_table(monkeypatch, capsys):
-    monkeypatch.setattr(margins_command, 'controller_names', lambda: ['ls8', 'mpc3', 'mpc4'])
+    names = ['ls8', 'mpc3', 'mpc4']
+    monkeypatch.setattr(margins_command, 'working_controllers', lambda settings, tell: names)
     assert run() == 0
     *_, last = capsys.readouterr().out.splitlines()
     assert last == 'Not linear, without a frequency response: mpc3, mpc4'

@@ -1,7 +1,6 @@
 """A controller in a shared library, and the loader of `c_library`."""
 
 import contextlib
-import hashlib
 import signal
 import socket
 import subprocess
@@ -30,20 +29,16 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import read_file
 from ddct_plant.files.json_text import parse_json
 
 KIND = 'c_library'
-MOST_LIBRARY_BYTES = 1 << 30
 _CALLS = {RESET: 'reset', UPDATE: 'update', HOLD: 'hold'}
 
 
 def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     """Return the controller behind `c_library: {file: libmine.so}`, a path from the YAML file."""
     content = mapping(KIND, file.keys(KIND)[KIND], ('file',))['file']
-    if not isinstance(content, str) or not content:
-        raise ParameterError(f'{KIND}.file is {content!r}: give the path of a shared library')
-    path = file.folder / content
+    path = file.named_file(KIND, content, 'a shared library, compiled first')
 
     def make(context: ControllerContext) -> Controller:
         with file.located():
@@ -58,12 +53,6 @@ class CLibraryController(Controller):
     def __init__(self, path: Path) -> None:
         """Start the process; raise ParameterError when the library cannot be used."""
         self._where = f'{KIND}.file: {path}'
-        try:
-            self._digest = hashlib.sha256(read_file(path, MOST_LIBRARY_BYTES)).hexdigest()
-        except OSError as error:
-            raise ParameterError(
-                f'{self._where} cannot be read ({error.strerror}): compile it first'
-            ) from error
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._process = subprocess.Popen(
@@ -79,10 +68,6 @@ class CLibraryController(Controller):
             raise ParameterError(f'{self._where}: {about["error"]}')
         self.preview_steps, self.commands_engine = about['preview_steps'], about['two_input']
         self._layout = measurement_layout(self.preview_steps)
-
-    def info(self, name: str) -> dict[str, str]:
-        """Say which library it was too: one that was compiled anew is another controller."""
-        return {**super().info(name), 'library_sha256': self._digest}
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
