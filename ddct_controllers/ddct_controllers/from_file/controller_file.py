@@ -46,7 +46,7 @@ class ControllerFile:
     """As YAML has it; `keys` checks that it is a mapping."""
     lines: Mapping[str, int]
     """By dotted path, as `parse_yaml_with_lines` gives them."""
-    digests: Mapping[str, str]
+    digests: dict[str, str]
     """SHA-256 of the file and of the one that it names, by their key on `run_info`."""
 
     @property
