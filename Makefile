@@ -13,6 +13,9 @@ endif
 unexport $(filter AMENT_% COLCON_% RMW_% ROS_% _ROS_% CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
     PYTHONDONTWRITEBYTECODE PYTHONHOME PYTHONPATH VIRTUAL_ENV,$(.VARIABLES))
 
+# The matrices are small: further threads of the numerics would only wait for one another.
+export OPENBLAS_NUM_THREADS := 1
+
 BIN := .venv/bin
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made

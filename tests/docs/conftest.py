@@ -2,7 +2,8 @@
 
 import os
 import shutil
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -82,9 +83,11 @@ def run_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[RunPlan, Pat
 @pytest.fixture
 def shared_runs(
     run_once: Callable[[RunPlan, Path], None], workplace: Path, monkeypatch: pytest.MonkeyPatch
-) -> Path:
+) -> Iterator[Path]:
     """Let the commands of this process run in the workplace, which it returns, and share runs."""
     monkeypatch.chdir(workplace)
     monkeypatch.syspath_prepend(workplace / 'site')
     monkeypatch.setattr(execution, 'execute', run_once)
-    return workplace
+    yield workplace
+    for module in ('my_slip', 'my_package', 'my_package.control'):
+        sys.modules.pop(module, None)

@@ -12,6 +12,7 @@ from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from support.in_process_graph import GraphOf, InProcessGraph
+from support.patient_clock import realtime_owner
 from support.processes import START_S, Programs
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from support.silent_controller import run_until_silent
@@ -27,6 +28,8 @@ LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
 TIMEOUT_STEPS = round(REQUEST_TIMEOUT_S / PERIOD_S)
 SILENT_AT_STEP = 112
 """When a corner of the reference has just made the controller move the engine."""
+LATE_S = 0.03
+"""A tick that is later than this may have kept requests from the engine."""
 
 
 @pytest.mark.parametrize(
@@ -114,6 +117,7 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
             heard = _Listener(context=graph.context)
             run_until_silent(graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP)
             demands, torques = heard.demands, heard.torques
+            lateness_s = realtime_owner(graph).worst_lateness_s
         gaps = [
             (last, first)
             for last, first in pairwise(sorted(torques))
@@ -123,7 +127,8 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
         if gaps and abs(torques[gaps[-1][0]] - demands[gaps[-1][0]]) > 10.0:
             break
     else:
-        raise AssertionError('no requests that moved the engine, or a machine too busy')
+        assert lateness_s > LATE_S, 'no requests that moved the engine'
+        pytest.skip(f'too busy for real time: a tick was {1e3 * lateness_s:.0f} ms late')
     last, first = gaps[-1]
     alone = np.array([step for step in sorted(torques) if step >= first])
     before = torques[last] - demands[last]

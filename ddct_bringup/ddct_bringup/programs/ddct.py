@@ -1,6 +1,7 @@
 """Program `ddct`: starts any program of the installed packages, nodes too, by its name."""
 
 import ast
+import os
 import sys
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -46,6 +47,8 @@ def _ddct(argv: list[str]) -> int:
         parser.add_argument('program', metavar='PROGRAM', help='one of those above')
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
+    # Matrices are small: further threads only wait for one another, and nodes inherit this.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
         program = known[argv[0]].load()
     except ImportError as error:
