@@ -33,6 +33,7 @@ from ddct_controllers.registry import (
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name, options_of
+from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -193,7 +194,8 @@ def _ready(
 ) -> RunSettings:
     """Return the settings of a run, or of runs, with the controllers called `labels`."""
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
-    described = load_scenario(str(scenario), {key: _plain(changes[key]) for key in changes})
+    plain = {key: _plain(changes[key]) for key in changes}
+    described = load_scenario(str(scenario), plain, given.get('clutch', LINEAR))
     for line in described.adjusted:
         warnings.warn(f'scenario {described.name}: {line}', stacklevel=3)
     known = options_of(RunSettings)

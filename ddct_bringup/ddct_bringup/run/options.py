@@ -51,7 +51,7 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
     if options.duration is not None:
         overrides.append(f'duration_s={options.duration!r}')
     settings = {name: getattr(options, name) for name in options_of(RunSettings)}
-    return run_settings(scenario_of(options, overrides), labels, settings)
+    return run_settings(scenario_of(options, overrides, options.clutch), labels, settings)
 
 
 def run_settings(

@@ -1,12 +1,17 @@
 """Headless runs with a clutch that sticks: energy, phases, heat, the start and the early end."""
 
+import argparse
+
 import numpy as np
 import pytest
 
+from ddct_bringup import api
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.options import add_run_options, settings_of
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
@@ -196,3 +201,19 @@ def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
     ]
     told = [float(dict(pairs)['open_loop_torque_n_m']) for pairs in found.status]
     assert told == pytest.approx(expected)
+
+
+def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run(tmp_path):
+    """By programs and from Python, with key and line."""
+    path = tmp_path / 'fast.yaml'
+    text = scenario_to_yaml(load_scenario('thesis', ['driveline.shaft_inertia=0.0005']))
+    path.write_text(text, encoding='utf-8')
+    line = text.splitlines().index('  shaft_inertia: 0.0005') + 1
+    complaint = rf'line {line}: driveline\.shaft_inertia is 0\.0005: .* rates of 2906'
+    parser = argparse.ArgumentParser()
+    add_run_options(parser)
+    options = parser.parse_args(['--scenario', str(path), '--clutch', 'stick_slip'])
+    with pytest.raises(ParameterError, match=complaint):
+        settings_of(options, [])
+    with pytest.raises(ParameterError, match=complaint):
+        api.run('pi', scenario=path, clutch='stick_slip')

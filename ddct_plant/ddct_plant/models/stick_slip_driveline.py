@@ -64,7 +64,7 @@ class StickSlipDriveline:
         """Start in the given state, whose load torque is that of air and slope alone."""
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
-        self._integrator = _integrator(parameters)
+        self._integrator = friction_integrator(parameters)
         speeds = [initial.engine_speed, initial.shaft_speed, initial.wheel_speed]
         state = [*speeds, initial.twist, 0.0, 0.0, 0.0]
         friction = [initial.clutch_torque, initial.wheel_torque]
@@ -158,5 +158,6 @@ def friction_system(parameters: DrivelineParameters) -> FrictionSystem:
 
 
 @lru_cache
-def _integrator(parameters: DrivelineParameters) -> HybridIntegrator:
+def friction_integrator(parameters: DrivelineParameters) -> HybridIntegrator:
+    """Return what integrates it; raise ParameterError where its rates are too fast for 1 ms."""
     return HybridIntegrator(friction_system(parameters), SUBSTEP_S, SUBSTEPS, _HELD)

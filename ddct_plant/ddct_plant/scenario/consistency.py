@@ -92,7 +92,11 @@ def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
 
 
 def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
-    """Hold gear and total ratio together: a gear moves the ratio, a ratio names the gear."""
+    """
+    Hold gear and total ratio together: a gear moves the ratio, a ratio names the gear.
+
+    A file that gives another car's ratio and names no gear has nothing to be told.
+    """
     gear, total = scenario.gear, scenario.driveline.total_ratio
     ratios = [ratio * FINAL_DRIVE for ratio in GEAR_RATIOS]
     fits = [g for g, r in enumerate(ratios, 1) if math.isclose(r, total, rel_tol=AGREE)]
@@ -106,6 +110,9 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
             f'gear is {gear} and {RATIO} is {total:g}, but that gear has {ratios[gear - 1]:g}: '
             f'give {RATIO} {ratios[gear - 1]:g}, or one of them only'
         )
+    if gear is None and not fits:
+        about = f'gear stays none, as no gear of the C635 has {RATIO} {total:g}'
+        return _saying(scenario, about) if of_total == SET else scenario
     name = fits[0] if fits else None
     about = f'gear is now {name or "none"}, as {RATIO} is {total:g}'
     return _saying(replace(scenario, gear=name), about)

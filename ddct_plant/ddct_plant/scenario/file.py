@@ -16,6 +16,7 @@ from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.schema_version import require_schema_version
 from ddct_plant.files.yaml_text import dump_yaml, line_of, parse_yaml, parse_yaml_with_lines
+from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.plant import require_driveline
@@ -34,12 +35,15 @@ def scenario_names() -> list[str]:
 
 
 def load_scenario(
-    name_or_file: str, overrides: Iterable[str] | Mapping[str, Any] = ()
+    name_or_file: str,
+    overrides: Iterable[str] | Mapping[str, Any] = (),
+    clutch: str = LINEAR,
 ) -> Scenario:
     """
     Return the scenario that a name or a YAML file describes, with overrides.
 
-    They are `KEY=VALUE` as text, or values by key, dotted ones.
+    They are `KEY=VALUE` as text, or values by key, dotted ones. `clutch` is that of the run: not
+    every driveline can be integrated with one that sticks.
 
     Values that belong together are kept so, as `consistency` tells.
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
@@ -61,7 +65,7 @@ def load_scenario(
         scenario = scenario_from_mapping(content)
         origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
         scenario = consistent(scenario, origins, _number(start_before))
-        require_driveline(scenario.driveline)
+        require_driveline(scenario.driveline, clutch)
         return scenario
     except ParameterError as error:
         line = line_of(str(error), _in_file(lines, set_keys))

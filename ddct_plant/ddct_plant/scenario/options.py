@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ddct_plant.base.options import Option
 from ddct_plant.base.printable import printable
+from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.scenario import Scenario
 
@@ -33,9 +34,11 @@ def add_scenario_options(
     )
 
 
-def scenario_of(options: argparse.Namespace, overrides: Sequence[str]) -> Scenario:
+def scenario_of(
+    options: argparse.Namespace, overrides: Sequence[str], clutch: str = LINEAR
+) -> Scenario:
     """Return the scenario of --scenario with overrides; say on standard error what they moved."""
-    scenario = load_scenario(options.scenario, overrides)
+    scenario = load_scenario(options.scenario, overrides, clutch)
     for line in scenario.adjusted:
         print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
     return scenario

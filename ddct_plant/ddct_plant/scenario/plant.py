@@ -4,7 +4,7 @@ import math
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
-from ddct_plant.models.clutch import LinearClutch
+from ddct_plant.models.clutch import STICK_SLIP, LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
 from ddct_plant.models.driveline import Driveline, InitialState
 from ddct_plant.models.engine import Engine
@@ -13,15 +13,27 @@ from ddct_plant.models.holding import HoldingTorque, air_and_slope
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.stick_slip_clutch import StickSlipClutch
-from ddct_plant.models.stick_slip_driveline import StickSlipDriveline, friction_system
+from ddct_plant.models.stick_slip_driveline import (
+    StickSlipDriveline,
+    friction_integrator,
+    friction_system,
+)
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
-def require_driveline(parameters: DrivelineParameters) -> None:
-    """Raise ParameterError with a key if clutch and wheels cannot stick: H_S G_S is singular."""
+def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
+    """
+    Raise ParameterError with a key for a driveline that cannot be integrated.
+
+    With either clutch if clutch and wheels cannot stick together, as H_S G_S is singular; with
+    the one that sticks also if its rates are too fast for the pieces of 1 ms.
+    """
     try:
-        friction_system(parameters)
+        if clutch == STICK_SLIP:
+            friction_integrator(parameters)
+        else:
+            friction_system(parameters)
     except (ParameterError, ArithmeticError) as error:
         raise ParameterError(
             f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})'

@@ -88,12 +88,18 @@ def test_gear_and_total_ratio_follow_each_other():
 
 
 def test_a_total_ratio_that_no_gear_has_is_said(tmp_path):
-    for scenario in (
-        changed('driveline.total_ratio=15'),
-        from_file(tmp_path, 'gear: 1', 'driveline.total_ratio=15'),
-    ):
-        assert scenario.gear is None
-        assert 'gear is now none, as driveline.total_ratio is 15' in scenario.adjusted
+    unnamed = changed('driveline.total_ratio=15')
+    assert (
+        the_line(unnamed) == 'gear stays none, as no gear of the C635 has driveline.total_ratio 15'
+    )
+    named = from_file(tmp_path, 'gear: 1', 'driveline.total_ratio=15')
+    assert 'gear is now none, as driveline.total_ratio is 15' in named.adjusted
+    assert unnamed.gear is named.gear is None
+
+
+def test_a_file_of_another_car_that_names_no_gear_is_told_nothing(tmp_path):
+    other = from_file(tmp_path, 'driveline: {total_ratio: 15}')
+    assert (other.gear, other.adjusted) == (None, ())
 
 
 def test_the_score_window_moves_with_control_start():

@@ -59,6 +59,14 @@ def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
         assert f'{name}:' not in text
 
 
+def test_rates_too_fast_for_a_clutch_that_sticks_are_refused_with_key_and_line(scenario_file):
+    path = scenario_file(BASE + 'driveline:\n  shaft_inertia: 0.0005')
+    assert load_scenario(path).driveline.shaft_inertia == 0.0005
+    complaint = r'line 6: driveline\.shaft_inertia is 0\.0005: give .* rates of 2906'
+    with pytest.raises(ParameterError, match=complaint):
+        load_scenario(path, clutch='stick_slip')
+
+
 def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
     path = scenario_file(BASE + 'engine_limits: {}')
     assert load_scenario(path).engine_limits.idle_rad_s == 94.25
