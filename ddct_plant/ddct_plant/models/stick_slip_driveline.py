@@ -2,14 +2,13 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS, time_of_step
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
-from ddct_plant.hybrid.interval_map import Event, Interval
+from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.models.driveline import (
     LOCKED,
     OPEN,
@@ -30,21 +29,6 @@ _STATES = 7
 _PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 _HELD = (0, 1, 3)
 """Of C_m, C_load, clutch capacity, holding torque: all but the clutch capacity are held."""
-
-
-class FrictionPeriod(NamedTuple):
-    """What the friction elements did in the period that has ended; at t_0 nothing."""
-
-    clutch_phase: str
-    """`open`, `slipping` or `locked`, at its end."""
-    wheel_phase: str
-    """The same; `open` is a wheel that turns with neither rolling resistance nor brake."""
-    events: list[Event]
-    """In the order of time; element 0 is the clutch, 1 the wheel."""
-    clutch_work: float
-    """Exact friction work in J."""
-    wheel_work: float
-    """The same, of rolling resistance and brake together."""
 
 
 class StickSlipDriveline:
@@ -69,7 +53,8 @@ class StickSlipDriveline:
         state = [*speeds, initial.twist, 0.0, 0.0, 0.0]
         friction = [initial.clutch_torque, initial.wheel_torque]
         signs = self._integrator.mode_of(state)
-        self._now = Interval(state, signs, [], [0.0, 0.0], friction)
+        self.now = Interval(state, signs, [], [0.0, 0.0], friction)
+        """The period that has ended, with its events and the friction work of both elements."""
         self._clutch_phase = (
             OPEN if initial.clutch_open else _phase(signs[CLUTCH], initial.clutch_torque)
         )
@@ -79,18 +64,11 @@ class StickSlipDriveline:
     @property
     def engine_speed(self) -> float:
         """w_m in rad/s at the present stamp."""
-        return self._now.state[0]
-
-    @property
-    def period(self) -> FrictionPeriod:
-        """What friction did in the period that has ended."""
-        now = self._now
-        wheel_phase = _phase(now.signs[WHEEL], self._torques[2])
-        return FrictionPeriod(self._clutch_phase, wheel_phase, now.events, *now.work)
+        return self.now.state[0]
 
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present stamp; the wheel's effort has its friction in it."""
-        now = self._now
+        now = self.now
         engine_torque, load_torque, _ = self._torques
         clutch_torque, wheel_torque = now.friction
         return driveline_outputs(
@@ -111,7 +89,7 @@ class StickSlipDriveline:
         start_s = time_of_step(self._steps - 1)
         return tuple(
             (start_s + event.time_s, event.kind)
-            for event in self._now.events
+            for event in self.now.events
             if event.element == CLUTCH and event.kind in PHASE_CHANGES
         )
 
@@ -133,8 +111,8 @@ class StickSlipDriveline:
         kinetic = static = [*kinetic_torque, holding_torque]
         if static_torque is not kinetic_torque:
             static = [*static_torque, holding_torque]
-        now = self._now = self._integrator.advance(
-            self._now.state, self._now.signs, (engine_torque, load_torque), kinetic, static
+        now = self.now = self._integrator.advance(
+            self.now.state, self.now.signs, (engine_torque, load_torque), kinetic, static
         )
         self._clutch_phase = _phase(now.signs[CLUTCH], kinetic_torque[-1])
         self._torques = (engine_torque, load_torque, holding_torque)
