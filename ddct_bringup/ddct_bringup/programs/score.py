@@ -9,7 +9,6 @@ from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recor
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in, with_progress
-from ddct_bringup.scores.comfort import VDV_WEIGHTING
 from ddct_bringup.scores.csv_text import scores_csv, signals_csv
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
@@ -19,6 +18,7 @@ from ddct_bringup.scores.scoring import (
     unreadable_entry,
 )
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
+from ddct_bringup.verdict.comfort import VDV_WEIGHTING
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError

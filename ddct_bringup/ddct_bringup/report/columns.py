@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ddct_bringup.scores.comfort import VDV_WEIGHTING
+from ddct_bringup.verdict.comfort import VDV_WEIGHTING
 
 
 @dataclass(frozen=True)

@@ -161,7 +161,8 @@ def _verdict(
 ) -> Verdict:
     facts, trajectory = recording.facts, recording.trajectory
     start = steps_in('control_start_s', facts.control_start_s)
-    run = JudgedRun(trajectory, start, metrics, limits.rules.engagements_a_day)
+    engagements_a_day = limits.rules.engagements_a_day
+    run = JudgedRun(trajectory, start, facts.score_window_s, metrics, engagements_a_day)
     known = _engine_end(recording) if valid else INVALID
     return judge(run, limits, facts.scenario, known)
 

@@ -12,7 +12,8 @@ from rich.text import Text
 from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
-from ddct_bringup.verdict.verdict import BEYOND
+from ddct_bringup.verdict.state import ENGAGED
+from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
 from ddct_plant.base.printable import printable
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.differences import scenario_title
@@ -152,7 +153,7 @@ def run_notes(run: Entry) -> list[str]:
     notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
     if run['valid'] and run['fallbacks']:
         notes.append(fallback_note(run))
-    notes += slow_notes(run)
+    notes += [*slow_notes(run), *unknown_limits_notes(run)]
     figures: dict[str, list[str]] = {}
     for name, why in run.get(NOT_COMPUTED, {}).items():
         figures.setdefault(why, []).append(name)
@@ -172,6 +173,19 @@ def beyond_notes(runs: Sequence[Entry]) -> list[str]:
                 found = beyond.setdefault(f'{limit} ({each["source"]})', [])
                 found.append(f'{run["bag"]} {each["value"]:.4g}')
     return [f'{limit}: {", ".join(found)}' for limit, found in beyond.items()]
+
+
+def unknown_limits_notes(run: Entry) -> list[str]:
+    """Return by which limits an engaged run, beyond none, cannot be judged for want of a value."""
+    verdict = run['verdict']
+    unknown = [
+        each['name']
+        for each in verdict['criteria']
+        if each['limit'] is not None and each['value'] is None
+    ]
+    if not unknown or (verdict['state'], verdict['limits']) != (ENGAGED, NO_LIMIT):
+        return []
+    return [f'not known to keep within its limits: no value of {", ".join(unknown)}']
 
 
 def slow_notes(run: Entry) -> list[str]:

@@ -8,8 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.comfort import strongest_stretch, weighted_acceleration
 from ddct_bringup.verdict.lock import Locking
 from ddct_bringup.verdict.vibration import judder, mean_jerk, shuffle, torque_dip
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 
 AXIS_FACTOR = 1.4
@@ -25,6 +27,7 @@ class JudgedRun:
     trajectory: Trajectory
     control_start: int
     """Step at which feedback starts."""
+    score_window_s: tuple[float, float]
     metrics: Mapping[str, float | int | None]
     """Those of `scores.json`, by name."""
     engagements_a_day: float
@@ -45,6 +48,20 @@ class JudgedRun:
         together = self.locking.together_from
         return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
 
+    @cached_property
+    def strongest(self) -> tuple[float | None, float | None]:
+        """
+        Weighted acceleration and dose where they are strongest, None where the window has none.
+
+        That is over any stretch after control start as long as the score window. A window whose
+        place is known beforehand says nothing of plates that come together after it.
+        """
+        first, last = (steps_in('score_window_s', time) for time in self.score_window_s)
+        if self.metrics['vdv_m_s1_75'] is None:
+            return None, None
+        weighted = weighted_acceleration(self.trajectory.vehicle_accel)
+        return strongest_stretch(weighted[min(first, self.control_start) :], last - first)
+
     def after_control_start(self, name: str) -> np.ndarray:
         """Return a signal from control start on."""
         return getattr(self.trajectory, name)[self.control_start :]
@@ -64,7 +81,7 @@ class Criterion:
 
 
 def _daily_dose(run: JudgedRun) -> float | None:
-    dose = run.metrics['vdv_m_s1_75']
+    dose = run.strongest[1]
     return None if dose is None else AXIS_FACTOR * dose * run.engagements_a_day**0.25
 
 
@@ -129,15 +146,16 @@ CRITERIA = (
     Criterion(
         'weighted_acceleration',
         'm/s^2',
-        _metric('weighted_acceleration_m_s2'),
-        'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
+        lambda run: run.strongest[0],
+        'largest r.m.s. of A_x, weighted by W_d of ISO 2631-1, over any stretch after control '
+        'start as long as the score window',
         NO_WINDOW,
     ),
     Criterion(
         'daily_vibration_dose',
         'm/s^1.75',
         _daily_dose,
-        "1.4 times the run's vibration dose, for all engagements of a day",
+        '1.4 times the largest vibration dose over any such stretch, for all engagements of a day',
         NO_WINDOW,
     ),
     Criterion(

@@ -29,16 +29,20 @@ def verdict_of(
     """
     Return the verdict over a run of a scenario, of its state and the values of its criteria.
 
-    The run is beyond limits if one criterion is. It is within if it is engaged, one criterion is
-    and none beyond: what never engaged, or ended early, has no engagement to keep within limits.
+    The run is beyond limits if one criterion is. It is within if it is engaged and every criterion
+    with a limit is within: what never engaged has no engagement to keep within limits, and of a
+    limit without a value, as in a run that ended early, nobody knows whether it was kept.
     """
     criteria = [
         _judged(criterion.name, criterion.unit, values[criterion.name], limits, scenario)
         for criterion in CRITERIA
     ]
-    found = {criterion['state'] for criterion in criteria}
-    possible = (BEYOND, WITHIN) if state == ENGAGED else (BEYOND,)
-    overall = next((each for each in possible if each in found), NO_LIMIT)
+    found = {criterion['state'] for criterion in criteria if criterion['limit'] is not None}
+    overall = NO_LIMIT
+    if BEYOND in found:
+        overall = BEYOND
+    elif state == ENGAGED and found == {WITHIN}:
+        overall = WITHIN
     return {'state': state, 'limits': overall, 'criteria': criteria}
 
 

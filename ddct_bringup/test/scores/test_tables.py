@@ -185,6 +185,16 @@ def test_a_limit_is_named_once_with_all_runs_beyond_it():
     assert 'beyond judder 3 rpm (B, 2): pi 4, ls8 4\n' in printed(runs)
 
 
+def test_an_engaged_run_says_by_which_limits_it_cannot_be_judged():
+    no_value = {'name': 'peak_temperature', 'value': None, 'unit': 'degC', 'limit': 300.0}
+    criteria = [{**no_value, 'source': 'A, 1', 'state': 'no_limit'}]
+    engaged = {'state': 'engaged', 'limits': 'no_limit', 'criteria': criteria}
+    said = 'pi: not known to keep within its limits: no value of peak_temperature\n'
+    assert said in printed([run(verdict=engaged)])
+    for other in ({'state': 'runaway'}, {'limits': 'beyond'}):
+        assert 'not known' not in printed([run(verdict={**engaged, **other})])
+
+
 def test_a_narrow_terminal_has_state_and_limits_in_lines_of_their_own(monkeypatch):
     monkeypatch.setenv('COLUMNS', '80')
     text = printed([run('feedforward', verdict=verdict_beyond())], stream=Terminal())

@@ -11,11 +11,12 @@ from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of
 
 T = times()
+WINDOW_S = (0.6, 2.0)
 
 
 def values(run, start=CONTROL_START, engagements=1000.0):
-    metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=(0.6, 2.0))
-    return criterion_values(JudgedRun(run, start, metrics.as_dict(), engagements))
+    metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=WINDOW_S)
+    return criterion_values(JudgedRun(run, start, WINDOW_S, metrics.as_dict(), engagements))
 
 
 def shaft(signal, index=3):
@@ -152,9 +153,9 @@ def test_mean_jerk_is_the_change_of_acceleration_within_one_second():
 
 
 def test_the_daily_dose_is_that_of_all_engagements_in_the_sense_of_the_directive():
-    acceleration = np.sin(2 * np.pi * T)
-    run = made_run(np.zeros(301), vehicle_accel=acceleration)
-    one = compute_metrics(run, control_start_s=0.6, score_window_s=(0.6, 2.0)).vdv_m_s1_75
+    acceleration = np.sin(2 * np.pi * T[:201])
+    run = made_run(np.zeros(201), vehicle_accel=acceleration)
+    one = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S).vdv_m_s1_75
     # Vibration 16 times as long has twice the dose; horizontal axes count 1.4 fold.
     assert values(run, engagements=16.0)['daily_vibration_dose'] == pytest.approx(2.8 * one)
 
@@ -165,6 +166,22 @@ def test_weighted_acceleration_of_a_sine_is_its_rms_times_the_weight():
     metrics = compute_metrics(run, control_start_s=0.6, score_window_s=(20.0, 39.99))
     expected = 1.011 * 2.0 / np.sqrt(2.0)
     assert metrics.weighted_acceleration_m_s2 == pytest.approx(expected, rel=0.01)
+
+
+def test_a_jolt_after_the_score_window_is_felt_as_one_within_it():
+    def jolt(at_s):
+        run = made_run(np.zeros(301), vehicle_accel=5.0 * np.exp(-(((T - at_s) / 0.1) ** 2)))
+        found = values(run)
+        return found['weighted_acceleration'], found['daily_vibration_dose']
+
+    within = compute_metrics(
+        made_run(np.zeros(301), vehicle_accel=5.0 * np.exp(-(((T - 1.2) / 0.1) ** 2))),
+        control_start_s=0.6,
+        score_window_s=WINDOW_S,
+    )
+    assert jolt(1.2)[0] == pytest.approx(within.weighted_acceleration_m_s2, rel=0.01)
+    assert jolt(2.5) == pytest.approx(jolt(1.2), rel=0.05)
+    assert jolt(0.2)[0] < 0.5 * jolt(1.2)[0]  # before control start nobody is judged
 
 
 @pytest.mark.parametrize('name', ['joint_speed', 'joint_effort', 'vehicle_accel', 'slip_speed'])
@@ -222,11 +239,13 @@ limits:
     }
     assert [criteria['peak_jerk'][key] for key in ('limit', 'state')] == [None, 'no_limit']
     assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
-    assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'within'
+    assert judged(slip_acceleration_at_lock=-40.0, judder=5.0)[0]['limits'] == 'within'
+    assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'  # judder: who knows
     assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
     for state in STATES:
         only = 'within' if state == 'engaged' else 'no_limit'
-        assert judged(state=state, slip_acceleration_at_lock=-40.0)[0]['limits'] == only
+        found = judged(state=state, slip_acceleration_at_lock=-40.0, judder=4.0)
+        assert found[0]['limits'] == only
         assert judged(state=state, slip_acceleration_at_lock=-41.0)[0]['limits'] == 'beyond'
     undefined = judged()[1]['judder']
     assert (undefined['value'], undefined['limit'], undefined['state']) == (None, 5.0, 'no_limit')

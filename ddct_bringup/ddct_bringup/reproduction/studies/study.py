@@ -64,7 +64,11 @@ class StudyRun:
         """What the packaged limits say of it."""
         limits, scenario = packaged_limits(), self.settings.scenario
         run = JudgedRun(
-            self.trajectory, self.start, self.metrics.as_dict(), limits.rules.engagements_a_day
+            self.trajectory,
+            self.start,
+            scenario.score_window_s,
+            self.metrics.as_dict(),
+            limits.rules.engagements_a_day,
         )
         if not_finite(self.trajectory):
             known: str | None = INVALID

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 from scipy import signal
-from scipy.integrate import trapezoid
+from scipy.integrate import cumulative_trapezoid, trapezoid
 
 from ddct_plant.base.timebase import PERIOD_S
 
@@ -57,6 +57,18 @@ def _weighting() -> np.ndarray:
 def vibration_dose(weighted: np.ndarray) -> float:
     """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
     return float(trapezoid(weighted**4, dx=PERIOD_S) ** 0.25)
+
+
+def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[float, float]:
+    """
+    Return the largest r.m.s. and the largest dose of the (n,) `weighted` over any such stretch.
+
+    It has `periods` periods, of which there must be as many. What comes late cannot hide from it.
+    """
+    squares = np.cumsum(np.pad(weighted**2, (1, 0)))
+    fourths = cumulative_trapezoid(weighted**4, dx=PERIOD_S, initial=0.0)
+    mean = np.max(squares[periods + 1 :] - squares[: -periods - 1]) / (periods + 1)
+    return float(np.sqrt(mean)), float(np.max(fourths[periods:] - fourths[:-periods]) ** 0.25)
 
 
 def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
