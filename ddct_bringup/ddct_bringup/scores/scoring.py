@@ -1,6 +1,7 @@
 """Score bags: from a recording to its entry in `scores.json`."""
 
 import dataclasses
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,7 +26,7 @@ from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.scenario.differences import changed_values
-from ddct_plant.scenario.plant import end_cause
+from ddct_plant.scenario.plant import cut_speed, end_cause
 
 Entry = dict[str, Any]
 """One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, ..."""
@@ -164,7 +165,9 @@ def _verdict(
     engagements_a_day = limits.rules.engagements_a_day
     run = JudgedRun(trajectory, start, facts.score_window_s, metrics, engagements_a_day)
     known = _engine_end(recording) if valid else INVALID
-    return judge(run, limits, facts.scenario, known)
+    settings = recording.settings
+    limiter = cut_speed(settings.scenario) if settings else math.inf
+    return judge(run, limits, facts.scenario, known, limiter)
 
 
 def _engine_end(recording: Recording) -> str | None:

@@ -9,6 +9,7 @@ The state that a run reached: one word, by the rules of the limits file.
     invalid       the run does not count
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -23,18 +24,22 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 ENGAGED, NOT_ENGAGED, OSCILLATING = 'engaged', 'not_engaged', 'oscillating'
 RUNAWAY, INVALID = 'runaway', 'invalid'
 STATES = (ENGAGED, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
+_ENGINE = 0
+"""Its place among the joints."""
 FEWEST_SWINGS = 4
 """Through whose middles a line says something: two cycles."""
 DOUBT = 2.0
 """Standard errors of a slope: 95 % of what chance makes."""
 
 
-def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:
+def slip_state(
+    trajectory: Trajectory, control_start: int, rules: Rules, cut_speed: float = math.inf
+) -> str:
     """
     Return the state of a run that counts, whose engine kept its limits.
 
     `control_start` is the step at which feedback starts. Only what comes after it counts, but for
-    RUNAWAY by the magnitude of the slip.
+    RUNAWAY by the magnitude of the slip. `cut_speed` is that of the rev limiter in rad/s.
     """
     whole = rpm_from_rad_s(trajectory.slip_speed)
     if np.max(np.abs(whole)) > rules.runaway_slip:
@@ -46,6 +51,8 @@ def slip_state(trajectory: Trajectory, control_start: int, rules: Rules) -> str:
         return ENGAGED
     asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
     apart = _driven_apart(slip, rules) if cycle is None else _swings_apart(slip, turns, rules)
+    at_limiter = trajectory.joint_speed[-1 - _window(rules) :, _ENGINE].max() >= cut_speed
+    apart = apart or (at_limiter and _stays_grown(slip, rules))
     if apart and asked <= rules.engaged_slip:
         return RUNAWAY
     return NOT_ENGAGED if cycle is None else OSCILLATING
@@ -153,6 +160,15 @@ def _driven_apart(slip: np.ndarray, rules: Rules) -> bool:
     if len(beyond) <= 2 * window:
         return False
     return growth > _growth(beyond[-1 - 2 * window : -window]) - rules.runaway_growth
+
+
+def _stays_grown(slip: np.ndarray, rules: Rules) -> bool:
+    """
+    Say whether the engine was faster than at first all the time at the end, and plates apart.
+
+    Where the rev limiter holds the engine such a slip grows no more, and is only its ripple.
+    """
+    return bool(slip[-1 - _window(rules) :].min() > max(slip[0], rules.engaged_slip))
 
 
 def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:

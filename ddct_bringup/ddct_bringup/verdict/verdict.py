@@ -12,14 +12,16 @@ Verdict = dict[str, Any]
 WITHIN, BEYOND, NO_LIMIT = 'within', 'beyond', 'no_limit'
 
 
-def judge(run: JudgedRun, limits: Limits, scenario: str, known: str | None) -> Verdict:
+def judge(
+    run: JudgedRun, limits: Limits, scenario: str, known: str | None, cut_speed: float
+) -> Verdict:
     """
     Return the verdict over a run of a scenario.
 
     `known` is the state where more than the slip decides it: the run is invalid, or its engine
-    left its limits.
+    left its limits. `cut_speed` is that of the rev limiter in rad/s, infinite without one.
     """
-    state = known or slip_state(run.trajectory, run.control_start, limits.rules)
+    state = known or slip_state(run.trajectory, run.control_start, limits.rules, cut_speed)
     return verdict_of(state, criterion_values(run), limits, scenario)
 
 

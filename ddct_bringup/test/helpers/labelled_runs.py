@@ -14,6 +14,7 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.plant import cut_speed
 from ddct_plant.scenario.settings import RunSettings
 
 UNBOUND = ('friction.most_n_m=100000.0',)
@@ -68,7 +69,8 @@ class LabelledRun:
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        return slip_state(trajectory, scenario.control_start_step, packaged_limits().rules)
+        rules, limiter = packaged_limits().rules, cut_speed(scenario)
+        return slip_state(trajectory, scenario.control_start_step, rules, limiter)
 
 
 @cache

@@ -99,6 +99,31 @@ def test_a_swinging_slip_that_the_reference_asks_for_is_no_runaway():
     assert state(600.0 + 200.0 * T + swing, slip_reference=reference) == 'oscillating'
 
 
+def held(slip_rpm, engine_rpm, cut_rpm=6500.0):
+    """Return the state of a run with an engine whose limiter cuts the fuel at `cut_rpm`."""
+    speeds = np.zeros((len(slip_rpm), 4))
+    speeds[:, 0] = engine_rpm * RAD_S_PER_RPM
+    run = made_run(slip_rpm, joint_speed=speeds)
+    return slip_state(run, CONTROL_START, packaged_limits().rules, cut_rpm * RAD_S_PER_RPM)
+
+
+@pytest.mark.parametrize('ripple_rpm', [20.0, 120.0])
+def test_a_slip_that_only_the_rev_limiter_holds_is_a_runaway(ripple_rpm):
+    ripple = ripple_rpm * np.sin(2 * np.pi * (T - 0.6) / 0.2)
+    engine = np.minimum(1000.0 + 6000.0 * np.maximum(T - 0.6, 0.0), 6400.0) + ripple
+    slip = engine - np.minimum(1000.0 * T / 0.6, 1000.0)
+    assert held(slip, engine, cut_rpm=6410.0) == 'runaway'
+    # Without a limiter it stays, or goes to and fro, by itself.
+    found = 'oscillating' if ripple_rpm > 100.0 else 'not_engaged'
+    assert held(slip, engine, cut_rpm=np.inf) == found
+
+
+def test_a_slip_that_has_not_grown_is_no_runaway_though_the_engine_is_at_its_limiter():
+    engine = np.full(len(T), 6450.0)
+    assert held(falling(700.0, lowest_rpm=200.0), engine, cut_rpm=6410.0) == 'not_engaged'
+    assert held(falling(700.0), engine, cut_rpm=6410.0) == 'engaged'
+
+
 def test_plates_that_meet_in_every_swing_are_not_driven_apart():
     swing = 1500.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
     assert state(300.0 * T + swing) == 'oscillating'

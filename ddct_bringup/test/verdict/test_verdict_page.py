@@ -50,6 +50,7 @@ def test_the_thresholds_of_the_text_are_those_of_the_file():
         f'keeps within {rules.locked_slip:g} rpm for {rules.settled_time:g} s',
         f'reaches {rules.runaway_swing:g} times what was reached before',
         f'grows by {rules.runaway_growth:g} rpm/s',
+        f'its limiter in the last {rules.settled_time:g} s',
         f'each time by {2 * rules.engaged_slip:g} rpm or more',
     ):
         assert text in states

@@ -81,6 +81,12 @@ def end_cause(scenario: Scenario, engine_speed: float) -> str | None:
     return limits.end_cause(engine_speed) if limits else None
 
 
+def cut_speed(scenario: Scenario) -> float:
+    """Return w_m in rad/s from which the rev limiter cuts the fuel, infinite without one."""
+    limits = scenario.engine_limits
+    return limits.cut_rad_s if limits else math.inf
+
+
 def linear_clutch(settings: RunSettings) -> LinearClutch:
     """Return the thesis's clutch."""
     return LinearClutch(settings.wear_gain)

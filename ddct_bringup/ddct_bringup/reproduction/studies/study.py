@@ -21,7 +21,7 @@ from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Table
-from ddct_plant.scenario.plant import end_cause
+from ddct_plant.scenario.plant import cut_speed, end_cause
 from ddct_plant.scenario.settings import RunSettings
 
 CLOSE_RPM = 10.0
@@ -74,7 +74,7 @@ class StudyRun:
             known: str | None = INVALID
         else:
             known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))
-        return judge(run, limits, scenario.name, known)
+        return judge(run, limits, scenario.name, known, cut_speed(scenario))
 
     @property
     def slip_rpm(self) -> np.ndarray:
