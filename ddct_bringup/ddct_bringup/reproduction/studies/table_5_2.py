@@ -12,9 +12,10 @@ from ddct_bringup.reproduction.values.closed_loop_values import (
     WORN,
     WORN_ARCHITECTURE,
     figures_of_table_5_2,
-    judge_table_5_2,
+    findings_of_table_5_2,
 )
 from ddct_bringup.reproduction.values.orders import words_of
+from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
 
@@ -54,10 +55,11 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
         _known({name: one.torsion_speed_std_rpm for name, one in metrics.items()}),
         _known({name: one.acceleration_std_m_s2 for name, one in metrics.items()}),
     )
+    ranked = [_with_states(row, runs) for row in figures]
     printed: Mapping[str, Finding] = {}
     if wear_gain in WORN:
-        printed = judge_table_5_2(settings, trajectories)[2]
-    words = [words_of(row) for row in figures]
+        printed = findings_of_table_5_2(wear_gain, *ranked)
+    words = [words_of(row) for row in ranked]
     return [
         (
             clutch,
@@ -79,6 +81,14 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
 def _known(row: Mapping[str, float | None]) -> dict[str, float]:
     """Return the figures, an undefined one as infinite."""
     return {name: math.inf if figure is None else figure for name, figure in row.items()}
+
+
+def _with_states(row: Mapping[str, float], runs: Mapping[str, StudyRun]) -> dict[str, float]:
+    """Return the figures, infinite for a run that got out of hand: however small, none is good."""
+    return {
+        name: figure if _state(runs[name]) in (ENGAGED, NOT_ENGAGED) else math.inf
+        for name, figure in row.items()
+    }
 
 
 def _state(run: StudyRun) -> str:

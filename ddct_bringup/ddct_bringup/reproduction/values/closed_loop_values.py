@@ -32,6 +32,8 @@ OSCILLATION_WORDS = {
 """Table 5.2: w_sr and A_x by K_usura."""
 NOT_REACHED = 'not reached'
 """In the place of t_a when w_d does not become 0."""
+Figures = Mapping[str, float | None]
+"""One figure by controller, None where it does not exist."""
 _EQUAL_MODELS_PERCENT = 1.0
 """Of the peak of w_d: models that are nearer are equal."""
 
@@ -80,17 +82,24 @@ def judge_table_5_2(
     slips, metrics = figures_of_table_5_2(settings, runs)
     twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
     acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
-    sigma_words = OSCILLATION_WORDS[settings.wear_gain]
+    return slips, metrics, findings_of_table_5_2(settings.wear_gain, slips, twist, acceleration)
+
+
+def findings_of_table_5_2(
+    wear_gain: float, slips: Figures, twist: Figures, acceleration: Figures
+) -> dict[str, Finding]:
+    """Return what the printed words come to, by the gate's ids, of |w_d|, w_sr and A_x."""
     words = {
         'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-        'w_sr': judge_words(sigma_words, [('rpm', twist), ('m/s^2', acceleration)]),
+        'w_sr': judge_words(
+            OSCILLATION_WORDS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
+        ),
     }
-    findings = {
-        f'5.2 {name} {what} {settings.wear_gain:g}': finding
+    return {
+        f'5.2 {name} {what} {wear_gain:g}': finding
         for what, found in words.items()
         for name, finding in found.items()
     }
-    return slips, metrics, findings
 
 
 def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:

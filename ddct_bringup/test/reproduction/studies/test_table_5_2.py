@@ -1,0 +1,11 @@
+"""Table 5.2 in numbers, where a run got out of hand."""
+
+from ddct_bringup.reproduction.studies.table_5_2 import rows_of
+
+
+def test_a_runaway_has_no_good_word_however_still_the_car_is():
+    rows = {row[2]: row for row in rows_of('stick_slip', 0.7)}
+    stillest = min(rows, key=lambda name: float(rows[name][4]))
+    assert (stillest, rows[stillest][6]) == ('mpc4', 'runaway')
+    assert rows['mpc4'][7:10] == ('bad', 'bad', 'bad')
+    assert rows['hinf2'][7:10] == ('good', 'average', 'good')
