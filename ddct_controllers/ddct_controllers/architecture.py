@@ -10,7 +10,7 @@ from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_error, place_of_method
 from ddct_plant.base.checks import require_finite
-from ddct_plant.base.errors import DdctError, ForeignError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
@@ -104,7 +104,7 @@ class Architecture:
                 f'{self._name}: it cannot go on at step {measurement.step} ({error}): the loop '
                 'diverges in this scenario, or its options do not suit it'
             ) from error
-        except Exception as error:
+        except FOREIGN_FAILURES as error:
             package = type(self._controller).__module__.partition('.')[0]
             place = place_of_error(error, package) or place_of_method(self._controller, 'update')
             raise ForeignError(

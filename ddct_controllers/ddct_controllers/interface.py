@@ -85,8 +85,8 @@ class Measurement:
             self.wheel_speed,
             self.vehicle_speed,
             self.engine_torque,
-            self.slip_reference,
-            self.slip_reference_rate,
+            tuple(self.slip_reference),  # the record has the list: what is told cannot be changed
+            tuple(self.slip_reference_rate),
             load_torque,
             open_loop_torque,
         )
@@ -128,6 +128,10 @@ class Controller(ABC):
     """How many steps beyond the present one the controller wants the reference for."""
     commands_engine: bool = False
     """Whether it has a second input, C_m; it then receives the driver's demand for it."""
+
+    def __init__(self, context: 'ControllerContext | None' = None) -> None:
+        """Take nothing of the context: a controller with options or state overrides this."""
+        super().__init__()
 
     @abstractmethod
     def reset(self) -> None:

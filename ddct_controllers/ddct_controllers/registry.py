@@ -22,7 +22,7 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
 from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.base.options import Option, Options
 from ddct_plant.scenario.settings import RunSettings
 
@@ -138,7 +138,7 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
 def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
     try:
         factory = point.load()
-    except Exception as error:
+    except FOREIGN_FAILURES as error:
         raise DdctError(
             f'controller {point.name!r}: the entry point {point.value} cannot be loaded '
             f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
@@ -161,7 +161,7 @@ def factory_spec(
             controller = factory(context)
         except DdctError:
             raise
-        except Exception as error:
+        except FOREIGN_FAILURES as error:
             raise DdctError(
                 f'controller {name!r}: {source} failed '
                 f'({type(error).__name__}: {error}): mend its code'

@@ -39,6 +39,10 @@ class Declaring(Third):
         self.taken = context.gains
 
 
+def leave(context):
+    raise SystemExit(3)
+
+
 def make_nothing(context):
     return None
 
@@ -88,6 +92,7 @@ def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
         ('no_such_module:make', 'cannot be loaded'),
         (f'{__name__}:no_such_function', 'cannot be loaded'),
         (f'{__name__}:make_nothing', 'returned NoneType, not a'),
+        (f'{__name__}:leave', r'leave failed \(SystemExit: 3\)'),
     ],
 )
 def test_a_broken_entry_point_is_named(add_entry_point, value, complaint):

@@ -38,6 +38,16 @@ class NoIntegrator(Controller):
         )
 
 
+class TwoMethods(Controller):
+    """Neither options nor state, so no constructor."""
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, measurement: Measurement) -> Command:
+        return Command(-0.1 * measurement.slip_error_rpm)
+
+
 class Soft(NoIntegrator):
     """A quarter of the gain: slow, but within the engagement."""
 

@@ -50,6 +50,8 @@ WRONG = {
     'Chatters': ('rate', ['N m per second, more than 3500', *IN_UPDATE]),
     'IdlePreview': ('preview', ['preview_steps = 5', 'changes no torque']),
     'AnotherModel': ('linear model', ['differ by up to', *IN_UPDATE]),
+    'WritesItsInput': ('answers', ["'tuple' object does not support item", *IN_UPDATE]),
+    'Leaves': ('answers', ['it raised SystemExit: 3', *IN_UPDATE]),
     'Prints': ('prints', ["the first 'e = 0.0'", *IN_UPDATE]),
 }
 """By class the check that names its error, and words of the detail."""
@@ -206,6 +208,16 @@ def test_the_program_fails_with_one_line_that_names_the_checks(
     assert_one_line(
         errors.partition('\n')[2], 'ddct check-controller', 'WrongSign fails: sign, stability'
     )
+
+
+@pytest.mark.usefixtures('installed')
+def test_checks_that_wait_for_one_other_share_a_line(capfd: pytest.CaptureFixture[str]) -> None:
+    assert program.main(['NoAnswer']) == 1
+    lines = capfd.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == [*4 * ['pass'], 'fail', 'skipped', 'pass']
+    first, *_, last = (check.name for check in CHECKS if {'answers', 'state'} & {*check.after})
+    assert lines[-2].startswith(f'skipped  {first}, state, determinism, reset, NaN, ')
+    assert lines[-2].endswith(f"{last}: first the check 'answers' must pass")
 
 
 @pytest.mark.usefixtures('installed')

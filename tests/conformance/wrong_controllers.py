@@ -1,6 +1,7 @@
 """Controllers as beginners get them wrong: one error each, in an otherwise sound proportional."""
 
 import random
+import sys
 import time
 from time import monotonic
 from typing import Any, ClassVar
@@ -225,3 +226,16 @@ class Prints(Proportional):
     def update(self, measurement: Measurement) -> Command:
         print('e =', measurement.slip_error_rpm)
         return super().update(measurement)
+
+
+class WritesItsInput(Proportional):
+    """Would make the reference that the run is scored against its own."""
+
+    def update(self, measurement: Measurement) -> Command:
+        measurement.slip_reference[0] = measurement.slip_speed  # type: ignore[index]
+        return super().update(measurement)
+
+
+class Leaves(Proportional):
+    def update(self, measurement: Measurement) -> Command:
+        sys.exit(3)

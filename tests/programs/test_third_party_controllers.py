@@ -31,7 +31,7 @@ def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising', 'bad_status')
-    names = (*answers, 'slow', 'bad_linear_model', 'no_controller', 'nothing')
+    names = (*answers, 'leaving', 'slow', 'bad_linear_model', 'no_controller', 'nothing')
     targets = {name: f'support.broken_controllers:make_{name}' for name in names}
     targets['absent'] = 'no_such_package.controllers:make'
     install(monkeypatch, tmp_path / 'site', SUPPORT, targets)
@@ -149,6 +149,7 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
         ('text', "'12.5'"),
         ('bad_status', "status at step 60 is (('iterations', 3),)"),
         ('raising', 'failed at step 60 (ZeroDivisionError: float division by zero, in '),
+        ('leaving', 'failed at step 60 (SystemExit: 3, in '),
     ],
 )
 def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(

@@ -25,7 +25,7 @@ class _Broken(Controller):
     def update(self, measurement: Measurement) -> Command:
         if measurement.step < self._good_until_step:
             return Command(0.0)
-        if isinstance(self._answer, Exception):
+        if isinstance(self._answer, BaseException):
             raise self._answer
         return self._answer
 
@@ -72,6 +72,11 @@ def make_bad_linear_model(context: ControllerContext) -> Controller:
 def make_raising(context: ControllerContext) -> Controller:
     """Return a controller that divides by zero."""
     return _Broken(ZeroDivisionError('float division by zero'))
+
+
+def make_leaving(context: ControllerContext) -> Controller:
+    """Return a controller that would end the program."""
+    return _Broken(SystemExit(3))
 
 
 class _Slow(_Broken):

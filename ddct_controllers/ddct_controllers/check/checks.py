@@ -15,6 +15,7 @@ from ddct_controllers.check.outcome import (
 )
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.watch import Printed
+from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -58,14 +59,15 @@ def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
     printed = Printed()
     subject = Subject(name, settings, printed)
     outcomes: dict[str, Outcome] = {}
+    causes: dict[str, str] = {}
     with contextlib.redirect_stdout(printed):
         for check in CHECKS:
             missing = [each for each in check.after if outcomes[each].state != PASS]
-            state, detail = (
-                (SKIPPED, f'first the check {missing[0]!r} must pass')
-                if missing
-                else _asked(check, subject)
-            )
+            if missing:  # one that was skipped itself tells of the first that was not
+                causes[check.name] = first = causes.get(missing[0], missing[0])
+                state, detail = SKIPPED, f'first the check {first!r} must pass'
+            else:
+                state, detail = _asked(check, subject)
             outcomes[check.name] = Outcome(check.name, state, detail)
     return list(outcomes.values())
 
@@ -77,5 +79,5 @@ def _asked(check: Check, subject: Subject) -> tuple[str, str]:
         return SKIPPED, str(reason)
     except CheckFailedError as failure:
         return FAIL, str(failure)
-    except Exception as error:  # the controller's own, whatever it is
+    except FOREIGN_FAILURES as error:  # the controller's own, whatever it is
         return FAIL, str(subject.what_failed(error))

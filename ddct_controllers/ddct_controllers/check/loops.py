@@ -101,7 +101,8 @@ def stability(subject: Subject) -> str:
     if subject.step_response(1.0).diverges:
         raise CheckFailedError(
             'in the closed loop the slip ends further from its reference than control found it, '
-            'or a step of the reference grows: lower the gain, after sign and unit are right '
+            'or a step of the reference grows: lower the gain, after sign, unit and the '
+            f'{PERIOD_S:g} s of a step in sums are right '
             f'({place_of_method(subject.sample, "update")})'
         )
     model = _linear_model(subject)

@@ -1,10 +1,11 @@
 """Program `check-controller`: find a controller's errors before its scores do."""
 
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 
 from ddct_controllers.check.checks import check_controller
-from ddct_controllers.check.outcome import FAIL
+from ddct_controllers.check.outcome import FAIL, Outcome
 from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
@@ -39,8 +40,7 @@ def _check(argv: list[str]) -> int:
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
     outcomes = check_controller(options.controller, settings)
     if options.json != STDOUT:
-        for each in outcomes:
-            print(f'{each.state:8} {each.name:14} {printable(each.detail)}')
+        _print(outcomes)
     if options.json:
         checks = [asdict(each) for each in outcomes]
         write_json(options.json, {'controller': options.controller, 'checks': checks})
@@ -48,6 +48,16 @@ def _check(argv: list[str]) -> int:
     if failed:
         complain(PROGRAM, f'{options.controller} fails: {", ".join(failed)}')
     return 1 if failed else 0
+
+
+def _print(outcomes: Sequence[Outcome]) -> None:
+    """Print a line per check; those that are skipped for one reason share theirs."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for each in outcomes:
+        alike.setdefault((each.state, each.detail), []).append(each.name)
+    for (state, detail), names in alike.items():
+        shared = ':' if len(names) > 1 else ''
+        print(f'{state:8} {", ".join(names) + shared:14} {printable(detail)}')
 
 
 if __name__ == '__main__':

@@ -54,7 +54,7 @@ class Subject:
         """Return a new object."""
         return make_controller(self.name, self.settings)
 
-    def what_failed(self, error: Exception) -> CheckFailedError:
+    def what_failed(self, error: BaseException) -> CheckFailedError:
         """Return the failure of a check in whose course the controller raised `error`."""
         cause = root_cause(error)
         if isinstance(cause, DdctError) and not isinstance(error, ForeignError):

@@ -120,12 +120,13 @@ def mapping(
     name = path or 'the file'
     if not isinstance(content, Mapping):
         raise ParameterError(f'{name}: give keys and values, not {content!r}')
+    known = (*required, *optional)
+    strange = [key for key in content if key not in known] if known else []
     for key in required:
         if key not in content:
-            raise ParameterError(f'{name}: key {key} is missing')
-    known = (*required, *optional)
-    for key in content if known else ():
-        if key not in known:
-            full = f'{path}.{key}' if path else str(key)
-            raise ParameterError(f'unknown key {full!r}: {close_name(key, known)}')
+            meant = f': is it meant by {strange[0]!r}?' if strange else ''
+            raise ParameterError(f'{name}: key {key} is missing{meant}')
+    for key in strange:
+        full = f'{path}.{key}' if path else str(key)
+        raise ParameterError(f'unknown key {full!r}: {close_name(key, known)}')
     return content

@@ -17,7 +17,7 @@ from ddct_controllers.design.analysis.worst_corner import (
 from ddct_controllers.interface import Controller
 from ddct_controllers.places import place_of_method
 from ddct_controllers.registry import Chosen, controller_label, make_controller
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.parameters import DrivelineParameters
@@ -80,7 +80,7 @@ def _linear_model(name: str, controller: Controller) -> StateSpace | None:
     """Return the model; raise DdctError for what no loop can be closed with."""
     try:
         model: object = controller.linear_model()
-    except Exception as error:
+    except FOREIGN_FAILURES as error:
         reason = f'{type(error).__name__}: {error}'
         raise _unusable(name, controller, reason) from error
     if model is None:

@@ -60,7 +60,7 @@ def test_it_may_not_take_the_name_of_another_controller(write):
         ('name: mine', 'name: ../mine', "controller name '../mine'"),
         ('name: mine', 'name: 8', 'controller name 8'),
         ('name: mine\n', '', 'key name is missing'),
-        ('  gain:', '  gian:', 'transfer_function: key gain is missing'),
+        ('  gain:', '  gian:', "transfer_function: key gain is missing: is it meant by 'gian'?"),
         ('provenance:', 'origin:', "unknown key 'origin'"),
         ('- 0.8361', '- fast', "a coefficient is 'fast': give a number"),
         ('- 0.8361', '- .nan', 'a coefficient is nan'),

@@ -22,3 +22,7 @@ class ForeignError(DdctError):
 
 class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""
+
+
+FOREIGN_FAILURES = (Exception, SystemExit)
+"""What code of a third party may raise: sys.exit would end the program without a word."""
