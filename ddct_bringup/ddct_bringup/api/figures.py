@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from matplotlib.figure import Figure
 
-from ddct_bringup.api.runs import Run
+from ddct_bringup.api.runs import Run, as_runs
 from ddct_bringup.report.quantities import Quantity, quantities_of
 from ddct_bringup.report.run_marks import run_labels
 from ddct_controllers.design.drawing.chart_style import chart_style, line_styles
@@ -24,7 +24,7 @@ def figure(
     The quantities are the keys of the report's charts, such as w_d, error, w_sr, A_x, C_f_request;
     `temperature` and others of a clutch that sticks too. Raise ParameterError for another.
     """
-    shown = [runs] if isinstance(runs, Run) else list(runs)
+    shown = as_runs(runs)
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
     labels = run_labels([each.entry for each in shown])

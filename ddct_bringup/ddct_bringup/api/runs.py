@@ -43,7 +43,7 @@ _OF_THE_RECORD = ('headless', 'out', 'overwrite', 'limits')
 """Options of `run` that change nothing of what a controller is built for."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """One run, simulated, recorded from the graph, or loaded."""
 
@@ -54,6 +54,16 @@ class Run:
     """None of a bag without `timing.json`."""
     chosen: Chosen
     """The controller, as the registry takes it."""
+
+    def __repr__(self) -> str:
+        """Return a line: a notebook shows it after each cell that ends with a run."""
+        facts = self.recording.facts
+        counts = 'valid' if self.valid else f'not valid: {self.reason}'
+        return (
+            f'<Run of {self.controller}: {facts.scenario}, {facts.duration_s:g} s, wear gain '
+            f'{facts.wear_gain:g}, {self.verdict["state"]}, limits {self.verdict["limits"]}, '
+            f'{counts}>'
+        )
 
     @property
     def controller(self) -> str:
@@ -180,9 +190,14 @@ def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
     return _read(path, path.as_posix(), judged_by)
 
 
-def table(runs: Iterable[Run]) -> Any:
+def table(runs: Run | Iterable[Run]) -> Any:
     """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
-    return _pandas().DataFrame([score_row(each.entry) for each in runs])
+    return _pandas().DataFrame([score_row(each.entry) for each in as_runs(runs)])
+
+
+def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
+    """Return a list of runs where one alone may be given."""
+    return [runs] if isinstance(runs, Run) else list(runs)
 
 
 def _ready(
@@ -193,6 +208,10 @@ def _ready(
     **given: Any,
 ) -> RunSettings:
     """Return the settings of a run, or of runs, with the controllers called `labels`."""
+    if not isinstance(set, Mapping | None):
+        raise ParameterError(
+            f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}"
+        )
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
     plain = {key: _plain(changes[key]) for key in changes}
     described = load_scenario(str(scenario), plain, given.get('clutch', LINEAR))

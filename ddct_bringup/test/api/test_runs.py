@@ -1,15 +1,18 @@
 """The interface for Python: runs, what can be asked of them, and what is refused."""
 
+import hashlib
 import json
 import pickle
 import threading
 import warnings
+from dataclasses import replace
 from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
 
 from ddct_bringup import api
+from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.headless import run_headless
@@ -93,6 +96,24 @@ def test_frequency_evidence_is_that_of_the_loop_and_says_who_has_none(worn):
     assert api.run(Soft, duration=SHORT_S).frequency()['linear'] is False
 
 
+def test_a_run_shows_itself_in_one_line(worn):
+    assert repr(worn) == (
+        '<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, limits beyond, valid>'
+    )
+    crashed = replace(worn, entry={**worn.entry, 'valid': False, 'reason': 'it crashed'})
+    assert repr([crashed]).endswith(', not valid: it crashed>]')
+
+
+def test_a_kept_run_says_in_its_bag_which_controller_file_ran(tmp_path):
+    file = tmp_path / 'mine.yaml'
+    file.write_text(
+        'name: mine\nunits: {input: rpm, output: N m}\npolynomial: {num: [-0.1], den: [1.0]}\n'
+    )
+    kept = api.run(file, duration=SHORT_S, out=tmp_path / 'runs')
+    told = read_bag(kept.path).run_info['controller']
+    assert told['controller_file_sha256'] == hashlib.sha256(file.read_bytes()).hexdigest()
+
+
 def test_a_dataframe_has_the_signals_by_time(worn):
     pytest.importorskip('pandas', reason='the extra pandas')
     frame = worn.dataframe()
@@ -104,6 +125,7 @@ def test_a_dataframe_has_the_signals_by_time(worn):
 
 def test_a_table_has_a_row_per_run_with_metrics_and_verdict(worn):
     pytest.importorskip('pandas', reason='the extra pandas')
+    assert len(api.table(worn)) == 1
     rows = api.table([worn, worn])
     assert rows['controller'].tolist() == ['ls8', 'ls8']
     assert rows['slip_final_rpm'].tolist() == 2 * [worn.metrics['slip_final_rpm']]
@@ -215,6 +237,7 @@ def test_runs_in_threads_are_those_of_the_main_one(worn):
         ({'wear': 0.7}, 'unknown option wear: did you mean wear_gain'),
         ({'wear_gain': -1.0}, 'wear_gain'),
         ({'scenario': 'thesys'}, 'unknown scenario'),
+        ({'set': ['load.slope_rad=0.1']}, 'set is .* give keys and values'),
         ({'set': {'load.slop_rad': 0.1}}, 'load.slop_rad'),
         ({'set': {'controllers.nobody.gain': 0.1}}, 'controllers.nobody: there is no such'),
         ({'controller': 'nobody'}, "unknown controller 'nobody'"),
