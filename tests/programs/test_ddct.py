@@ -86,6 +86,22 @@ def test_a_program_that_cannot_be_imported_is_one_line(
     assert error == "ddct: extra cannot start: No module named 'nowhere': install what it needs\n"
 
 
+@pytest.mark.parametrize('name', ['rclpy', 'rcl_interfaces'])
+def test_a_node_without_ros_says_what_is_missing_and_where_to_read_on(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    install_program(tmp_path, f'import {name}\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'extra_program', raising=False)
+    for missing in ('rclpy', 'rcl_interfaces'):
+        monkeypatch.setitem(sys.modules, missing, None)
+    assert ddct.main(['extra']) == 1
+    assert capsys.readouterr().err == (
+        'ddct: the graph and its nodes need ROS 2, and its package rclpy is not installed: '
+        'run headless, or set ROS up as docs/setup.md tells\n'
+    )
+
+
 def test_it_imports_nothing_heavy_itself() -> None:
     code = (
         'import sys; from ddct_bringup.programs.ddct import main\n'

@@ -10,11 +10,14 @@ from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
+from ddct_plant.graph.domain import require_ros
 from ddct_plant.program.command_line import ProgramParser, run_program
 
 PROGRAM = 'ddct'
 GROUP = 'ddct.programs'
 """The entry points of the programs: the packages' setup.py holds them."""
+_FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')
+"""What a node imports first of ROS."""
 
 _EXAMPLES = """\
 examples:
@@ -52,6 +55,8 @@ def _ddct(argv: list[str]) -> int:
     try:
         program = known[argv[0]].load()
     except ImportError as error:
+        if error.name in _FIRST_OF_ROS:
+            require_ros()
         raise DdctError(f'{argv[0]} cannot start: {error}: install what it needs') from error
     sys.argv[1:] = argv[1:]
     return program()

@@ -10,11 +10,11 @@ LAST_DOMAIN = 232
 
 
 def require_ros() -> None:
-    """Raise DdctError where ROS is not installed, which a headless run does without."""
+    """Raise DdctError where ROS is not installed, which headless runs and scores do without."""
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
-            'a graph needs ROS 2, and its package rclpy is not installed: run headless, or set '
-            'ROS up as docs/setup.md tells'
+            'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '
+            'headless, or set ROS up as docs/setup.md tells'
         )
 
 
