@@ -129,6 +129,11 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
         if point.name == name:
             require_name('controller name', name)  # it names the folder of the bag
             return _loaded(point)
+    if '.' in name or '/' in name:
+        raise ParameterError(
+            f'{name} is no controller file: give a YAML file; for an FMU or a library in C, one '
+            'that names it (docs/fmu_controller.md, docs/c_controller.md)'
+        )
     choices = ', '.join(controller_names())
     raise ParameterError(
         f'unknown controller {name!r}: choose from {choices}, or give the path of a YAML file'

@@ -68,6 +68,12 @@ def test_an_unknown_name_lists_the_known_ones():
         make_controller('ls99', SETTINGS)
 
 
+@pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine.so', '/dev/fd/63'])
+def test_a_file_that_is_no_yaml_leads_to_the_one_that_is_needed(name):
+    with pytest.raises(ParameterError, match=f'{name} is no controller file: give a YAML file; '):
+        make_controller(name, SETTINGS)
+
+
 def test_a_printed_controller_takes_no_gains():
     settings = RunSettings(load_scenario('thesis', ['controllers.ls8={gain: 2.0}']))
     with pytest.raises(ParameterError, match='controllers.ls8: gain given'):

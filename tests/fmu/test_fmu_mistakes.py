@@ -52,6 +52,7 @@ def complaint(file: str) -> str:
         ('pid.Kp: 0.2', 'fault: 1.5', 'line 6: fmu.parameters.fault is 1.5: give a whole number'),
         ('pid.Kp: 0.2', 'inverted: 1', 'fmu.parameters.inverted is 1: give true or false'),
         ('pid.Kp: 0.2', 'pid.Kq: 1', 'line 6: fmu.parameters.pid.Kq: .* did you mean pid.K'),
+        ('pid.Kp: 0.2', 'gain: 1', 'fmu.parameters.gain: .* known: pid.Kp, pid.Ki, fault'),
         ('pid.Kp: 0.2', 'u: 1', 'fmu.parameters.u: output of type .* takes no start value'),
         ('parameters', 'parameter', 'line 6: .*did you mean parameters?'),
     ],

@@ -157,7 +157,11 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
     key = f'fmu.{section}.{name}'
     variable = fmu.variables.get(name)
     if variable is None:
-        known = [each.name for each in fmu.variables.values() if each.causality == causality]
+        known = [
+            each.name
+            for each in fmu.variables.values()
+            if each.causality == (causality or 'parameter')
+        ]
         hint = close_name(name, known or fmu.variables)
         raise ParameterError(f'{key}: {fmu.path.name} has no variable of this name: {hint}')
     kind = _KINDS.get(variable.type)
