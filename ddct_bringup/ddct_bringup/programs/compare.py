@@ -15,8 +15,8 @@ from ddct_bringup.run.failed_run import note_failure
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import (
     add_run_options,
-    computed_from,
     print_choices,
+    print_computed_from,
     settings_of,
 )
 from ddct_bringup.run.output_folder import StagedFolder, mark_folder
@@ -151,8 +151,7 @@ def _report(
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)
     print_comparison(entries, settings, options.overrides, stream)
-    for source, names in computed_from([plan.controller for plan in plans]).items():
-        print(f'computed from {source}: {printable(", ".join(names))}', file=stream)
+    print_computed_from([plan.controller for plan in plans], stream)
 
 
 def _controllers(text: str) -> list[str]:

@@ -1,8 +1,9 @@
 """Command-line options that `bringup` and `compare` share."""
 
 import argparse
+import sys
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TextIO
 
 from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import Chosen, controller_names, controller_spec
@@ -80,13 +81,21 @@ def print_choices() -> None:
     for title, names in rows:
         print(f'{title + ":":15}{printable(", ".join(names))}')
     print()
-    for source, names in computed_from(controller_names()).items():
-        print(f'computed from {source}: {printable(", ".join(names))}')
+    print_computed_from(controller_names(), sys.stdout)
     print()
     print_table(controller_options_table())
 
 
-def computed_from(names: Sequence[Chosen]) -> dict[str, list[str]]:
+def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
+    """Print what controllers are computed from, a line for all that share it."""
+    for source, labels in _computed_from(names).items():
+        what = f'computed from {source}'
+        if source == UNSTATED:
+            what = 'not stated whether computed from the scenario or the thesis'
+        print(f'{what}: {printable(", ".join(labels))}', file=stream)
+
+
+def _computed_from(names: Sequence[Chosen]) -> dict[str, list[str]]:
     """Return by what they are computed from the controllers, files by their own names."""
     found: dict[str, list[str]] = {}
     for name in names:
