@@ -42,6 +42,8 @@ def read_csv(path: Path, names: Iterable[str], *, most_bytes: int, most_rows: in
     """
     rows = _rows(_text(path, most_bytes))
     _, header = next(rows, (0, []))
+    if not header:
+        raise ParameterError(f'{path}: it is empty: give a header and rows of numbers')
     places = {name: _column(path, header, name) for name in names}
     cells: dict[str, list[float]] = {name: [] for name in places}
     lines: list[int] = []

@@ -94,6 +94,7 @@ def test_every_profile_takes_a_file_in_its_units(folder, section, unit, cells, k
         ('t,other,torque', 't,other,torgue', "no column 'torque': did you mean torgue?"),
         ('t,other,torque', 't,torque,torque', "the column 'torque' is there 2 times"),
         ('0.0,x,100.0\n0.5,y,150.0\n', '', 'no row of numbers'),
+        (PEDAL, '# nothing\n', 'it is empty: give a header and rows'),
     ],
 )
 def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, complaint):
