@@ -45,8 +45,8 @@ class ClosingParameters(OptionGroup, prefix='closing.'):
     )
     most_n_m: float = option(
         500.0,
-        'highest request of the stage, unless C_fOL itself is higher: what a wear gain of 0.7 '
-        'takes for 350 N m',
+        'highest request of the stage, unless C_fOL itself is higher: with it a clutch worn to a '
+        'wear gain of 0.7 carries the 350 N m of `friction.most_n_m`',
         'N m',
         source='published capacity of the C635; wear assumed',
         above=0.0,
