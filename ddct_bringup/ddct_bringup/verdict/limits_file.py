@@ -100,7 +100,8 @@ class _LimitsFile:
         rule = self._mapping(content, path, _RULE_KEYS)
         self._text(rule['reason'], (*path, 'reason'))
         self._unit(rule['unit'], field.metadata['unit'], (*path, 'unit'))
-        return self._positive(rule['value'], (*path, 'value'), field.metadata['at_least'])
+        least = field.metadata['at_least']
+        return self._number(rule['value'], (*path, 'value'), above=0.0, at_least=least)
 
     def _limit(self, content: Any, path: tuple[Any, ...]) -> Limit:
         limit = self._mapping(content, path, _LIMIT_KEYS, (*_CITATION, 'convention'))
@@ -111,7 +112,7 @@ class _LimitsFile:
         self._unit(limit['unit'], CRITERION_UNITS[criterion], (*path, 'unit'))
         return Limit(
             criterion,
-            self._positive(limit['value'], (*path, 'value')),
+            self._number(limit['value'], (*path, 'value'), at_least=0.0),
             limit['unit'],
             self._scenarios(limit['applies_to'], (*path, 'applies_to')),
             self._source(limit, path),
@@ -154,9 +155,15 @@ class _LimitsFile:
                 raise self._bad(path, f'the key {key} is missing')
         return content
 
-    def _positive(self, value: Any, path: tuple[Any, ...], at_least: float | None = None) -> float:
+    def _number(
+        self,
+        value: Any,
+        path: tuple[Any, ...],
+        above: float | None = None,
+        at_least: float | None = None,
+    ) -> float:
         try:
-            return require_number('it', value, above=0.0, at_least=at_least, at_most=1e9)
+            return require_number('it', value, above=above, at_least=at_least, at_most=1e9)
         except ParameterError as error:
             raise self._bad(path, str(error)) from error
 

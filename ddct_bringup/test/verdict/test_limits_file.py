@@ -45,6 +45,12 @@ def test_the_strictest_of_several_limits_holds():
     assert limits.of('judder', 'thesis') is None
 
 
+def test_what_must_not_happen_at_all_is_limited_by_zero():
+    none = '  - {criterion: releases_after_lock, value: 0, unit: "1", applies_to: all,'
+    limits = limits_of_text(f'{TEXT}{none} convention: true}}\n', 'mine.yaml')
+    assert limits.of('releases_after_lock', 'launch').value == 0.0
+
+
 def test_a_file_without_a_version_is_of_the_present_one():
     assert limits_of_text(TEXT.replace('schema_version: 1\n', ''), 'x') == packaged_limits()
 
@@ -69,7 +75,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'value: low',
             "limits\\[0\\].value: it is 'low': give a number",
         ),
-        ('value: 9.1', 'value: -9.1', 'value: -9.1', 'limits\\[1\\].value: .*above 0'),
+        ('value: 9.1', 'value: -9.1', 'value: -9.1', 'limits\\[1\\].value: .*at least 0'),
         ('value: 9.1', 'value: .nan', 'value: .nan', 'limits\\[1\\].value: .*finite'),
         (
             'applies_to: all',
