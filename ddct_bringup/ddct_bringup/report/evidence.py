@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.report.columns import LOOP_COLUMNS
 from ddct_bringup.report.runs import ReportRun
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -79,7 +79,7 @@ def _is_whole(entry: Any, wear_gain: float) -> bool:
         point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
         interval = entry['stable_wear_gain'] or {}
         for value in (
-            *(point[column.key] for column in LOOP_COLUMNS),
+            *(point[figure.key] for figure in LOOP_FIGURES),
             *(interval.get(end) for end in ('lowest', 'highest')),
             entry['corners']['sensitivity_peak'],
         ):

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_bringup.report.columns import LOOP_COLUMNS, number_text
 from ddct_bringup.report.evidence import LoopEvidence
+from ddct_bringup.report.typeset import number_text
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence
 
 NOT_LINEAR = 'not linear, so without a frequency response'
@@ -18,7 +19,7 @@ class LoopRow:
     wear_gain: str
     stable: bool
     cells: tuple[tuple[float | None, str], ...]
-    """(value, text) for each of `LOOP_COLUMNS`."""
+    """(value, text) for each of `LOOP_FIGURES`."""
     stable_wear: str
     """Between which wear gains the loop is stable."""
     corner_peak: str
@@ -54,7 +55,9 @@ def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
         controller=evidence.controller,
         wear_gain=f'{evidence.wear_gain:g}',
         stable=point['stable'],
-        cells=tuple((point[each.key], each.text(point[each.key])) for each in LOOP_COLUMNS),
+        cells=tuple(
+            (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_FIGURES
+        ),
         stable_wear=f'{number_text(interval.get("lowest"), ".2f")} to '
         f'{number_text(interval.get("highest"), ".2f")}',
         corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),

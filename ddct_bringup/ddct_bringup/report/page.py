@@ -1,7 +1,6 @@
 """Put the page together: one HTML file that needs nothing else."""
 
 import json
-import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
@@ -11,10 +10,9 @@ from typing import Any
 import bokeh
 from bokeh.resources import Resources
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
-from ddct_bringup.report.columns import FURTHER, LOOP_COLUMNS, TABLE_5_1
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.origin import run_origin, scenario_text
@@ -30,17 +28,19 @@ from ddct_bringup.report.run_marks import (
 )
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.summary import comparable_rows, metric_cells
+from ddct_bringup.report.typeset import symbols, unit_text
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
 from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
 SHOWN_AT_FIRST = 12
 """Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
-_SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
 
 
 def report_page(
@@ -79,7 +79,7 @@ def report_page(
         columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
         further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
         prediction_tolerance=PREDICTION_TOLERANCE,
-        loop_columns=LOOP_COLUMNS,
+        loop_columns=LOOP_FIGURES,
         loops=loop_rows(evidence),
         no_loops=without_evidence(evidence),
         computed=COMPUTED,
@@ -100,11 +100,6 @@ def _scenario_title(runs: Sequence[ReportRun]) -> str:
     entries = [run.entry for run in runs if run.recording is not None]
     changes = (entry['scenario_changes'] for entry in entries if entry['scenario_changes'])
     return scenario_title(entries[0]['scenario'], next(changes, ()))
-
-
-def symbols(text: str) -> Markup:
-    """Return text with w_sr and its like as letters with an index."""
-    return Markup(_SYMBOL.sub(r'\1<sub>\2</sub>', str(escape(text))))
 
 
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
@@ -180,5 +175,5 @@ def _template() -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters['symbols'] = symbols
+    environment.filters |= {'symbols': symbols, 'unit': unit_text}
     return environment.get_template('page.html.j2')

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.verdict_table import criterion_title, unit_text, value_text
-from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.report.verdict_table import value_text
+from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.state import ENGAGED
 
 DEFAULT_PAIR = ('friction_energy', 'peak_jerk')
@@ -58,7 +59,6 @@ def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
     if len(magnitudes) < 2:
         return None
     engaged = [index for index, run in enumerate(runs) if run.entry['verdict']['state'] == ENGAGED]
-    units = {criterion.name: unit_text(criterion.unit) for criterion in CRITERIA}
     fronts = {
         pair_key(first, second): non_dominated(
             {
@@ -72,8 +72,9 @@ def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
     first, second = [*magnitudes][:2]
     return ParetoView(
         criteria={
-            name: _axis(criterion_title(name), units[name], values)
-            for name, values in magnitudes.items()
+            each.key: _axis(each, magnitudes[each.key])
+            for each in CRITERIA
+            if each.key in magnitudes
         },
         fronts=fronts,
         default=DEFAULT_PAIR if set(DEFAULT_PAIR) <= set(magnitudes) else (first, second),
@@ -97,7 +98,7 @@ def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
 
 def _magnitudes(runs: Sequence[ReportRun]) -> dict[str, dict[int, float]]:
     """Return by criterion the magnitudes of the valid runs, where two or more have one."""
-    found: dict[str, dict[int, float]] = {criterion.name: {} for criterion in CRITERIA}
+    found: dict[str, dict[int, float]] = {criterion.key: {} for criterion in CRITERIA}
     for index, run in enumerate(runs):
         if not run.entry['valid']:
             continue
@@ -107,12 +108,13 @@ def _magnitudes(runs: Sequence[ReportRun]) -> dict[str, dict[int, float]]:
     return {name: values for name, values in found.items() if len(values) >= 2}
 
 
-def _axis(title: str, unit: str, values: Mapping[int, float]) -> ParetoCriterion:
+def _axis(criterion: Criterion, values: Mapping[int, float]) -> ParetoCriterion:
+    unit = unit_text(criterion.unit)
     lowest, highest = min(values.values()), max(values.values())
     span = (highest - lowest) or abs(highest) or 1.0
     first, last = lowest - _MARGIN * span, highest + _MARGIN * span
     return ParetoCriterion(
-        title=f'{title}, {unit}' if unit else title,
+        title=f'{criterion.symbol}, {unit}' if unit else criterion.symbol,
         values={run: f'{value_text(value)} {unit}'.strip() for run, value in values.items()},
         places={run: round((value - first) / (last - first), 4) for run, value in values.items()},
         ticks=[

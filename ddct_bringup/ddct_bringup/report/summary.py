@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_bringup.report.columns import FigureColumn
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.typeset import number_text
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
+from ddct_plant.program.table import Figure
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
 
 
 def metric_cells(
-    column: FigureColumn, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
+    column: Figure, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars share the scale of the largest figure, ours or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
@@ -54,14 +55,14 @@ def metric_cells(
 
 
 def _cell(
-    column: FigureColumn,
+    column: Figure,
     value: float | None,
     row: ThesisRow | None,
     largest: float,
     *,
     valid: bool,
 ) -> Cell:
-    text = column.text(value)
+    text = number_text(value, column.form)
     share = 0.0 if value is None else abs(value) / largest
     if row is None:
         return Cell(value, text, share)

@@ -4,21 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.report.columns import number_text
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.typeset import number_text
 from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.verdict import NO_LIMIT
 
 NOT_JUDGED = 'the run failed or cannot be read'
-_UNITS = {
-    '1': '',
-    'm/s^3': 'm/s³',
-    'm/s^2': 'm/s²',
-    'm/s^1.75': 'm/s¹·⁷⁵',
-    'degC': '°C',
-    'rad/s^2': 'rad/s²',
-}
 
 
 @dataclass(frozen=True)
@@ -38,8 +30,6 @@ class VerdictRow:
     """A criterion over all runs."""
 
     criterion: Criterion
-    title: str
-    unit: str
     limit: str
     """Empty where no limit applies."""
     source: str
@@ -58,21 +48,11 @@ def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
     return [
         _row(
             criterion,
-            [each.get(criterion.name) for each in judged],
-            [each.get(criterion.name, criterion.undefined) for each in reasons],
+            [each.get(criterion.key) for each in judged],
+            [each.get(criterion.key, criterion.undefined) for each in reasons],
         )
         for criterion in CRITERIA
     ]
-
-
-def criterion_title(name: str) -> str:
-    """Return the name of a criterion as words."""
-    return name.replace('_', ' ')
-
-
-def unit_text(unit: str) -> str:
-    """Return a unit as it is printed, empty for a pure number."""
-    return _UNITS.get(unit, unit)
 
 
 def value_text(value: float | None) -> str:
@@ -88,8 +68,6 @@ def _row(
     limited = next((each for each in found if each and each['limit'] is not None), None)
     return VerdictRow(
         criterion=criterion,
-        title=criterion_title(criterion.name),
-        unit=unit_text(criterion.unit),
         limit=value_text(limited['limit']) if limited else '',
         source=limited['source'] if limited else '',
         cells=tuple(_cell(*each) for each in zip(found, reasons, strict=True)),

@@ -12,19 +12,19 @@ from ddct_bringup.scores.tables import (
     FINAL_SLIP,
     PEAK_JERK,
     TORSION_STD,
-    UNDEFINED,
     VALID,
-    Column,
+    RunColumn,
     print_runs,
 )
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import (
-    FIGURES,
     PREDICTED,
     PREDICTION_TOLERANCE,
     is_thesis_run,
     thesis_row,
 )
+from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_plant.program.table import Column, Figure
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -53,17 +53,14 @@ def print_comparison(
             CONTROLLER,
             *(
                 column
-                for ours, unit, name in zip(columns[1:], _UNITS, FIGURES, strict=True)
-                for column in (_with_range(ours, name), _thesis(unit, name))
+                for ours, figure in zip(columns[1:], TABLE_5_1, strict=True)
+                for column in (_with_range(ours, figure.key), _thesis(figure))
             ),
-            Column('thesis row', _use, number=False, undefined=_NO_ROW),
+            Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
         ]
     print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
     if compared and any(thesis_row(run['controller']) for run in runs):
         print(_NOTE, file=stream)
-
-
-_UNITS = ('s', 'rpm', 'm/s^2')
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
@@ -74,27 +71,27 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     )
 
 
-def _with_range(column: Column, name: str) -> Column:
+def _with_range(column: RunColumn, name: str) -> RunColumn:
     """Return a metric's column with the range of what is predicted beneath."""
     return replace(column, below=lambda run: predicted_range(run['controller'], name))
 
 
-def _thesis(unit: str, name: str) -> Column:
+def _thesis(figure: Figure) -> RunColumn:
     """Return the column of the print, with the verdict beneath where it is predicted."""
 
-    def text(run: Entry) -> str:
+    def value(run: Entry) -> float | None:
         row = thesis_row(run['controller'])
-        return f'{row.figures()[name]:.2f}' if row else UNDEFINED
+        return row.figures()[figure.key] if row else None
 
     def below(run: Entry) -> str:
         row = thesis_row(run['controller'])
         if row is None or row.use != PREDICTED or not run['valid']:
             return ''
-        return row.verdict(name, run['metrics'][name])
+        return row.verdict(figure.key, run['metrics'][figure.key])
 
-    return Column(f'thesis\n{unit}', text, below=below)
+    return Column(f'thesis\n{figure.unit}', '.2f', value, below=below)
 
 
-def _use(run: Entry) -> str:
+def _use(run: Entry) -> str | None:
     row = thesis_row(run['controller'])
-    return row.use if row else UNDEFINED
+    return row.use if row else None

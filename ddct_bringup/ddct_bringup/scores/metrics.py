@@ -37,7 +37,7 @@ class Metrics:
     peak_jerk_m_s3: float | None
     """Largest magnitude of the jerk in the score window; A_x low-passed at 20 Hz without delay."""
     vdv_m_s1_75: float | None
-    """Vibration dose value over the score window, weighting `comfort.VDV_WEIGHTING`."""
+    """Vibration dose value over the score window, weighting `metric_figures.VDV_WEIGHTING`."""
     weighted_acceleration_m_s2: float | None
     """Root of the mean square of A_x over the score window, weighted as the dose."""
     friction_energy_j: float | None

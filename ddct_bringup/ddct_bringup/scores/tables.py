@@ -1,77 +1,62 @@
 """Tables of scored runs for the terminal; plain text where the output is no terminal."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, TextIO
+from collections.abc import Sequence
+from typing import TextIO
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.scores.scoring import Entry
-from ddct_bringup.verdict.criteria import NO_CROSSING, NO_TIMING, NO_WINDOW, NOT_FINITE
+from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
 from ddct_plant.base.printable import printable
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.program.table import UNDEFINED, Column, Figure, drawn_by_rich, table_of
 from ddct_plant.scenario.differences import scenario_title
 
-UNDEFINED = '-'
 _PIPED_WIDTH = 200
 """Columns of a table that goes to a file or pipe, where nothing needs to fit a screen."""
 
 
-@dataclass(frozen=True)
-class Column:
-    """One column of a table of runs."""
-
-    heading: str
-    """A newline parts the name from the unit."""
-    text: Callable[[Entry], str]
-    number: bool = True
-    """Whether to align it to the right."""
-    below: Callable[[Entry], str] = lambda run: ''
-    """What a second line says beneath the text; empty for none."""
-    undefined: str = ''
-    """Why a run that can be read may have a dash here."""
-
-    def cell(self, run: Entry) -> str:
-        """Return the text of a run's cell, of one line or two."""
-        lines = (self.text(run), self.below(run))
-        return '\n'.join(printable(line) for line in lines if line)
+RunColumn = Column[Entry]
+"""One column of a table of runs."""
 
 
-def fact(name: str, heading: str) -> Column:
+def fact(name: str, heading: str, form: str = '', *, number: bool = False) -> RunColumn:
     """Return the column of a run's fact, such as its controller."""
-    return Column(heading, lambda run: _text(run[name], '{}'), number=False)
+    return Column(heading, form, lambda run: run[name], number=number)
 
 
-def metric(name: str, heading: str, form: str, undefined: str = '') -> Column:
-    """Return the column of a metric, written in the format `form`, such as '{:.3f}'."""
-    return Column(heading, lambda run: _text(run['metrics'][name], form), undefined=undefined)
+def metric(figure: Figure, heading: str = '') -> RunColumn:
+    """Return the column of a metric, under its symbol and unit where there is no heading."""
+    return Column(
+        heading or f'{figure.symbol}\n{figure.unit}',
+        figure.form,
+        lambda run: run['metrics'][figure.key],
+        undefined=figure.undefined,
+    )
 
 
 BAG = fact('bag', 'bag')
 CONTROLLER = fact('controller', 'controller')
-WEAR = Column('wear', lambda run: _text(run['wear_gain'], '{:g}'))
-ENGAGEMENT_TIME = metric('engagement_time_s', 't_a\ns', '{:.3f}', NO_CROSSING)
-TORSION_STD = metric('torsion_speed_std_rpm', 'std w_sr\nrpm', '{:.3f}', NO_WINDOW)
-ACCELERATION_STD = metric('acceleration_std_m_s2', 'std A_x\nm/s^2', '{:.3f}', NO_WINDOW)
-FINAL_SLIP = metric('slip_final_rpm', 'final\nw_d rpm', '{:.2f}', NOT_FINITE)
-SLIP_RMSE = metric('slip_rmse_rpm', 'slip\nRMSE rpm', '{:.2f}', NO_WINDOW)
-PEAK_JERK = metric('peak_jerk_m_s3', 'jerk\nm/s^3', '{:.2f}', NO_WINDOW)
-MISSED = metric('missed_steps', 'missed\nsteps', '{:d}', NO_TIMING)
-LATENESS = Column(
+WEAR = fact('wear_gain', 'wear', 'g', number=True)
+ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
+FINAL_SLIP = metric(METRICS['slip_final_rpm'], 'final\nw_d rpm')
+SLIP_RMSE = metric(METRICS['slip_rmse_rpm'], 'slip\nRMSE rpm')
+PEAK_JERK = metric(METRICS['peak_jerk_m_s3'], 'jerk\nm/s^3')
+MISSED = metric(METRICS['missed_steps'], 'missed\nsteps')
+LATENESS: RunColumn = Column(
     'latest\nms',
-    lambda run: _text(_in_ms(run['metrics']['worst_lateness_us']), '{:.2f}'),
+    '.2f',
+    lambda run: _in_ms(run['metrics']['worst_lateness_us']),
     undefined=f'it ran in lock-step, or {NO_TIMING}',
 )
-SAFE_STATE = Column(
-    'safe state', lambda run: _safe_state(run), number=False, undefined='it ran in lock-step'
+SAFE_STATE: RunColumn = Column(
+    'safe state', '', lambda run: _safe_state(run), number=False, undefined='it ran in lock-step'
 )
-VALID = Column('valid', lambda run: 'yes' if run['valid'] else 'NO', number=False)
+VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run['valid'] else 'NO', number=False)
 
 COLUMNS = (
     ENGAGEMENT_TIME,
@@ -84,9 +69,9 @@ COLUMNS = (
 )
 """What every table of runs shows, after the columns that tell the runs apart."""
 
-VERDICT_COLUMNS = (
-    Column('state', lambda run: run['verdict']['state'], number=False),
-    Column('limits', lambda run: run['verdict']['limits'], number=False),
+VERDICT_COLUMNS: tuple[RunColumn, ...] = (
+    Column('state', '', lambda run: run['verdict']['state'], number=False),
+    Column('limits', '', lambda run: run['verdict']['limits'], number=False),
 )
 """Before the last column where the terminal is wide enough; otherwise in lines below."""
 REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
@@ -94,7 +79,7 @@ REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
 
 
 def print_runs(
-    runs: Sequence[Entry], columns: Sequence[Column], stream: TextIO, title: str | None = None
+    runs: Sequence[Entry], columns: Sequence[RunColumn], stream: TextIO, title: str | None = None
 ) -> None:
     """
     Print one row per run, its verdict included, then what needs a word.
@@ -110,10 +95,13 @@ def print_runs(
     console = Console(
         file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
     )
-    table = _table(runs, [*columns[:-1], *VERDICT_COLUMNS, columns[-1]], title)
+    wide = [*columns[:-1], *VERDICT_COLUMNS, columns[-1]]
+    table = drawn_by_rich(table_of(title or '', wide, runs), ruled=True)
     unbounded = console.options.update(max_width=10 * _PIPED_WIDTH)
     wide_enough = console.measure(table, options=unbounded).maximum <= console.width
-    console.print(table if wide_enough else _table(runs, columns, title))
+    if not wide_enough:
+        table = drawn_by_rich(table_of(title or '', columns, runs), ruled=True)
+    console.print(table)
     for text in dash_notes(runs, columns):
         console.print(Text(text), soft_wrap=True)
     for run in runs:
@@ -129,16 +117,7 @@ def _verdict_text(run: Entry) -> str:
     return ', '.join(f'{each.heading} {each.text(run)}' for each in VERDICT_COLUMNS)
 
 
-def _table(runs: Sequence[Entry], columns: Sequence[Column], title: str | None) -> Table:
-    table = Table(title=title, box=box.SIMPLE, pad_edge=False, collapse_padding=True)
-    for column in columns:
-        table.add_column(column.heading, justify='right' if column.number else 'left')
-    for run in runs:
-        table.add_row(*(Text(column.cell(run)) for column in columns))
-    return table
-
-
-def dash_notes(runs: Sequence[Entry], columns: Sequence[Column]) -> list[str]:
+def dash_notes(runs: Sequence[Entry], columns: Sequence[RunColumn]) -> list[str]:
     """Return for each column in which a run that can be read has a dash, what it means there."""
     read = [run for run in runs if run['metrics']['steps'] is not None]
     return [
@@ -211,13 +190,9 @@ def _scenario(run: Entry) -> str:
     return scenario_title(run['scenario'], run['scenario_changes'] or ())
 
 
-def _safe_state(run: Entry) -> str:
-    return UNDEFINED if run['safe_state'] is None else run['safe_state'] or 'none'
+def _safe_state(run: Entry) -> str | None:
+    return None if run['safe_state'] is None else run['safe_state'] or 'none'
 
 
 def _in_ms(time_us: float | None) -> float | None:
     return None if time_us is None else time_us / 1e3
-
-
-def _text(value: Any, form: str) -> str:
-    return UNDEFINED if value is None else form.format(value)

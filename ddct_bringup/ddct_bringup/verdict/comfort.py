@@ -13,9 +13,6 @@ _JERK_FILTER_ORDER = 2
 """Order of the Butterworth filter, which runs once forward and once backward."""
 _JERK_FILTER = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
 
-VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
-"""The limit lies above the 50 Hz that a 100 Hz recording holds."""
-
 
 def jerk(acceleration: np.ndarray) -> np.ndarray:
     """

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,9 +10,11 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.comfort import strongest_stretch, weighted_acceleration
 from ddct_bringup.verdict.lock import Locking
+from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
 from ddct_bringup.verdict.vibration import judder, mean_jerk, shuffle, torque_dip
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.program.table import Figure
 
 AXIS_FACTOR = 1.4
 """Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
@@ -68,16 +70,11 @@ class JudgedRun:
 
 
 @dataclass(frozen=True)
-class Criterion:
-    """One quantity that an engagement is judged by."""
+class Criterion(Figure):
+    """One quantity that an engagement is judged by; its key names it in `verdict`."""
 
-    name: str
-    unit: str
-    value: Callable[[JudgedRun], float | int | None]
+    value: Callable[[JudgedRun], float | int | None] = field(kw_only=True)
     """None where it is not defined."""
-    meaning: str
-    undefined: str
-    """When it has no value."""
 
 
 def _daily_dose(run: JudgedRun) -> float | None:
@@ -94,56 +91,58 @@ def _peak_acceleration(run: JudgedRun) -> float:
     return np.max(np.abs(run.after_control_start('vehicle_accel')), initial=-math.inf)
 
 
-def _metric(name: str) -> Callable[[JudgedRun], float | int | None]:
-    return lambda run: run.metrics[name]
+def _criterion(
+    name: str,
+    unit: str,
+    value: Callable[[JudgedRun], float | int | None],
+    meaning: str,
+    undefined: str,
+) -> Criterion:
+    return Criterion(name, name.replace('_', ' '), unit, '.4g', meaning, undefined, value=value)
 
 
-NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
-NO_WINDOW = 'the run ends before the score window does, or a value is not finite'
-NOT_FINITE = 'a value is not finite'
-NO_TIMING = 'there is no timing.json'
+def _metric(name: str, key: str) -> Criterion:
+    """Return the criterion that a metric is too."""
+    metric = METRICS[key]
+    return _criterion(
+        name,
+        metric.unit,
+        lambda run: run.metrics[key],
+        metric.meaning,
+        metric.undefined,
+    )
+
+
 _NO_LOCK = 'the clutch is linear, or never locked after control start'
 _NOT_TOGETHER = 'the plates never came together after control start'
 _NOTHING = 'the run ends before control start'
 """Why a figure is undefined."""
 
 CRITERIA = (
-    Criterion(
+    _criterion(
         'time_to_lock',
         's',
         lambda run: run.locking.time_to_lock_s,
         'control start to the first lock',
         f'{_NO_LOCK}, or was locked there',
     ),
-    Criterion(
-        'engagement_time',
-        's',
-        _metric('engagement_time_s'),
-        't_a, control start to the first change of sign of w_d',
-        NO_CROSSING,
-    ),
-    Criterion(
-        'peak_jerk',
-        'm/s^3',
-        _metric('peak_jerk_m_s3'),
-        'largest jerk in the score window, A_x through a 20 Hz low-pass without delay',
-        NO_WINDOW,
-    ),
-    Criterion(
+    _metric('engagement_time', 'engagement_time_s'),
+    _metric('peak_jerk', 'peak_jerk_m_s3'),
+    _criterion(
         'mean_jerk',
         'm/s^3',
         lambda run: mean_jerk(run.after_control_start('vehicle_accel')),
         "largest of the jerk's means over 1 s after control start",
         'the run ends less than 1 s after control start',
     ),
-    Criterion(
+    _criterion(
         'peak_acceleration',
         'm/s^2',
         _peak_acceleration,
         'largest magnitude of A_x after control start',
         _NOTHING,
     ),
-    Criterion(
+    _criterion(
         'weighted_acceleration',
         'm/s^2',
         lambda run: run.strongest[0],
@@ -151,92 +150,68 @@ CRITERIA = (
         'start as long as the score window',
         NO_WINDOW,
     ),
-    Criterion(
+    _criterion(
         'daily_vibration_dose',
         'm/s^1.75',
         _daily_dose,
         '1.4 times the largest vibration dose over any such stretch, for all engagements of a day',
         NO_WINDOW,
     ),
-    Criterion(
-        'friction_energy',
-        'J',
-        _metric('friction_energy_j'),
-        'friction work of the clutch, whole run',
-        NOT_FINITE,
-    ),
-    Criterion(
+    _metric('friction_energy', 'friction_energy_j'),
+    _criterion(
         'peak_temperature',
         'degC',
         _peak_temperature,
         'highest temperature of the facing',
         'the clutch is linear',
     ),
-    Criterion(
-        'slip_acceleration_at_lock',
-        'rad/s^2',
-        _metric('lockup_slip_acceleration_rad_s2'),
-        'slope of w_d where the plates first come together',
-        NO_CROSSING,
-    ),
-    Criterion(
+    _metric('slip_acceleration_at_lock', 'lockup_slip_acceleration_rad_s2'),
+    _criterion(
         'releases_after_lock',
         '1',
         lambda run: run.locking.releases,
         'how often the plates part again',
         _NO_LOCK,
     ),
-    Criterion(
+    _criterion(
         'judder',
         'rpm',
         lambda run: judder(run.torsion_speed_rpm[run.locking.slipping]),
         'r.m.s. of w_sr from 2 to 20 Hz over the longest stretch of slipping',
         'the clutch slips for less than 1 s',
     ),
-    Criterion(
+    _criterion(
         'shuffle_amplitude',
         'rpm',
         lambda run: run.shuffle[0],
         'largest magnitude of w_sr once the plates are together',
         _NOT_TOGETHER,
     ),
-    Criterion(
+    _criterion(
         'shuffle_decay',
         's',
         lambda run: run.shuffle[1],
         'from there until w_sr stays below 1/e of it',
         f'{_NOT_TOGETHER}, or w_sr has not decayed when the run ends',
     ),
-    Criterion(
+    _criterion(
         'torque_dip',
         'N m',
         lambda run: torque_dip(run.after_control_start('joint_effort')[:, _DRIVESHAFT]),
         "largest fall of the driveshaft's torque after control start",
         _NOTHING,
     ),
-    Criterion(
-        'request_variation',
-        'N m',
-        _metric('torque_total_variation_n_m'),
-        'sum of all changes of the torque request, whole run',
-        NOT_FINITE,
-    ),
-    Criterion(
-        'deadline_misses',
-        '1',
-        _metric('missed_steps'),
-        'steps that went on without a reply',
-        NO_TIMING,
-    ),
+    _metric('request_variation', 'torque_total_variation_n_m'),
+    _metric('deadline_misses', 'missed_steps'),
 )
 
-CRITERION_UNITS = {criterion.name: criterion.unit for criterion in CRITERIA}
+CRITERION_UNITS = {criterion.key: criterion.unit for criterion in CRITERIA}
 
 
 def criterion_values(run: JudgedRun) -> dict[str, float | int | None]:
     """Return the value of every criterion by name, None where it is not defined."""
     with np.errstate(all='ignore'):  # what is not finite becomes None
-        return {criterion.name: _finite(criterion.value(run)) for criterion in CRITERIA}
+        return {criterion.key: _finite(criterion.value(run)) for criterion in CRITERIA}
 
 
 def _finite(value: float | int | None) -> float | int | None:

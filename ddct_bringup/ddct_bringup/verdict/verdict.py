@@ -36,7 +36,7 @@ def verdict_of(
     limit without a value, as in a run that ended early, nobody knows whether it was kept.
     """
     criteria = [
-        _judged(criterion.name, criterion.unit, values[criterion.name], limits, scenario)
+        _judged(criterion.key, criterion.unit, values[criterion.key], limits, scenario)
         for criterion in CRITERIA
     ]
     found = {criterion['state'] for criterion in criteria if criterion['limit'] is not None}

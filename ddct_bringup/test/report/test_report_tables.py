@@ -5,7 +5,6 @@ import re
 
 import pytest
 
-from ddct_bringup.report.columns import LOOP_COLUMNS, TABLE_5_1
 from ddct_bringup.report.evidence import LoopEvidence
 from ddct_bringup.report.loop_table import NOT_LINEAR, loop_rows, without_evidence
 from ddct_bringup.report.runs import ReportRun
@@ -13,6 +12,8 @@ from ddct_bringup.report.summary import comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -104,7 +105,7 @@ def test_a_run_without_update_times_has_none():
 
 
 def test_evidence_is_shown_at_the_wear_gain_of_the_run():
-    figures = {column.key: 1.0 for column in LOOP_COLUMNS}
+    figures = {column.key: 1.0 for column in LOOP_FIGURES}
     entry = {
         'linear': True,
         'wear': [

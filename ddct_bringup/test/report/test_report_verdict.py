@@ -4,6 +4,7 @@ import pytest
 
 from ddct_bringup.report.pareto import DEFAULT_PAIR, non_dominated, pair_key, pareto_view
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.report.verdict_table import NOT_JUDGED, value_text, verdict_rows
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits_file import packaged_limits
@@ -12,7 +13,7 @@ from ddct_bringup.verdict.verdict import verdict_of, verdict_of_unreadable
 
 def run(state='engaged', **values):
     """Return a run of `thesis` with these values of its criteria."""
-    found = dict.fromkeys(criterion.name for criterion in CRITERIA) | values
+    found = dict.fromkeys(criterion.key for criterion in CRITERIA) | values
     verdict = verdict_of(state, found, packaged_limits(), 'thesis')
     return ReportRun({'valid': True, 'reason': '', 'verdict': verdict})
 
@@ -21,14 +22,14 @@ FAILED = ReportRun({'valid': False, 'reason': 'killed', 'verdict': verdict_of_un
 
 
 def row_of(name, runs):
-    (row,) = [row for row in verdict_rows(runs) if row.criterion.name == name]
+    (row,) = [row for row in verdict_rows(runs) if row.criterion.key == name]
     return row
 
 
 def test_every_criterion_has_a_row_with_its_unit():
     rows = verdict_rows([run()])
-    assert [row.criterion.name for row in rows] == [criterion.name for criterion in CRITERIA]
-    assert row_of('releases_after_lock', [run()]).unit == ''
+    assert [row.criterion.key for row in rows] == [criterion.key for criterion in CRITERIA]
+    assert unit_text(row_of('releases_after_lock', [run()]).criterion.unit) == ''
 
 
 def test_a_value_beyond_its_limit_is_marked_and_the_limit_has_its_source():

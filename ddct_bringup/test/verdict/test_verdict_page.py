@@ -24,7 +24,7 @@ def test_every_state_is_on_the_page():
 
 
 def test_every_criterion_is_on_the_page_as_the_program_says_it():
-    printed = [[f'`{each.name}`', each.unit, each.meaning, each.undefined] for each in CRITERIA]
+    printed = [[f'`{each.key}`', each.unit, each.meaning, each.undefined] for each in CRITERIA]
     assert rows('Criteria') == printed
 
 

@@ -1,7 +1,9 @@
 """What a linear controller in a file is, and whether its loop is stable, told before it runs."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURE_OF
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
 from ddct_controllers.design.state_space import factored_form, scaled
@@ -10,15 +12,13 @@ from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.settings import RunSettings
 
 _MARGINS = (
-    ('gain margin', 'gain_margin_db', '.1f', 'dB'),
-    ('phase margin', 'phase_margin_deg', '.0f', 'deg'),
-    ('delay margin', 'delay_margin_s', '.3f', 's'),
+    ('gain margin', LOOP_FIGURE_OF['gain_margin_db']),
+    ('phase margin', replace(LOOP_FIGURE_OF['phase_margin_deg'], form='.0f')),
+    ('delay margin', LOOP_FIGURE_OF['delay_margin_s']),
 )
-"""Words, key of `LoopMargins`, format and unit."""
 
 
 def loop_summary(name: str, settings: RunSettings) -> list[str]:
@@ -51,9 +51,7 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
             '(the run goes on)'
         )
     margins = loop_margins(loop).plain()
-    told = (
-        f'{words} {text_or_dash(margins[key], form)} {unit}' for words, key, form, unit in _MARGINS
-    )
+    told = (f'{words} {figure.cell(margins)} {figure.unit}' for words, figure in _MARGINS)
     return f'{where} is stable: {", ".join(told)}'
 
 

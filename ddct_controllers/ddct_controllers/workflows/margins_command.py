@@ -4,6 +4,7 @@ import argparse
 from functools import partial
 from typing import Any
 
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURE_OF
 from ddct_controllers.registry import working_controllers
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
@@ -23,20 +24,6 @@ _EXAMPLES = """\
 examples:
   ddct design margins
   ddct design margins --controller ls8 --wear-gain 1.3 --json -"""
-_POINT_COLUMNS = (
-    ('GM dB', 'gain_margin_db', '.1f'),
-    ('PM deg', 'phase_margin_deg', '.1f'),
-    ('DM s', 'delay_margin_s', '.3f'),
-    ('disk', 'disk_margin', '.2f'),
-    ('M_s', 'sensitivity_peak', '.2f'),
-    ('M_t', 'complementary_peak', '.2f'),
-    ('w_c rad/s', 'crossover_rad_s', '.2f'),
-    ('w_b rad/s', 'bandwidth_rad_s', '.2f'),
-    ('mode Hz', 'driveline_mode_hz', '.2f'),
-    ('damping', 'driveline_mode_damping', '.3f'),
-    ('w_sr rpm', 'driveline_mode_torsion_rpm', '.3f'),
-)
-"""Heading, key of `loop_evidence` and format."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -75,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
         title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
         headers = (
             *('controller', 'stable'),
-            *(heading for heading, _, _ in _POINT_COLUMNS),
+            *(figure.heading for figure in LOOP_FIGURE_OF.values()),
             *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
         )
         rows = [_row(entry, settings.wear_gain) for entry in linear]
@@ -93,8 +80,8 @@ def _row(entry: Evidence, wear_gain: float) -> list[str]:
     return [
         entry['controller'],
         'yes' if point['stable'] else 'no',
-        *(text_or_dash(point[key], form) for _, key, form in _POINT_COLUMNS),
+        *(figure.cell(point) for figure in LOOP_FIGURE_OF.values()),
         text_or_dash((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
-        text_or_dash(entry['corners']['sensitivity_peak'], '.2f'),
+        LOOP_FIGURE_OF['sensitivity_peak'].cell(entry['corners']),
         str(entry['corners']['unstable']),
     ]

@@ -7,7 +7,7 @@ from operator import attrgetter
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, GateRow
 from ddct_bringup.reproduction.numbers.thesis_number import ERRATUM, Finding, is_number
 from ddct_plant.models.printed import PrintedNumber
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import Table, text_or_dash
 
 _CHAPTERS = ('1', '2', '3', '4', '5', '6')
 
@@ -81,8 +81,7 @@ def computed_text(row: GateRow) -> str:
 
 
 def _tolerance_text(row: GateRow) -> str:
-    tolerance = row.number.absolute_tolerance
-    return '-' if tolerance is None else f'{tolerance:.3g}'
+    return text_or_dash(row.number.absolute_tolerance, '.3g')
 
 
 def _group_text(row: GateRow) -> str:

@@ -5,13 +5,9 @@ from ddct_bringup.reproduction.calibration.ensemble import members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.study import (
-    TABLE_5_1,
-    Study,
-    headers,
-)
+from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.reproduction.values.closed_loop_values import OSCILLATION_WORDS, SLIP_WORDS, WORN
-from ddct_bringup.thesis.predictions import Prediction, Value, kept_predictions
+from ddct_bringup.thesis.predictions import Prediction, kept_predictions
 from ddct_bringup.thesis.table_5_1 import (
     FIGURES,
     FORMS,
@@ -19,9 +15,9 @@ from ddct_bringup.thesis.table_5_1 import (
     THESIS_TABLE,
     ThesisRow,
 )
+from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.scenario import Scenario
-
-_HEADERS = dict(zip(FIGURES, headers(TABLE_5_1), strict=True))
 
 
 def admissible_scenarios() -> Study:
@@ -70,8 +66,8 @@ def prediction_ranges() -> Study:
             rows.append(
                 (
                     row.label,
-                    _HEADERS[name],
-                    _text(found.frozen, FORMS[name]),
+                    METRICS[name].heading,
+                    text_or_dash(found.frozen, FORMS[name]),
                     found.text(FORMS[name]),
                     f'{printed:.2f}',
                     row.verdict(name, found.frozen),
@@ -80,8 +76,10 @@ def prediction_ranges() -> Study:
             )
     for name in FIGURES[1:]:
         alone = _kept(f'5.1 {OPEN_LOOP} {name}')
-        value = _text(alone.frozen, FORMS[name])
-        rows.append((OPEN_LOOP, _HEADERS[name], value, alone.text(FORMS[name]), '-', '-', '-'))
+        value = text_or_dash(alone.frozen, FORMS[name])
+        rows.append(
+            (OPEN_LOOP, METRICS[name].heading, value, alone.text(FORMS[name]), '-', '-', '-')
+        )
     return Study(
         'Predicted figures of Table 5.1',
         ('row', 'figure', 'value', 'range', 'printed', 'verdict', 'print within the range'),
@@ -115,11 +113,11 @@ def worn_ranges() -> Study:
                 ('w_d', f'w_d "{SLIP_WORDS[name]}"', ''),
                 ('slip_rad_s', '|w_d| at the end of the window rad/s', '.1f'),
                 ('w_sr', f'w_sr, A_x "{OSCILLATION_WORDS[gain][name]}"', ''),
-                *((figure, _HEADERS[figure], FORMS[figure]) for figure in FIGURES[1:]),
+                *((figure, METRICS[figure].heading, FORMS[figure]) for figure in FIGURES[1:]),
             )
             for kind, header, form in kinds:
                 found = _kept(f'5.2 {name} {kind} {gain:g}')
-                value = _text(found.frozen, form)
+                value = text_or_dash(found.frozen, form)
                 rows.append((name, f'{gain:g}', header, value, found.text(form)))
     return Study(
         'Table 5.2, value and range',
@@ -131,9 +129,3 @@ def worn_ranges() -> Study:
 
 def _kept(name: str) -> Prediction:
     return kept_predictions().by_id[name]
-
-
-def _text(value: Value, form: str) -> str:
-    if value is None:
-        return '-'
-    return value if isinstance(value, str) else format(value, form)

@@ -8,8 +8,8 @@ from typing import Any
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.engagement_charts import Slip, engagement_chart
 from ddct_bringup.reproduction.studies.study import (
-    Column,
     Study,
+    StudyColumn,
     StudyFunction,
     StudyRun,
     cells,
@@ -18,6 +18,7 @@ from ddct_bringup.reproduction.studies.study import (
 )
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
+from ddct_plant.program.table import Column
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
 
@@ -31,7 +32,7 @@ def criterion(run: StudyRun, name: str) -> Any:
     return next(each['value'] for each in run.verdict['criteria'] if each['name'] == name)
 
 
-def _criterion_column(header: str, form: str, name: str, unit: float = 1.0) -> Column:
+def _criterion_column(header: str, form: str, name: str, unit: float = 1.0) -> StudyColumn:
     def value(run: StudyRun) -> float | None:
         found = criterion(run, name)
         return None if found is None else found * unit
@@ -45,7 +46,7 @@ def _together(run: StudyRun) -> float | None:
     return criterion(run, name)
 
 
-COLUMNS = (
+COLUMNS: tuple[StudyColumn, ...] = (
     Column('state', '', lambda run: run.verdict['state']),
     Column('limits', '', lambda run: run.verdict['limits']),
     Column('lock s', '.2f', _together),

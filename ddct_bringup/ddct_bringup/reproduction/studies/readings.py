@@ -3,20 +3,20 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from operator import attrgetter
 
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
 from ddct_bringup.reproduction.studies.study import (
     TABLE_5_1,
-    Column,
     Study,
     StudyRun,
     cells,
     headers,
+    metric_column,
     study_run,
 )
 from ddct_bringup.thesis.table_5_1 import ROW_OF
+from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow, thesis_settings
@@ -58,7 +58,7 @@ def readings() -> Study:
     """Return the figures of MPC1-3 under each reading; the first is what the registry has."""
     columns = (
         *TABLE_5_1,
-        Column('w_d at the end rpm', 'z.1f', attrgetter('metrics.slip_final_rpm')),
+        metric_column(METRICS['slip_final_rpm'], 'z.1f', 'w_d at the end rpm'),
     )
     rows = [
         (name, label, *cells(columns, reading.run(row)))

@@ -5,22 +5,24 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
 
+import matplotlib.figure
 import numpy as np
-from matplotlib.figure import Figure
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import metrics_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import not_finite
+from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_bringup.verdict.criteria import JudgedRun
 from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import Column, Figure, Table
 from ddct_plant.scenario.plant import cut_speed, end_cause
 from ddct_plant.scenario.settings import RunSettings
 
@@ -33,7 +35,7 @@ class Study(Table):
     """A table, and what to know when reading it."""
 
     remarks: tuple[str, ...] = ()
-    draw: Callable[[], Figure] | None = None
+    draw: Callable[[], matplotlib.figure.Figure] | None = None
     """Returns the chart that goes with the table, if there is one."""
 
     def as_dict(self) -> dict[str, object]:
@@ -92,35 +94,23 @@ def study_run(settings: RunSettings, controller: str | Controller) -> StudyRun:
     return StudyRun(settings, controller, run_headless(settings, controller))
 
 
-@dataclass(frozen=True)
-class Column:
-    """One figure of a run."""
-
-    header: str
-    form: str
-    """Format of the value."""
-    value: Callable[[StudyRun], float | str | None]
-    """None, shown as a dash, for what is undefined."""
+StudyColumn = Column[StudyRun]
 
 
-def headers(columns: Sequence[Column]) -> tuple[str, ...]:
+def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
     """Return what stands above the columns."""
-    return tuple(column.header for column in columns)
+    return tuple(column.heading for column in columns)
 
 
-def cells(columns: Sequence[Column], run: StudyRun) -> tuple[str, ...]:
+def cells(columns: Sequence[StudyColumn], run: StudyRun) -> tuple[str, ...]:
     """Return what stands below them for a run."""
-    values = [column.value(run) for column in columns]
-    return tuple(
-        '-' if value is None else format(value, column.form)
-        for value, column in zip(values, columns, strict=True)
-    )
+    return tuple(column.text(run) for column in columns)
 
 
 def run_study(
     title: str,
     keys: Sequence[str],
-    columns: Sequence[Column],
+    columns: Sequence[StudyColumn],
     cases: Iterable[tuple[tuple[str, ...], StudyRun]],
     remarks: tuple[str, ...] = (),
 ) -> Study:
@@ -142,22 +132,24 @@ def deviation_range(trajectory: Trajectory) -> str:
     return f'{deviation.min():.0f} to {deviation.max():.0f}' if deviation.any() else '0'
 
 
-def close_column(header: str) -> Column:
+def metric_column(figure: Figure, form: str, heading: str = '') -> StudyColumn:
+    """Return the column of a metric, under its symbol and unit where there is no heading."""
+    value = attrgetter(f'metrics.{figure.key}')
+    return Column(heading or figure.heading, form, value)
+
+
+def close_column(header: str) -> StudyColumn:
     """Return the column of `close_time_s`."""
     return Column(header, '.2f', lambda run: close_time_s(run.trajectory, run.start))
 
 
-TABLE_5_1 = (
-    Column('t_a s', '.3f', attrgetter('metrics.engagement_time_s')),
-    Column('std w_sr rpm', '.2f', attrgetter('metrics.torsion_speed_std_rpm')),
-    Column('std A_x m/s^2', '.3f', attrgetter('metrics.acceleration_std_m_s2')),
-)
+TABLE_5_1 = tuple(metric_column(METRICS[name], form) for name, form in FORMS.items())
 """The figures that Table 5.1 has."""
-TWO_INPUTS = (
+TWO_INPUTS: tuple[StudyColumn, ...] = (
     TABLE_5_1[0],
     close_column(f'|w_d| < {CLOSE_RPM:g} rpm s'),
     *TABLE_5_1[1:],
-    Column('w_d at end rpm', '.1f', attrgetter('metrics.slip_final_rpm')),
+    metric_column(METRICS['slip_final_rpm'], '.1f', 'w_d at end rpm'),
     Column('C_m - demand N m', '', lambda run: deviation_range(run.trajectory)),
 )
 """Those of a controller of clutch and engine."""

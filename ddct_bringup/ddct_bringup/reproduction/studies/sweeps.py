@@ -1,7 +1,6 @@
 """Studies that run controllers over a weight, the wear, the pedal, or what the engine may do."""
 
 from dataclasses import replace
-from operator import attrgetter
 
 import numpy as np
 
@@ -10,18 +9,20 @@ from ddct_bringup.reproduction.studies.study import (
     CLOSE_RPM,
     TABLE_5_1,
     TWO_INPUTS,
-    Column,
     Study,
     StudyRun,
     close_column,
+    metric_column,
     run_study,
     study_run,
 )
+from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.models.engine import EngineAuthority
+from ddct_plant.program.table import Column
 from ddct_plant.scenario.settings import RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
@@ -64,8 +65,8 @@ def torsion_weight() -> Study:
         ('weight per rpm', 'times that of w_d'),
         (
             *TABLE_5_1,
-            Column('slip RMSE rpm', '.2f', attrgetter('metrics.slip_rmse_rpm')),
-            Column('w_d at the end rpm', 'z.2f', attrgetter('metrics.slip_final_rpm')),
+            metric_column(METRICS['slip_rmse_rpm'], '.2f', 'slip RMSE rpm'),
+            metric_column(METRICS['slip_final_rpm'], 'z.2f', 'w_d at the end rpm'),
         ),
         [_torsion_case(factor) for factor in sorted((*TORSION_FACTORS, DEFAULT_FACTOR))],
         (
@@ -144,7 +145,7 @@ def engine_authority() -> Study:
         ('controller', 'authority'),
         (
             *TWO_INPUTS,
-            Column('peak jerk m/s^3', '.1f', attrgetter('metrics.peak_jerk_m_s3')),
+            metric_column(METRICS['peak_jerk_m_s3'], '.1f'),
             Column('friction kJ', '.2f', _friction_kj),
         ),
         [((name, case), study_run(_with_authority(every[case]), name)) for name, case in cases],

@@ -6,7 +6,6 @@ from ddct_bringup.reproduction.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import (
     TABLE_5_1,
-    Column,
     Study,
     StudyRun,
     run_study,
@@ -18,6 +17,7 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.program.table import Column
 from ddct_plant.scenario.settings import RunSettings
 
 CONTROLLERS = (

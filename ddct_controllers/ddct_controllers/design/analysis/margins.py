@@ -20,29 +20,25 @@ class LoopMargins:
     """
     How far a stable closed loop is from instability, and how it behaves on the way there.
 
-    Every number is None when the closed loop is unstable, and infinite where nothing limits it.
+    `loop_figures` has what the numbers are. Every one is None when the closed loop is unstable,
+    and infinite where nothing limits it.
     """
 
     stable: bool
     """Whether the closed loop is, by its poles."""
     gain_margin_db: float | None = None
-    """Least increase of the loop gain that makes it unstable."""
     gain_reduction_margin_db: float | None = None
     """Least decrease of the loop gain that makes it unstable, as a positive number."""
     phase_margin_deg: float | None = None
-    """Least change of phase, lag or lead, that makes it unstable."""
     delay_margin_s: float | None = None
-    """Least additional delay that makes it unstable."""
     disk_margin: float | None = None
-    """alpha = 2 / max |S - T|; gains from (2 - alpha)/(2 + alpha) to its inverse are safe."""
+    """alpha; gains from (2 - alpha)/(2 + alpha) to its inverse are safe."""
     sensitivity_peak: float | None = None
-    """M_s, the maximum of |S| = 1/|1 + L|."""
     complementary_peak: float | None = None
-    """M_t, the maximum of |T| = |L|/|1 + L|."""
     crossover_rad_s: float | None = None
-    """Highest frequency at which |L| = 1, 0 when |L| is below 1 everywhere."""
+    """0 when |L| is below 1 everywhere."""
     bandwidth_rad_s: float | None = None
-    """Lowest frequency at which |T| is 1/sqrt(2), 0 when |T| is below that at rest."""
+    """0 when |T| is below 1/sqrt(2) at rest."""
 
     def plain(self) -> dict[str, bool | float | None]:
         """Return all by name for JSON, which has no infinity: None where nothing limits one."""

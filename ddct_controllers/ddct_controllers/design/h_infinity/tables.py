@@ -2,14 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 
+from ddct_controllers.design.analysis.loop_figures import DESIGN_FIGURE_OF
 from ddct_controllers.design.h_infinity.cleaning import factor_text
 from ddct_controllers.design.h_infinity.report import Record
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.program.table import Table, text_or_dash
 
+_LOOP_FIGURES = [
+    DESIGN_FIGURE_OF[name]
+    for name in (
+        *('crossover_rad_s', 'sensitivity_peak', 'complementary_peak'),
+        *('phase_margin_deg', 'gain_margin_db', 'delay_margin_s'),
+    )
+]
 _LOOP_HEADERS = (
     *('controller', 'loop', 'W_s S', 'W_t T', 'W_u T', 't_r s', 's^ %', 'met'),
-    *('w_c rad/s', 'M_s', 'M_t', 'PM deg', 'GM dB', 'DM s'),
+    *(figure.heading for figure in _LOOP_FIGURES),
 )
 
 
@@ -160,7 +168,7 @@ def _corner_table(records: Sequence[Record]) -> Table:
                 record['name'],
                 str(record['corners']['corners']),
                 str(record['corners']['unstable']),
-                text_or_dash(record['corners']['sensitivity_peak'], '.3f'),
+                DESIGN_FIGURE_OF['sensitivity_peak'].cell(record['corners']),
                 f'{record["corners"]["wear_gain"]:.2f}',
                 ', '.join(f'{name} {x:g}' for name, x in record['corners']['factors'].items()),
             )
@@ -178,12 +186,7 @@ def _loop_cells(loop: Record) -> tuple[str, ...]:
         text_or_dash(loop['rise_time_s'], '.3f'),
         f'{100.0 * loop["overshoot"]:.1f}',
         'yes' if loop['meets_specifications'] else 'no',
-        text_or_dash(loop['crossover_rad_s'], '.2f'),
-        text_or_dash(loop['sensitivity_peak'], '.3f'),
-        text_or_dash(loop['complementary_peak'], '.3f'),
-        text_or_dash(loop['phase_margin_deg'], '.1f'),
-        text_or_dash(loop['gain_margin_db'], '.1f'),
-        text_or_dash(loop['delay_margin_s'], '.3f'),
+        *(figure.cell(loop) for figure in _LOOP_FIGURES),
     )
 
 

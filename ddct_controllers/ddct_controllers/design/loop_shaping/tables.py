@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from ddct_controllers.design.analysis.loop_figures import DESIGN_FIGURE_OF
 from ddct_controllers.design.loop_shaping.report import Record
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
@@ -9,8 +10,16 @@ from ddct_controllers.design.loop_shaping.specifications import (
 )
 from ddct_plant.program.table import Table, text_or_dash
 
+_LOOP_FIGURES = [
+    DESIGN_FIGURE_OF[name]
+    for name in (
+        *('crossover_rad_s', 'phase_margin_deg', 'gain_margin_db'),
+        *('sensitivity_peak', 'complementary_peak'),
+    )
+]
 _LOOP_HEADERS = (
-    *('unstable poles', 'w_c rad/s', 'PM deg', 'GM dB', 'M_s', 'M_t'),
+    'unstable poles',
+    *(figure.heading for figure in _LOOP_FIGURES),
     *('S_p curve', 'T_p curve'),
 )
 _TRANSLATED = (
@@ -120,11 +129,7 @@ def _loop_cells(row: Record) -> tuple[str, ...]:
     kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
     return (
         str(row['unstable_poles']),
-        text_or_dash(row['crossover_rad_s'], '.2f'),
-        text_or_dash(row['phase_margin_deg'], '.1f'),
-        text_or_dash(row['gain_margin_db'], '.1f'),
-        text_or_dash(row['sensitivity_peak'], '.3f'),
-        text_or_dash(row['complementary_peak'], '.3f'),
+        *(figure.cell(row) for figure in _LOOP_FIGURES),
         'kept out of' if kept_out['S'] else 'crossed',
         'kept out of' if kept_out['T'] else 'crossed',
     )

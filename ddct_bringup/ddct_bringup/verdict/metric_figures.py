@@ -1,0 +1,115 @@
+"""The metrics of a run as figures: name, unit, format, meaning, and why one may be undefined."""
+
+from ddct_plant.program.table import PURE, Figure
+
+NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
+NO_WINDOW = 'the run ends before the score window does, or a value is not finite'
+NOT_FINITE = 'a value is not finite'
+NO_TIMING = 'there is no timing.json'
+VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
+"""The limit lies above the 50 Hz that a 100 Hz recording holds."""
+
+TABLE_5_1 = (
+    Figure(
+        'engagement_time_s',
+        't_a',
+        's',
+        '.3f',
+        't_a, control start to the first change of sign of w_d',
+        NO_CROSSING,
+    ),
+    Figure(
+        'torsion_speed_std_rpm',
+        'std w_sr',
+        'rpm',
+        '.3f',
+        'standard deviation of w_sr over the score window',
+        NO_WINDOW,
+    ),
+    Figure(
+        'acceleration_std_m_s2',
+        'std A_x',
+        'm/s^2',
+        '.3f',
+        'standard deviation of A_x over the score window',
+        NO_WINDOW,
+    ),
+)
+"""Those that the thesis prints."""
+FURTHER = (
+    Figure(
+        'slip_rmse_rpm',
+        'RMSE w_d',
+        'rpm',
+        '.2f',
+        'reference less w_d over the score window',
+        NO_WINDOW,
+    ),
+    Figure('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'last sample', NOT_FINITE),
+    Figure(
+        'peak_jerk_m_s3',
+        'peak jerk',
+        'm/s^3',
+        '.2f',
+        'largest jerk in the score window, A_x through a 20 Hz low-pass without delay',
+        NO_WINDOW,
+    ),
+    Figure(
+        'vdv_m_s1_75',
+        'VDV',
+        'm/s^1.75',
+        '.3f',
+        f'vibration dose over the score window, weighted by {VDV_WEIGHTING}',
+        NO_WINDOW,
+    ),
+    Figure(
+        'weighted_acceleration_m_s2',
+        'weighted A_x',
+        'm/s^2',
+        '.3f',
+        'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
+        NO_WINDOW,
+    ),
+    Figure(
+        'friction_energy_j',
+        'friction energy',
+        'J',
+        '.0f',
+        'friction work of the clutch, whole run',
+        NOT_FINITE,
+    ),
+    Figure(
+        'lockup_slip_acceleration_rad_s2',
+        'dw_d/dt at lock-up',
+        'rad/s^2',
+        '.2f',
+        'slope of w_d where the plates first come together',
+        NO_CROSSING,
+    ),
+    Figure(
+        'torque_total_variation_n_m',
+        'variation C_f',
+        'N m',
+        '.0f',
+        'sum of all changes of the torque request, whole run',
+        NOT_FINITE,
+    ),
+    Figure('steps', 'steps', PURE, '.0f', 'periods of 10 ms'),
+)
+"""The others but those of `timing.json`."""
+METRICS = {
+    figure.key: figure
+    for figure in (
+        *TABLE_5_1,
+        *FURTHER,
+        Figure(
+            'missed_steps',
+            'missed',
+            PURE,
+            'd',
+            'steps that went on without a reply',
+            NO_TIMING,
+        ),
+    )
+}
+"""What tables show, by name."""
