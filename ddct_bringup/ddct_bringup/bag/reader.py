@@ -9,7 +9,7 @@ from typing import Any
 
 from mcap_ros2.decoder import DecoderFactory
 
-from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records
+from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes, note_run_info
@@ -17,6 +17,7 @@ from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.files.input_file import mcap_of
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns

@@ -7,12 +7,13 @@ from pathlib import Path
 
 from ddct_bringup.bag.file.mcap_file import METADATA_FILE, McapFile, write_metadata
 from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY, Channel
-from ddct_bringup.bag.file.records import BagRecords, mcap_of, read_records, salvage_records
+from ddct_bringup.bag.file.records import BagRecords, read_records, salvage_records
 from ddct_bringup.bag.reader import recording_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.ticks import complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
+from ddct_plant.files.input_file import mcap_of
 from ddct_plant.graph.topics import ENGINE_REQUEST
 
 REPAIRED_KEY = 'repaired'

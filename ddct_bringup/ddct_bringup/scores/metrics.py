@@ -10,6 +10,7 @@ from scipy.integrate import trapezoid
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.verdict.comfort import jerk, vibration_dose, weighted_acceleration
+from ddct_bringup.verdict.criteria import finite
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -99,7 +100,7 @@ def compute_metrics(
             **_update_times(timing),
         }
     return Metrics(
-        **{name: _finite(value) for name, value in values.items()},
+        **{name: finite(value) for name, value in values.items()},
         steps=trajectory.steps,
         missed_steps=timing.missed_steps if timing else None,
         resends=timing.resends if timing else None,
@@ -157,7 +158,3 @@ def _update_times(timing: RunTiming | None) -> dict[str, float | None]:
         'update_time_median_us': np.median(timing.update_times_us),
         'update_time_p99_us': np.percentile(timing.update_times_us, 99.0),
     }
-
-
-def _finite(value: float | None) -> float | None:
-    return float(value) if value is not None and math.isfinite(value) else None

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.bag.file.records import mcap_of, salvage_records
+from ddct_bringup.bag.file.records import salvage_records
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
@@ -25,6 +25,7 @@ from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.plant import cut_speed, end_cause
 

@@ -211,10 +211,11 @@ CRITERION_UNITS = {criterion.key: criterion.unit for criterion in CRITERIA}
 def criterion_values(run: JudgedRun) -> dict[str, float | int | None]:
     """Return the value of every criterion by name, None where it is not defined."""
     with np.errstate(all='ignore'):  # what is not finite becomes None
-        return {criterion.key: _finite(criterion.value(run)) for criterion in CRITERIA}
+        return {criterion.key: finite(criterion.value(run)) for criterion in CRITERIA}
 
 
-def _finite(value: float | int | None) -> float | int | None:
+def finite(value: float | int | None) -> float | int | None:
+    """Return a number of Python's own, None for one that is not finite."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

@@ -1,7 +1,5 @@
 """Checks in the closed loop: time, rate, unit, linear model, stability."""
 
-import math
-
 import numpy as np
 
 from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
@@ -10,10 +8,9 @@ from ddct_controllers.check.trial import closed_trial
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RAD_S_PER_RPM, RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace
 
-RPM_FACTOR = 30.0 / math.pi
-"""rpm in a rad/s."""
 LATE_SHARE = 0.05
 """Of updates that may take longer than their period."""
 AGAIN = 2
@@ -80,9 +77,9 @@ def unit(subject: Subject) -> str:
     response = subject.step_response(1.0)
     found = f'a step of the reference is followed to {response.followed:.0%} after 1 s'
     if response.diverges:
-        found, what, factor = 'the loop is unstable', '1/9.55', 1.0 / RPM_FACTOR
+        found, what, factor = 'the loop is unstable', '1/9.55', RAD_S_PER_RPM
     elif response.followed < HALF:
-        what, factor = '9.55', RPM_FACTOR
+        what, factor = '9.55', RPM_PER_RAD_S
     else:
         return found
     other = subject.step_response(factor)

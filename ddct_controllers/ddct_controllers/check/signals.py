@@ -7,7 +7,7 @@ import numpy as np
 
 from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
 from ddct_controllers.check.subject import Subject
-from ddct_controllers.check.trial import PROBE_RAD_S, more_slip, played
+from ddct_controllers.check.trial import PROBE_RAD_S, PROBE_RPM, more_slip, played
 from ddct_controllers.interface import Measurement
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.errors import DdctError
@@ -103,8 +103,7 @@ def sign(subject: Subject) -> str:
     change = subject.played(more_slip) - subject.answers
     first = subject.probe_step
     clutch, engine = change[first : first + WITHIN_STEPS].mean(axis=0)
-    rpm = PROBE_RAD_S * 30.0 / math.pi
-    found = f'{rpm:.0f} rpm more slip changes the clutch torque by {clutch:+.4g} N m'
+    found = f'{PROBE_RPM:g} rpm more slip changes the clutch torque by {clutch:+.4g} N m'
     if subject.sample.commands_engine:
         found += f' and the engine torque by {engine:+.4g} N m'
     found += f', mean over {WITHIN_STEPS * PERIOD_S:g} s'

@@ -1,6 +1,5 @@
 """Try a controller: in the closed loop on the plant, or on measurements that are played to it."""
 
-import math
 import statistics
 import time
 from collections.abc import Callable, Sequence
@@ -13,6 +12,7 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
 
@@ -20,7 +20,8 @@ RAMP_S = 0.8
 """From the slip speed at control start to zero."""
 PROBE_S, AFTER_S = 0.5, 1.05
 """From control start to where something is changed, and from there to the end of a trial."""
-PROBE_RAD_S = 50.0 * math.pi / 30.0
+PROBE_RPM = 50.0
+PROBE_RAD_S = rad_s_from_rpm(PROBE_RPM)
 """Size of what is changed: 50 rpm of slip."""
 GROWTH = 1.05
 """Of what is missing of a step from one half second to the next, above which it grows."""

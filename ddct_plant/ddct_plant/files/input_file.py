@@ -5,6 +5,8 @@ import os
 import stat
 from pathlib import Path
 
+from ddct_plant.base.errors import DdctError
+
 MOST_TEXT_BYTES = 1_000_000
 """Of a scenario, a controller or a page: hundreds of times what they have."""
 _KINDS = {
@@ -45,3 +47,17 @@ def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
         return read_file(path, most_bytes).decode('utf-8')
     except UnicodeDecodeError as error:
         raise OSError(errno.EILSEQ, 'it is not UTF-8 text', str(path)) from error
+
+
+def mcap_of(path: Path) -> Path:
+    """Return the MCAP file of a bag folder, or the file itself; raise DdctError without one."""
+    if path.is_dir():
+        files = sorted(path.glob('*.mcap'))
+        if not files:
+            raise DdctError(f'{path}: no .mcap file in this folder: give a bag')
+        if len(files) > 1:
+            raise DdctError(f'{path}: {len(files)} .mcap files in this folder: give one of them')
+        return files[0]
+    if not path.exists():
+        raise DdctError(f'{path}: no such file or folder')
+    return path

@@ -11,6 +11,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, SUBSTEPS
+from ddct_plant.files.input_file import mcap_of
 from ddct_plant.graph.topics import (
     CLUTCH_PHASE,
     CLUTCH_TORQUE,
@@ -26,14 +27,7 @@ _SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
 
 def bag_file(path: Path) -> Path | None:
     """Return the MCAP file that a path is or holds, None for any other file."""
-    if path.suffix == '.mcap':
-        return path
-    if not path.is_dir():
-        return None
-    files = sorted(path.glob('*.mcap'))
-    if len(files) != 1:
-        raise DdctError(f'{path}: {len(files)} .mcap files in this folder: give one')
-    return files[0]
+    return mcap_of(path) if path.suffix == '.mcap' or path.is_dir() else None
 
 
 def read_bag_signals(

@@ -78,20 +78,6 @@ class BagRecords:
                 self.information = information_of(record.metadata) or self.information
 
 
-def mcap_of(path: Path) -> Path:
-    """Return the MCAP file of a bag folder, or the file itself; raise DdctError without one."""
-    if path.is_dir():
-        files = sorted(path.glob('*.mcap'))
-        if not files:
-            raise DdctError(f'{path}: no .mcap file in this folder: give a bag')
-        if len(files) > 1:
-            raise DdctError(f'{path}: {len(files)} .mcap files in this folder: give one of them')
-        return files[0]
-    if not path.exists():
-        raise DdctError(f'{path}: no such file or folder')
-    return path
-
-
 def read_records(path: Path) -> BagRecords:
     """
     Read a whole MCAP file and verify every checksum.

@@ -1,6 +1,5 @@
 """What we compute of a controller: every coefficient by name, z-form, rise time, overshoot."""
 
-import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.state_space import pulse_transfer_function
 from ddct_controllers.mpc.costs import TABLE_4_1
@@ -65,7 +65,7 @@ def _dealt(form: Sequence[Factor], roots: np.ndarray) -> tuple[Factor, ...]:
         raise ParameterError(f'{len(roots)} roots do not fill {len(form)} printed factors')
     left = list(roots[np.argsort(np.abs(roots), kind='stable')])
     found: list[Factor] = list(form)
-    for index in sorted(range(len(form)), key=lambda index: _rate(form[index])):
+    for index in sorted(range(len(form)), key=lambda index: rate_of(form[index])):
         root = left.pop(0)
         if isinstance(form[index], tuple):
             other = left.pop(0)
@@ -73,10 +73,6 @@ def _dealt(form: Sequence[Factor], roots: np.ndarray) -> tuple[Factor, ...]:
         else:
             found[index] = float(-root.real) + 0.0  # no minus zero
     return tuple(found)
-
-
-def _rate(factor: Factor) -> float:
-    return math.sqrt(abs(factor[1])) if isinstance(factor, tuple) else abs(factor)
 
 
 def real(factor: Factor) -> float:

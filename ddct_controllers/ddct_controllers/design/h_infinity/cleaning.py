@@ -68,15 +68,15 @@ def _with_integrator(
     offset: float,
     steps: list[CleaningStep],
 ) -> tuple[list[Factor], list[Factor]]:
-    nearest = sorted(denominator, key=lambda factor: abs(math.log(_rate(factor) / offset)))
+    nearest = sorted(denominator, key=lambda factor: abs(math.log(rate_of(factor) / offset)))
     left = nearest[:1] if nearest and isinstance(nearest[0], tuple) else nearest[:2]
     orders = sum(_order(factor) for factor in left)
-    if orders != 2 or any(not 1 / _NEAR_OFFSET < _rate(f) / offset < _NEAR_OFFSET for f in left):
+    if orders != 2 or any(not 1 / _NEAR_OFFSET < rate_of(f) / offset < _NEAR_OFFSET for f in left):
         raise SynthesisError(
             f'cleaning: the controller has no two poles near epsilon = {offset:.3g} rad/s, which '
             'W_1* puts there: clean it by hand, or choose another epsilon'
         )
-    slowest = min(numerator, key=_rate, default=(0.0, 0.0))
+    slowest = min(numerator, key=rate_of, default=(0.0, 0.0))
     if isinstance(slowest, tuple):
         raise SynthesisError(
             'cleaning: the slowest zero of the controller is not real, so that it is not the '
@@ -107,12 +107,12 @@ def _without_pairs(
 
 
 def _cancels(zero: Factor, pole: Factor) -> bool:
-    if _order(zero) != _order(pole) or 0.0 in (_rate(zero), _rate(pole)):
+    if _order(zero) != _order(pole) or 0.0 in (rate_of(zero), rate_of(pole)):
         return False
-    return abs(_rate(zero) / _rate(pole) - 1.0) < _SAME and (
+    return abs(rate_of(zero) / rate_of(pole) - 1.0) < _SAME and (
         not isinstance(zero, tuple)
         or not isinstance(pole, tuple)
-        or abs(zero[0] - pole[0]) < _SAME * _rate(pole)
+        or abs(zero[0] - pole[0]) < _SAME * rate_of(pole)
     )
 
 
@@ -120,7 +120,7 @@ def _order(factor: Factor) -> int:
     return 2 if isinstance(factor, tuple) else 1
 
 
-def _rate(factor: Factor) -> float:
+def rate_of(factor: Factor) -> float:
     """Return the magnitude of the factor's roots in rad/s, their geometric mean for two."""
     return math.sqrt(abs(factor[1])) if isinstance(factor, tuple) else abs(factor)
 
