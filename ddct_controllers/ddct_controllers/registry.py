@@ -1,7 +1,7 @@
 """Controllers by name: our own, those that other packages add, and those in a file."""
 
 import importlib.metadata
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
@@ -24,6 +24,7 @@ from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.base.options import Option, Options
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
@@ -43,6 +44,16 @@ def controller_names() -> list[str]:
     """Return every name that `make_controller` takes besides files, our own first."""
     own = own_controller_names()
     return own + sorted(point.name for point in _entry_points() if point.name not in own)
+
+
+def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None:
+    """Raise ParameterError if a scenario has options for a controller that is nowhere."""
+    unknown = sorted(scenario.controllers.keys() - {*controller_names(), *labels})
+    if unknown:
+        raise ParameterError(
+            f'controllers.{unknown[0]}: there is no such controller: choose from '
+            f'{", ".join(controller_names())}'
+        )
 
 
 def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> list[str]:

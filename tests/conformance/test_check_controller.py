@@ -227,3 +227,6 @@ def test_options_of_a_controller_may_be_set_for_its_check(
     assert program.main(['NoIntegrator', '--set', 'controllers.NoIntegrator.gain=0.2']) == 0
     (line,) = [line for line in capfd.readouterr().out.splitlines() if ' sign ' in line]
     assert 'changes the clutch torque by +10 N m' in line
+    assert program.main(['NoIntegrator', '--set', 'controllers.NoIntegrater.gain=0.2']) == 1
+    words = 'fail     options        controllers.NoIntegrater: there is no such controller: '
+    assert words in capfd.readouterr().out

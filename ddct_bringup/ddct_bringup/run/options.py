@@ -6,8 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TextIO
 
 from ddct_controllers.interface import UNSTATED
-from ddct_controllers.registry import Chosen, controller_names, controller_spec
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_controllers.registry import (
+    Chosen,
+    controller_names,
+    controller_spec,
+    require_known_controllers,
+)
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import CLUTCHES
@@ -59,13 +64,7 @@ def run_settings(
     scenario: Scenario, labels: Sequence[str], settings: Mapping[str, Any]
 ) -> RunSettings:
     """Return the validated settings of a run in a scenario; as `settings_of` otherwise."""
-    known = {*controller_names(), *labels}
-    unknown = sorted(scenario.controllers.keys() - known)
-    if unknown:
-        raise ParameterError(
-            f'controllers.{unknown[0]}: there is no such controller: choose from '
-            f'{", ".join(controller_names())}'
-        )
+    require_known_controllers(scenario, labels)
     return RunSettings(scenario, **settings)
 
 

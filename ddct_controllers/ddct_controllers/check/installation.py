@@ -13,7 +13,7 @@ from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.watch import AskedGains
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
-from ddct_controllers.registry import ENTRY_POINT_GROUP
+from ddct_controllers.registry import ENTRY_POINT_GROUP, require_known_controllers
 from ddct_controllers.template.install_command import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
@@ -111,7 +111,8 @@ def constructor(subject: Subject) -> str:
 
 
 def options(subject: Subject) -> str:
-    """Check that it asks for no option that it does not declare."""
+    """Check that it asks for no option that it does not declare, and none is set of nobody's."""
+    require_known_controllers(subject.settings.scenario, [subject.spec.name])
     declared = subject.spec.options or {}
     given = subject.settings.scenario.controllers.get(subject.spec.name, {})
     gains = AskedGains(subject.spec.values(given))

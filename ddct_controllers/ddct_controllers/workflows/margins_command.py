@@ -5,7 +5,11 @@ from functools import partial
 from typing import Any
 
 from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURE_OF
-from ddct_controllers.registry import working_controllers
+from ddct_controllers.registry import (
+    controller_label,
+    require_known_controllers,
+    working_controllers,
+)
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
@@ -47,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
     """Print the table, write the JSON, and return the exit code."""
     settings = RunSettings(scenario_of(options, options.overrides), wear_gain=options.wear_gain)
     every = options.controller == 'all'
+    labels = [] if every else [controller_label(options.controller)]
+    require_known_controllers(settings.scenario, labels)
     tell = partial(complain, 'ddct design')
     names = working_controllers(settings, tell) if every else [options.controller]
     evidence = frequency_evidence(names, settings)

@@ -5,7 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from ddct_controllers.mpc.export.export_controller import export_controller
-from ddct_controllers.registry import make_controller
+from ddct_controllers.registry import (
+    controller_label,
+    make_controller,
+    require_known_controllers,
+)
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
@@ -43,6 +47,7 @@ def run(options: argparse.Namespace) -> int:
     settings = RunSettings(
         scenario_of(options, options.overrides), architecture=options.architecture
     )
+    require_known_controllers(settings.scenario, [controller_label(options.controller)])
     controller = make_controller(options.controller, settings)
     for path in export_controller(
         controller, options.controller, settings, options.export, overwrite=options.overwrite

@@ -182,3 +182,8 @@ def test_a_linear_model_that_fails_is_one_line(stub, monkeypatch, capsys):
     assert run('--controller', 'ls1') == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert 'cannot be used: ZeroDivisionError: division by zero' in line
+
+
+def test_options_of_a_controller_that_is_nowhere_are_refused(capsys):
+    assert run('--controller', 'pi', '--set', 'controllers.pii.gain=1') == 1
+    assert 'controllers.pii: there is no such controller' in capsys.readouterr().err
