@@ -127,7 +127,7 @@ class Architecture:
             return self._plain(command, step)
         except DdctError as error:
             place = place_of_method(self._controller, 'update')
-            raise DdctError(f'{error}: mend {place}') from error
+            raise DdctError(f'{error}, in {place}') from error
 
     def _plain(self, command: object, step: int) -> Command:
         if not isinstance(command, Command):
