@@ -70,13 +70,15 @@ class Locking:
         """
         Samples of the longest stretch of slipping.
 
-        Of a linear clutch, which slips on after t_a, the samples before t_a at which w_d is not 0.
+        Of a linear clutch, which slips on after t_a, the samples before t_a at which w_d is not 0;
+        without t_a all of them.
         """
         if self.phase is not None:
             mask = self.phase == SLIPPING
         else:
             mask = self.trajectory.slip_speed != 0.0
-            mask[self.together_from :] = False
+            if self.together_from is not None:
+                mask[self.together_from :] = False
         edges = np.flatnonzero(np.diff(mask, prepend=False, append=False)).reshape(-1, 2)
         if not edges.size:
             return slice(0, 0)

@@ -97,6 +97,13 @@ def test_judder_is_the_rms_of_w_sr_while_slipping_within_its_band():
     assert found == pytest.approx(4.0 / np.sqrt(2.0), rel=0.05)
 
 
+def test_judder_of_a_linear_clutch_that_never_comes_together_is_that_of_the_whole_run():
+    speed = shaft(4.0 * RAD_S_PER_RPM * np.sin(2 * np.pi * 8.0 * T))
+    found = values(made_run(np.full(301, 300.0), joint_speed=speed))
+    assert found['engagement_time'] is None
+    assert found['judder'] == pytest.approx(4.0 / np.sqrt(2.0), rel=0.05)
+
+
 def test_judder_of_less_than_one_second_of_slipping_is_undefined():
     speed = shaft(np.sin(50.0 * T))
     slipping_for = {99: None, 101: float}
