@@ -44,18 +44,7 @@ CONTROLLER = fact('controller', 'controller')
 WEAR = fact('wear_gain', 'wear', 'g', number=True)
 ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
 FINAL_SLIP = metric(METRICS['slip_final_rpm'], 'final\nw_d rpm')
-SLIP_RMSE = metric(METRICS['slip_rmse_rpm'], 'slip\nRMSE rpm')
 PEAK_JERK = metric(METRICS['peak_jerk_m_s3'], 'jerk\nm/s^3')
-MISSED = metric(METRICS['missed_steps'], 'missed\nsteps')
-LATENESS: RunColumn = Column(
-    'latest\nms',
-    '.2f',
-    lambda run: _in_ms(run['metrics']['worst_lateness_us']),
-    undefined=f'it ran in lock-step, or {NO_TIMING}',
-)
-SAFE_STATE: RunColumn = Column(
-    'safe state', '', lambda run: _safe_state(run), number=False, undefined='it ran in lock-step'
-)
 VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run['valid'] else 'NO', number=False)
 
 COLUMNS = (
@@ -63,7 +52,7 @@ COLUMNS = (
     TORSION_STD,
     ACCELERATION_STD,
     FINAL_SLIP,
-    SLIP_RMSE,
+    metric(METRICS['slip_rmse_rpm'], 'slip\nRMSE rpm'),
     PEAK_JERK,
     VALID,
 )
@@ -74,7 +63,22 @@ VERDICT_COLUMNS: tuple[RunColumn, ...] = (
     Column('limits', '', lambda run: run['verdict']['limits'], number=False),
 )
 """Before the last column where the terminal is wide enough; otherwise in lines below."""
-REALTIME_COLUMNS = (MISSED, LATENESS, SAFE_STATE)
+REALTIME_COLUMNS: tuple[RunColumn, ...] = (
+    metric(METRICS['missed_steps'], 'missed\nsteps'),
+    Column(
+        'latest\nms',
+        '.2f',
+        lambda run: _in_ms(run['metrics']['worst_lateness_us']),
+        undefined=f'it ran in lock-step, or {NO_TIMING}',
+    ),
+    Column(
+        'safe state',
+        '',
+        lambda run: _safe_state(run),
+        number=False,
+        undefined='it ran in lock-step',
+    ),
+)
 """What a table also shows when one of its runs was in real time."""
 
 

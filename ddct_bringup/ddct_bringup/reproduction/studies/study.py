@@ -134,8 +134,7 @@ def deviation_range(trajectory: Trajectory) -> str:
 
 def metric_column(figure: Figure, form: str, heading: str = '') -> StudyColumn:
     """Return the column of a metric, under its symbol and unit where there is no heading."""
-    value = attrgetter(f'metrics.{figure.key}')
-    return Column(heading or figure.heading, form, value)
+    return Column(heading or figure.heading, form, attrgetter(f'metrics.{figure.key}'))
 
 
 def close_column(header: str) -> StudyColumn:
