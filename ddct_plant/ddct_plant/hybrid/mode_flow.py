@@ -62,7 +62,9 @@ class ModeFlow:
         self.powers = np.arange(self.degree + 1)
         """0, 1, ..., d."""
         self._series = self.series.reshape(-1, size)
-        self.sizes = np.abs(self.series[:, states:]).reshape(-1, size)
+        # Instants are known to rounding of a piece, so y to that of how much it changes in one.
+        within = np.eye(size) + np.abs(generator)
+        self.sizes = np.abs(self.series[:, states:]).reshape(-1, size) @ within
         powers_of_guards = np.moveaxis(self.series[:, states:], 0, 1)
         self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
         """(guards, d+1, y): their Bernstein coefficients over a whole piece, as rows on y."""

@@ -203,6 +203,23 @@ def test_a_slip_that_grazes_zero_between_two_nodes_is_found(depth, events):
     assert done.state == pytest.approx([slip], abs=1e-15)
 
 
+@pytest.mark.parametrize(
+    ('torque', 'capacity', 'depth'),
+    [
+        (12.154104420274566, 0.0013580634007392964, 1.880001818530598e-11),
+        (117.19716601036552, 0.018646299125808067, 3.843173055044242e-10),
+    ],
+)
+def test_a_weak_element_that_sticks_for_an_instant_is_released_once(torque, capacity, depth):
+    """The net torque grows within a piece to far more than the capacity, as in the graze above."""
+    start = torque * PIECE_S / 4.0 - depth
+    done = HybridIntegrator(block(), PIECE_S, 1).advance(
+        [start], (1,), [capacity - torque, capacity + torque], [capacity] * 2, [capacity] * 2
+    )
+    assert [e.kind for e in done.events] == ['lock', 'release']
+    assert done.state == pytest.approx([torque * PIECE_S / 4.0], abs=1e-14)
+
+
 @pytest.mark.parametrize('excess', [1e-9, -1e-9])
 def test_a_margin_that_is_short_between_two_nodes_releases(excess):
     """A torque sin(w t) peaks between the nodes; the capacity is the same at rest and slipping."""
