@@ -3,6 +3,7 @@
 import importlib.metadata
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from numbers import Real
 from typing import Any
 
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -174,7 +175,7 @@ def factory_spec(
 
     def make(context: ControllerContext) -> Controller:
         try:
-            controller = factory(context)
+            return _plain(name, source, factory(context))
         except DdctError:
             raise
         except FOREIGN_FAILURES as error:
@@ -182,13 +183,6 @@ def factory_spec(
                 f'controller {name!r}: {source} failed '
                 f'({type(error).__name__}: {error}): mend its code'
             ) from error
-        if not isinstance(controller, Controller):
-            raise DdctError(
-                f'controller {name!r}: {source} returned '
-                f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
-            )
-        _require_plain(name, controller)
-        return controller
 
     computed_from = getattr(factory, 'computed_from', UNSTATED)
     if computed_from not in (SCENARIO, THESIS, UNSTATED):
@@ -212,8 +206,13 @@ def _declared(name: str, factory: object) -> Options | None:
     )
 
 
-def _require_plain(name: str, controller: Controller) -> None:
-    """Raise DdctError unless what the graph is built from is of the declared types."""
+def _plain(name: str, source: str, controller: object) -> Controller:
+    """Return it; raise DdctError unless what the graph is built from is of the declared types."""
+    if not isinstance(controller, Controller):
+        raise DdctError(
+            f'controller {name!r}: {source} returned '
+            f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
+        )
     preview = controller.preview_steps
     if type(preview) is not int or preview < 0:
         raise DdctError(
@@ -224,6 +223,20 @@ def _require_plain(name: str, controller: Controller) -> None:
             f'controller {name!r}: its commands_engine is {controller.commands_engine!r}: '
             'give True or False'
         )
+    gains = controller.gains()
+    if not _is_mapping(gains, Real):
+        raise DdctError(f'controller {name!r}: its gains() is {gains!r}: give numbers by name')
+    info = controller.info(name)
+    if not _is_mapping(info, str):
+        raise DdctError(f'controller {name!r}: its info() is {info!r}: give text by name')
+    return controller
+
+
+def _is_mapping(content: object, kind: type) -> bool:
+    """Say whether something maps text to values of a kind."""
+    return isinstance(content, Mapping) and all(
+        isinstance(key, str) and isinstance(value, kind) for key, value in content.items()
+    )
 
 
 def _entry_points() -> importlib.metadata.EntryPoints:

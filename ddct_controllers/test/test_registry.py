@@ -130,6 +130,30 @@ def test_a_declaration_of_the_wrong_type_names_the_controller(
         make_controller('third', SETTINGS)
 
 
+@pytest.mark.parametrize(
+    ('method', 'answer', 'complaint'),
+    [
+        ('gains', {'gain': 'high'}, r'its gains\(\) is .*: give numbers by name'),
+        ('gains', None, r'its gains\(\) is None'),
+        ('info', {'version': 2}, r'its info\(\) is .*: give text by name'),
+        ('gains', KeyError('gain'), r"make_third failed \(KeyError: 'gain'\)"),
+        ('info', SystemExit(3), r'make_third failed \(SystemExit: 3\)'),
+    ],
+)
+def test_what_a_controller_says_of_itself_is_checked_when_it_is_made(
+    add_entry_point, monkeypatch, method, answer, complaint
+):
+    def answers(*_):
+        if isinstance(answer, BaseException):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(Third, method, answers)
+    add_entry_point('third', f'{__name__}:make_third')
+    with pytest.raises(DdctError, match=f"controller 'third': .*{complaint}"):
+        make_controller('third', SETTINGS)
+
+
 def test_a_controller_knows_the_name_that_it_was_asked_for_by(add_entry_point):
     add_entry_point('third', f'{__name__}:make_third')
     assert make_controller('third', SETTINGS).registered_name == 'third'
