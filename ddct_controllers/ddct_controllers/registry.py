@@ -48,13 +48,22 @@ def controller_names() -> list[str]:
 
 
 def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None:
-    """Raise ParameterError if a scenario has options for a controller that is nowhere."""
+    """
+    Raise ParameterError if a scenario has options for a controller that is nowhere.
+
+    Or if one of ours does not take them, though it may not run. Those of others are checked when
+    they are asked for.
+    """
     unknown = sorted(scenario.controllers.keys() - {*controller_names(), *labels})
     if unknown:
         raise ParameterError(
             f'controllers.{unknown[0]}: there is no such controller: choose from '
             f'{", ".join(controller_names())}'
         )
+    own = _own_controllers()
+    for name, given in scenario.controllers.items():
+        if name in own:
+            own[name].values(given)
 
 
 def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> list[str]:

@@ -7,7 +7,12 @@ import pytest
 
 from ddct_controllers import registry
 from ddct_controllers.interface import Command, Controller
-from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_names, make_controller
+from ddct_controllers.registry import (
+    ENTRY_POINT_GROUP,
+    controller_names,
+    make_controller,
+    require_known_controllers,
+)
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import load_scenario
@@ -152,6 +157,14 @@ def test_what_a_controller_says_of_itself_is_checked_when_it_is_made(
     add_entry_point('third', f'{__name__}:make_third')
     with pytest.raises(DdctError, match=f"controller 'third': .*{complaint}"):
         make_controller('third', SETTINGS)
+
+
+def test_an_option_of_ours_is_checked_though_its_controller_does_not_run(add_entry_point):
+    add_entry_point('broken', 'no_such_module:make')
+    require_known_controllers(load_scenario('thesis', ['controllers.broken.gain=1']), [])
+    typo = load_scenario('thesis', ['controllers.mpc3.delay_in_modell=true'])
+    with pytest.raises(ParameterError, match='delay_in_modell is not a key of mpc3'):
+        require_known_controllers(typo, ['ls8'])
 
 
 def test_a_controller_knows_the_name_that_it_was_asked_for_by(add_entry_point):
