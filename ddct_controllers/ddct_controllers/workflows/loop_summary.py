@@ -59,14 +59,15 @@ def formula(function: FactoredTransferFunction, variable: str) -> str:
     """Return a transfer function as a reader writes it."""
     gain = f'{function.gain:.6g}'
     numerator, denominator = (
-        _product(side, variable) for side in (function.numerator, function.denominator)
+        product(side, variable) for side in (function.numerator, function.denominator)
     )
     above = f'{gain} {numerator}'.rstrip()
     several = len(function.denominator) > 1
     return f'{above} / {f"[{denominator}]" if several else denominator}' if denominator else above
 
 
-def _product(factors: Sequence[Factor], variable: str) -> str:
+def product(factors: Sequence[Factor], variable: str) -> str:
+    """Return factors (s + a) and (s^2 + b s + c), or those of z, one beside the other."""
     return ' '.join(_factor(factor, variable) for factor in factors)
 
 

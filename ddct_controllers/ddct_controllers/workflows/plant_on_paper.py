@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ddct_controllers.workflows.loop_summary import product
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.identification.identify import SYMBOLS_AND_UNITS
+from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
@@ -95,17 +96,9 @@ def _polynomial(factors: Sequence[Factor]) -> np.ndarray:
 
 
 def factored_text(entry: Mapping[str, Any]) -> str:
-    """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / (...)."""
-    gain = f'{entry["gain"]:.6g}'
-    above = ' '.join([gain, *map(_factor_text, entry['numerator'])])
-    return f'{above} / [{" ".join(map(_factor_text, entry["denominator"]))}]'
-
-
-def _factor_text(factor: Factor) -> str:
-    if isinstance(factor, tuple):
-        linear, constant = (f'{"-" if each < 0 else "+"} {abs(each):.6g}' for each in factor)
-        return f'(s^2 {linear} s {constant})'
-    return f'(s + {factor:.6g})' if factor else 's'
+    """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / [...]."""
+    above = f'{entry["gain"]:.6g} {product(entry["numerator"], "s")}'.rstrip()
+    return f'{above} / [{product(entry["denominator"], "s")}]'
 
 
 def as_matlab(paper: Mapping[str, Any]) -> str:
