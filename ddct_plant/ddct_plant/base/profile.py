@@ -1,6 +1,7 @@
 """A value over scenario time, linear between points: of the brake, the road, a slip reference."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,12 @@ class Profile(OptionGroup):
 
     def at(self, time_s: float) -> float:
         """Return the value at a scenario time; there must be points."""
-        values: Any = getattr(self, value_name(type(self)))
-        return float(np.interp(time_s, getattr(self, TIME), values))
+        return float(np.interp(time_s, getattr(self, TIME), self._values))
+
+    @cached_property
+    def _values(self) -> Any:
+        # `at` wants them at every step, and for every step of a preview.
+        return getattr(self, value_name(type(self)))
 
 
 def value_name(group: type) -> str:
