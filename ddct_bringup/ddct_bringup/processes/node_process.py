@@ -10,13 +10,19 @@ from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
-from ddct_plant.program.pulse import PULSE_FD
+from ddct_plant.program.pulse import FAREWELL, PULSE_FD
 
 START_S = 60.0
 """How long a node may take to start before it counts as hung."""
+LEAVE_S = 2.0
+"""How long a node whose work is over may take to leave the graph before it is ended."""
 MOST_ELAPSED_S = 1.0
 """Time between two looks counts up to this: when we were stopped, nobody's silence shows."""
 _SET_PARENT_DEATH_SIGNAL = 1
+_ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+"""What we send."""
+_PIPE_BYTES = 1 << 16
+"""All that a pipe holds (Linux), so that a farewell is read whole."""
 
 
 class NodeProcess:
@@ -33,6 +39,7 @@ class NodeProcess:
         self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         self._limit_s = START_S
         self._silent_s = 0.0
+        self._farewell: int | None = None
         self._segments: set[str] = set()
         # -P: a file of the current folder must not hide a module of the same name.
         command = [sys.executable, '-P', '-m', spec.module]
@@ -54,13 +61,28 @@ class NodeProcess:
         """Whether it has not ended."""
         return self.process.poll() is None
 
+    @property
+    def code(self) -> int | None:
+        """Its exit code, None before it has ended; of one that hung while leaving what it said."""
+        code = self.process.poll()
+        by_us = code is not None and -code in _ENDED_BY
+        return self._farewell if by_us and self._farewell is not None else code
+
     def look(self, elapsed_s: float) -> None:
-        """Note its pulse and its shared memory, `elapsed_s` after the last look."""
+        """
+        Note its pulse and its shared memory, `elapsed_s` after the last look.
+
+        End it if its work is over and it has hung since then.
+        """
         self._segments |= segments_of(self.process.pid)
         self._silent_s += min(elapsed_s, MOST_ELAPSED_S)
         with contextlib.suppress(BlockingIOError):
-            if os.read(self._pulse, 4096):
+            if said := os.read(self._pulse, _PIPE_BYTES):
                 self._silent_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
+                _, last, code = said.partition(FAREWELL)
+                self._farewell = int(code) if last else None
+        if self._farewell is not None and self._silent_s > LEAVE_S:
+            self.process.kill()
 
     def silence(self) -> str:
         """Say in one line that it shows no sign of life for too long, '' while it does."""
@@ -87,7 +109,7 @@ class NodeProcess:
 
     def obituary(self) -> str:
         """Say in one line how the node ended."""
-        code = self.process.returncode
+        code = self.code
         if self.hung or code is None:
             return f'node {self.name} did not stop when asked and was killed'
         if code < 0:

@@ -53,7 +53,7 @@ class NodeProcesses:
         looked_at = time.monotonic()
         while True:
             ended = [node for node in self._nodes if not node.running]
-            if any(node.name != name or node.process.returncode != 0 for node in ended):
+            if any(node.name != name or node.code != 0 for node in ended):
                 culprit = _culprit(ended)
                 raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
             if ended:
@@ -82,13 +82,15 @@ class NodeProcesses:
             deadline = time.monotonic() + patience_s
             while time.monotonic() < deadline and _running(nodes):
                 time.sleep(POLL_S)
+                for node in nodes:
+                    node.look(POLL_S)
             if not _running(nodes):
                 break
 
     def require_clean_end(self) -> None:
         """Raise DdctError unless every node has ended with code 0."""
         for node in self._nodes:
-            if node.process.returncode != 0:
+            if node.code != 0:
                 raise DdctError(f'{node.obituary()}; its log is {node.log}')
 
 
@@ -98,4 +100,4 @@ def _running(nodes: Sequence[NodeProcess]) -> bool:
 
 def _culprit(ended: Sequence[NodeProcess]) -> NodeProcess:
     """Return the node to blame: one that was killed or failed before one that noticed."""
-    return min(ended, key=lambda node: (node.process.returncode == 0, node.name == 'driveline'))
+    return min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))

@@ -20,8 +20,7 @@ WITHIN_S = 20.0
 """How long a small program may take to start or to end on a loaded machine."""
 LIVE = """
 import os, signal, sys, time
-from ddct_plant.program.pulse import pulse
-beat = pulse()
+from ddct_plant.program.pulse import beat, farewell
 def run():
     print('ready', flush=True)
     while True:
@@ -34,6 +33,14 @@ DEAF = (
     '    signal.signal(number, signal.SIG_IGN)\n'
     'run()\n'
 )
+HANGS_LEAVING = (
+    'def leave(*_):\n'
+    '    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])\n'
+    '    farewell({code})\n'
+    '    time.sleep(60)\n'
+    'signal.signal(signal.SIGINT, leave)\n'
+)
+WORDS = "print('clutch: no more disk', flush=True); time.sleep(60)"
 QUICK_LADDER = tuple((number, 1.0) for number, _ in STOP_LADDER)
 
 
@@ -211,3 +218,34 @@ def test_the_guardian_kills_what_does_not_heed_the_end_of_its_supervisor(tmp_pat
     )
     subprocess.run([sys.executable, '-c', guard], check=True, timeout=WITHIN_S)
     assert deaf.wait(WITHIN_S) == -signal.SIGKILL
+
+
+@pytest.fixture
+def quick_to_leave(monkeypatch):
+    monkeypatch.setattr(node_process, 'LEAVE_S', 0.1)
+
+
+def test_a_node_that_hangs_while_it_leaves_has_ended_well(processes, quick_to_leave):
+    """As Fast DDS may let it."""
+    nodes = processes(driveline=OBEDIENT, clutch=HANGS_LEAVING.format(code=0) + 'run()\n')
+    nodes.stop(lambda name: True)
+    nodes.require_clean_end()
+    nodes.__exit__()
+
+
+def test_its_own_exit_code_counts(processes, quick_to_leave):
+    text = HANGS_LEAVING.format(code=1) + 'run()\n'
+    nodes = processes(driveline=OBEDIENT, clutch=text.replace('time.sleep(60)', WORDS))
+    nodes.stop(lambda name: True)
+    with pytest.raises(DdctError, match='node clutch ended with code 1: no more disk'):
+        nodes.require_clean_end()
+    nodes.__exit__()
+
+
+def test_the_owner_of_time_may_hang_while_it_leaves(processes, quick_to_leave):
+    nodes = processes(
+        driveline=HANGS_LEAVING.format(code=0) + "print('ready', flush=True)\nleave()\n"
+    )
+    nodes.wait_for('driveline', lambda: False)
+    nodes.require_clean_end()
+    nodes.__exit__()

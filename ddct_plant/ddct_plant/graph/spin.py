@@ -21,8 +21,8 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import STEADY, GraphNode
 from ddct_plant.program.command_line import run_program
-from ddct_plant.program.pulse import pulse
-from ddct_plant.program.stop_signals import stop_signals
+from ddct_plant.program.pulse import beat, farewell
+from ddct_plant.program.stop_signals import ends_at_once, stop_signals
 
 SLICE_S = 0.1
 """How often signals are looked at, and the longest time the executor is left alone."""
@@ -114,6 +114,7 @@ def run_node(
     1, with one line on standard error, after a DdctError; above it stands the traceback of what
     a third party's code raised.
     """
+    built: list[GraphNode] = []
 
     def program(argv: list[str]) -> int:
         if arguments is None:
@@ -121,34 +122,61 @@ def run_node(
                 print(node_help(name, factory, sys.argv))
                 return 0
             require_ros_arguments(argv)
-        beat = pulse()
         with stop_signals() as stops:
-            error = _run(factory, arguments, lambda: beat() or bool(stops))
+
+            def stopped() -> bool:
+                beat()
+                return bool(stops)
+
+            error = _run(factory, arguments, stopped, built)
         if isinstance(error, ForeignError):
             traceback.print_exception(error)
         if error is not None:
             raise error
         return 0
 
-    return run_program(name, program, None)
+    code = 1
+    try:
+        code = run_program(name, program, None)
+    finally:
+        _leave(built, code)
+    return code
 
 
 def _run(
-    factory: Callable[[], GraphNode], arguments: Sequence[str] | None, stopped: Callable[[], bool]
+    factory: Callable[[], GraphNode],
+    arguments: Sequence[str] | None,
+    stopped: Callable[[], bool],
+    built: list[GraphNode],
 ) -> DdctError | None:
-    """Return the error that ended the node, if any; raise DdctError when it cannot be built."""
+    """
+    Return the error that ended the node, if any; raise DdctError when it cannot be built.
+
+    The node, flushed, is put into `built`.
+    """
     try:
         init_ros(arguments)
         node = factory()
+        built.append(node)
         require_declared(node)
         executor = make_executor()
         executor.add_node(node)
         spin_until(executor, end_of([node], stopped))
         finish_node(executor, node)
-        error: DdctError | None = node.done.result() if node.done.done() else None
-        node.destroy_node()
+        return node.done.result() if node.done.done() else None
     except ExternalShutdownException:
-        error = None
-    finally:
+        return None
+
+
+def _leave(nodes: Sequence[GraphNode], code: int) -> None:
+    """
+    Take the nodes, which have said all, out of the graph.
+
+    Fast DDS may hang here for ever when other nodes leave at the same time. The supervisor then
+    ends the process, and takes `code` for its exit code.
+    """
+    farewell(code)
+    with ends_at_once():
+        for node in nodes:
+            node.destroy_node()
         rclpy.try_shutdown()
-    return error

@@ -1,8 +1,9 @@
-"""Catch SIGINT and SIGTERM for a while, so that work ends in an orderly way."""
+"""What SIGINT and SIGTERM do for a while: end work in an orderly way, or the process at once."""
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 
@@ -11,12 +12,22 @@ _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 def stop_signals() -> Iterator[list[int]]:
     """Give the list that the signals are put into; what they did before comes back at the end."""
     received: list[int] = []
-    before = {
-        number: signal.signal(number, lambda caught, _frame: received.append(caught))
-        for number in _CAUGHT
-    }
-    try:
+    with _handled(lambda caught, _frame: received.append(caught)):
         yield received
+
+
+@contextmanager
+def ends_at_once() -> Iterator[None]:
+    """Let the kernel end the process by either signal, were it to hang in foreign code."""
+    with _handled(signal.SIG_DFL):
+        yield
+
+
+@contextmanager
+def _handled(by: Callable[[int, Any], Any] | signal.Handlers) -> Iterator[None]:
+    before = {number: signal.signal(number, by) for number in _CAUGHT}
+    try:
+        yield
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
