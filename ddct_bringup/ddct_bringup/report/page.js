@@ -1,8 +1,5 @@
-'use strict';
-
-// Charts come from the Bokeh document in #data; this file switches lines, time range and colours.
+// Charts come from the Bokeh document in #data; this file switches lines and time range.
 (async () => {
-  const root = document.documentElement;
   const data = JSON.parse(document.getElementById('data').textContent);
   const chips = [...document.querySelectorAll('.chip')];
   const shown = new Set(chips.filter(isPressed).map(runOf));
@@ -137,12 +134,8 @@
 
   // Colours
 
-  const systemDark = matchMedia('(prefers-color-scheme: dark)');
-  const themes = ['auto', 'light', 'dark'];
-  const themeButton = document.getElementById('theme');
-
   function paint() {
-    const style = getComputedStyle(root);
+    const style = getComputedStyle(document.documentElement);
     drawn.forEach(({glyph, tags}) => {
       const {colour, fill} = tags[0];
       const painted = style.getPropertyValue(colour === null ? '--soft' : `--run-${colour}`).trim();
@@ -151,30 +144,15 @@
     });
   }
 
-  function setTheme(theme) {
-    if (theme === 'auto') delete root.dataset.theme; else root.dataset.theme = theme;
-    themeButton.firstElementChild.textContent = theme;
-  }
-
-  function storedTheme() {
-    try { return localStorage.getItem('report-theme'); } catch { return null; }
-  }
-
-  themeButton.addEventListener('click', () => {
-    const theme = themes[(themes.indexOf(root.dataset.theme ?? 'auto') + 1) % themes.length];
-    setTheme(theme);
-    paint();
-    try { localStorage.setItem('report-theme', theme); } catch { /* a page without storage */ }
-  });
-  systemDark.addEventListener('change', paint);
+  addEventListener('colours', paint);
 
   // Paper gets light copies of the charts, which fit its width.
 
   const TURNS = 200;
   let themeOnScreen = null;
   addEventListener('beforeprint', async () => {
-    themeOnScreen ??= root.dataset.theme ?? 'auto';
-    setTheme('light');
+    themeOnScreen ??= colours.theme();
+    colours.set('light');
     paint();
     // Bokeh takes over new colours in promises; these, unlike timers, still run before printing.
     for (let turn = 0; turn < TURNS; turn++) await null;
@@ -185,39 +163,14 @@
   });
   addEventListener('afterprint', () => {
     document.querySelectorAll('.paper').forEach((paper) => paper.replaceChildren());
-    setTheme(themeOnScreen ?? 'auto');
+    colours.set(themeOnScreen ?? 'auto');
     paint();
     themeOnScreen = null;
   });
 
-  // Tables sort by the column whose heading is pressed.
-
-  function sortKey(row, column) {
-    const cell = row.children[column];
-    const value = cell?.querySelector('data')?.value;
-    return value === undefined ? cell?.textContent.trim() ?? '' : Number(value);
-  }
-
-  function compare(a, b) {
-    if (typeof a !== typeof b) return typeof a === 'number' ? -1 : 1;
-    return typeof a === 'number' ? a - b : a.localeCompare(b, 'en', {numeric: true});
-  }
-
-  document.querySelectorAll('.sort').forEach((button) => button.addEventListener('click', () => {
-    const heading = button.closest('th');
-    const body = heading.closest('table').tBodies[0];
-    const column = [...heading.parentElement.children].indexOf(heading);
-    const descending = heading.getAttribute('aria-sort') === 'ascending';
-    [...heading.parentElement.children].forEach((other) => other.removeAttribute('aria-sort'));
-    heading.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
-    const rows = [...body.rows].sort((a, b) => compare(sortKey(a, column), sortKey(b, column)));
-    body.append(...(descending ? rows.reverse() : rows));
-  }));
-
   count();
-  setTheme(themes.includes(storedTheme()) ? storedTheme() : 'auto');
   // The document comes in the colours of the light page.
-  if (root.dataset.theme === 'dark' || (!root.dataset.theme && systemDark.matches)) paint();
+  if (colours.dark()) paint();
   const [{document: bokehDocument}] = charts;
   while (!bokehDocument.is_idle) await new Promise(requestAnimationFrame);
   await new Promise(requestAnimationFrame);

@@ -1,15 +1,12 @@
 """Put the page together: one HTML file that needs nothing else."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import bokeh
 from bokeh.resources import Resources
-from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
@@ -17,6 +14,7 @@ from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
 from ddct_bringup.report.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.origin import run_origin, scenario_text
 from ddct_bringup.report.output import MARKER
+from ddct_bringup.report.page_parts import json_data, page_part, page_template
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_marks import (
@@ -28,7 +26,6 @@ from ddct_bringup.report.run_marks import (
 )
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.summary import comparable_rows, metric_cells
-from ddct_bringup.report.typeset import symbols, unit_text
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
@@ -39,6 +36,7 @@ from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
+_ROOM = 'ddct_bringup.report'
 SHOWN_AT_FIRST = 12
 """Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
 
@@ -58,12 +56,12 @@ def report_page(
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = [run.recording for run in runs if run.recording is not None]
-    return _template().render(
+    return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
-        style=Markup(_part('page.css')),
-        script=Markup(_part('page.js')),
-        data=_json(data),
+        style=page_part(_ROOM, 'page.css'),
+        script=page_part(_ROOM, 'common.js') + page_part(_ROOM, 'page.js'),
+        data=json_data(data),
         quantities=charted_quantities(charted),
         lanes=LANES if LANES in roots else None,
         phases=OPACITY,
@@ -154,26 +152,3 @@ def _library() -> Markup:
     """Return BokehJS as the installed package brings it along."""
     # Without any line shown it would warn that a chart has no range.
     return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))
-
-
-def _json(content: Any) -> Markup:
-    """Return JSON that may stand in a script element."""
-    text = json.dumps(content, separators=(',', ':'), allow_nan=False)
-    return Markup(text.replace('<', '\\u003c'))
-
-
-def _part(name: str) -> str:
-    return (files('ddct_bringup.report') / name).read_text(encoding='utf-8')
-
-
-@cache
-def _template() -> Template:
-    environment = Environment(
-        loader=FunctionLoader(_part),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {'symbols': symbols, 'unit': unit_text}
-    return environment.get_template('page.html.j2')

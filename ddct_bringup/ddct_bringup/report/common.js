@@ -1,0 +1,58 @@
+'use strict';
+
+// What every page of ours does. Its colours are the system's until the button chooses light or dark;
+// a window event `colours` tells of each change. Tables sort by the column whose heading is pressed.
+
+const colours = (() => {
+  const {dataset} = document.documentElement;
+  const themes = ['auto', 'light', 'dark'];
+  const button = document.getElementById('theme');
+  const systemDark = matchMedia('(prefers-color-scheme: dark)');
+
+  function theme() { return dataset.theme ?? 'auto'; }
+
+  function set(chosen) {
+    if (chosen === 'auto') delete dataset.theme; else dataset.theme = chosen;
+    button.firstElementChild.textContent = chosen;
+  }
+
+  function tell() { dispatchEvent(new Event('colours')); }
+
+  function stored() {
+    try { return localStorage.getItem('report-theme'); } catch { return null; }
+  }
+
+  button.addEventListener('click', () => {
+    set(themes[(themes.indexOf(theme()) + 1) % themes.length]);
+    tell();
+    try { localStorage.setItem('report-theme', theme()); } catch { /* a page without storage */ }
+  });
+  systemDark.addEventListener('change', tell);
+  set(themes.includes(stored()) ? stored() : 'auto');
+  return {theme, set, dark: () => theme() === 'dark' || (theme() === 'auto' && systemDark.matches)};
+})();
+
+(() => {
+  function sortKey(row, column) {
+    const cell = row.children[column];
+    const value = cell?.querySelector('data')?.value;
+    return value === undefined ? cell?.textContent.trim() ?? '' : Number(value);
+  }
+
+  function compare(a, b) {
+    if (typeof a !== typeof b) return typeof a === 'number' ? -1 : 1;
+    return typeof a === 'number' ? a - b : a.localeCompare(b, 'en', {numeric: true});
+  }
+
+  document.querySelectorAll('.sort').forEach((button) => button.addEventListener('click', () => {
+    const heading = button.closest('th');
+    const body = heading.closest('table').tBodies[0];
+    const column = [...heading.parentElement.children].indexOf(heading);
+    const descending = heading.getAttribute('aria-sort') === 'ascending';
+    [...heading.parentElement.children].forEach((other) => other.removeAttribute('aria-sort'));
+    heading.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
+    const rows = [...body.rows].sort((a, b) => compare(sortKey(a, column), sortKey(b, column)));
+    body.append(...(descending ? rows.reverse() : rows));
+  }));
+})();
+
