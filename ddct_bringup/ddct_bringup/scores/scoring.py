@@ -57,7 +57,7 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
     if recording.measured:
         return score_run(recording, bag, limits, None)
     if failure := failed_run(recording.path.parent):
-        return _entry_without_score(bag, recording.facts, failure.reason)
+        return entry_without_score(bag, recording.facts, failure.reason)
     return score_run(recording, bag, limits, read_timing(recording.path.parent))
 
 
@@ -103,15 +103,16 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
     """
     name = bag_name(path, relative_to)
     if failure := failed_run(path if path.is_dir() else path.parent):
-        return _entry_without_score(name, failure.facts, failure.reason)
+        return entry_without_score(name, failure.facts, failure.reason)
     try:
         facts = RunFacts.from_custom_data(salvage_records(mcap_of(path)).custom_data)
     except DdctError:
-        return _entry_without_score(name, None, str(error))
-    return _entry_without_score(name, facts, str(error))
+        return entry_without_score(name, None, str(error))
+    return entry_without_score(name, facts, str(error))
 
 
-def _entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
+def entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
+    """Return the entry of a run that failed: invalid, with the facts that are known of it."""
     return {
         'bag': bag,
         **{name: getattr(facts, name, None) for name in _FACT_NAMES},

@@ -1,0 +1,1 @@
+"""Many headless runs: what each is, its row, and the processes that share the work."""

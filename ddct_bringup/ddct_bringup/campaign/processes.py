@@ -1,0 +1,70 @@
+"""Work shared among processes of this machine: by fork, so that it may hold any object."""
+
+import ctypes
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from ddct_plant.base.errors import DdctError
+
+_SET_PARENT_DEATH_SIGNAL = 1
+_LARGEST_CHUNK = 16
+"""Results that a worker sends at once."""
+_CHUNKS_EACH = 8
+"""At least that a worker gets, where there is enough work, so that all end together."""
+Result = TypeVar('Result')
+
+
+@contextmanager
+def in_processes(
+    work: Callable[[int], Result], count: int, workers: int | None = None
+) -> Iterator[Iterator[Result]]:
+    """
+    Give the results of `work(0)` to `work(count - 1)`, in this order, computed as they are taken.
+
+    `workers` is the number of processes, by default that of the cores; one works in this process.
+    Only results go between processes: `work` may be anything. Taking a result raises DdctError
+    when a worker was killed.
+    """
+    workers = min(workers or len(os.sched_getaffinity(0)), count)
+    if workers < 2:
+        yield map(work, range(count))
+        return
+    context = multiprocessing.get_context('fork')
+    with ProcessPoolExecutor(workers, context, _begin, (work,)) as pool:
+        chunk = max(1, min(_LARGEST_CHUNK, count // (_CHUNKS_EACH * workers)))
+        results = pool.map(_at, range(count), chunksize=chunk)
+        try:
+            yield _taken(results)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _taken(results: Iterator[Result]) -> Iterator[Result]:
+    try:
+        yield from results
+    except BrokenProcessPool as error:
+        raise DdctError(
+            'a process that simulates was killed: free some memory if it ran out, and start again'
+        ) from error
+
+
+_work: Callable[[int], Any]
+"""What a worker was forked with."""
+
+
+def _begin(work: Callable[[int], Any]) -> None:
+    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
+    global _work
+    _work = work
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+
+
+def _at(index: int) -> Any:
+    return _work(index)

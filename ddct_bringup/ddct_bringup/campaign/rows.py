@@ -1,0 +1,88 @@
+"""A run among many: its settings by what is varied, its scores without a bag, and its row."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.execution import simulate
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_controllers.registry import Chosen, controller_label
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import options_of
+from ddct_plant.models.clutch import LINEAR
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SERIAL = 'serial'
+"""Column `path` of a run that was simulated alone."""
+WALL_CLOCK = ('update_time_median_us', 'update_time_p99_us')
+"""Metrics that differ each time; those of missed steps and lateness do not without a graph."""
+CRITERION = 'criterion.'
+"""Before the name of a criterion's column."""
+
+
+@dataclass(frozen=True)
+class RunBase:
+    """What runs have in common, before something is varied."""
+
+    scenario: str = 'thesis'
+    """Name or file."""
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    """Values by dotted scenario key, as `--set` gives them."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """Those of `RunSettings` by name, such as `clutch`."""
+
+    def at(self, varied: Mapping[str, Any]) -> RunSettings:
+        """
+        Return the settings with values by key: those of `RunSettings`, or dotted scenario keys.
+
+        What belongs together is moved with them, as `--set` does. Raise DdctError for what cannot
+        be used.
+        """
+        own = options_of(RunSettings)
+        settings = {**self.settings, **{key: varied[key] for key in varied if key in own}}
+        ours = {key: value for key, value in self.changes.items() if key not in varied}
+        changes = ours | {key: varied[key] for key in varied if key not in own}
+        scenario = load_scenario(self.scenario, changes, settings.get('clutch', LINEAR))
+        return RunSettings(scenario, **settings)
+
+
+def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> Entry:
+    """
+    Carry out a run headless and return its entry of `scores.json`; of one that fails, why.
+
+    It has no figures of wall-clock time: a row is the same each time it is computed.
+    """
+    try:
+        plan = RunPlan(settings, controller, 'headless')
+        recording, timing = simulate(plan)
+    except DdctError as error:
+        name = controller_label(controller)
+        data = custom_data(settings, name, settings.scenario.steps)
+        return entry_without_score(name, RunFacts.from_custom_data(data), str(error))
+    entry = score_run(recording, plan.name, limits, timing)
+    entry['metrics'] |= dict.fromkeys(WALL_CLOCK)
+    return entry
+
+
+def result_row(entry: Entry, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
+    """Return a run as one row: controller, path, what was varied, metrics, verdict, criteria."""
+    verdict = entry['verdict']
+    criteria = {each['name']: each['value'] for each in verdict['criteria']}
+    return {
+        'controller': entry['controller'],
+        'path': path,
+        **varied,
+        **{figure.key: entry['metrics'][figure.key] for figure in (*TABLE_5_1, *FURTHER)},
+        'valid': entry['valid'],
+        'reason': entry['reason'],
+        'verdict_state': verdict['state'],
+        'verdict_limits': verdict['limits'],
+        **{f'{CRITERION}{each.key}': criteria.get(each.key) for each in CRITERIA},
+    }

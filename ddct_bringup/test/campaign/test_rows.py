@@ -1,0 +1,89 @@
+"""A run among many is settled, scored and judged as the same run alone; a failed one says why."""
+
+import os
+import signal
+
+import pytest
+
+from ddct_bringup import api
+from ddct_bringup.campaign.processes import in_processes
+from ddct_bringup.campaign.rows import WALL_CLOCK, RunBase, result_row, scored_headless
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+BASE = RunBase(changes={'duration_s': 2.0}, settings={'clutch': 'stick_slip'})
+
+
+class Diverging(api.Controller):
+    """A controller whose answer is no number."""
+
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return api.Command(float('nan'))
+
+
+def test_what_is_varied_is_set_as_by_set_with_what_belongs_to_it():
+    settings = BASE.at({'wear_gain': 0.8, 'vehicle.mass_kg': 1800.0})
+    scenario = load_scenario(
+        'thesis', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'], clutch='stick_slip'
+    )
+    assert settings == RunSettings(scenario, clutch='stick_slip', wear_gain=0.8)
+    inertia = settings.scenario.driveline.vehicle_inertia
+    assert inertia == pytest.approx(1800.0 * settings.scenario.vehicle.wheel_radius_m**2)
+
+
+def test_what_is_varied_replaces_what_all_runs_change():
+    assert BASE.at({'duration_s': 2.5, 'clutch': 'linear'}).scenario.duration_s == 2.5
+
+
+def test_a_value_that_the_scenario_refuses_is_named():
+    with pytest.raises(ParameterError, match=r'vehicle\.mass_kg'):
+        BASE.at({'vehicle.mass_kg': -1.0})
+
+
+def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
+    entry = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
+    alone = api.run('ls8', duration=2.0, clutch='stick_slip', wear_gain=0.9)
+    assert entry['metrics'] == {**alone.metrics, **dict.fromkeys(WALL_CLOCK)}
+    assert entry['verdict'] == alone.verdict
+    row = result_row(entry, {'wear_gain': 0.9})
+    assert (row['controller'], row['path'], row['wear_gain']) == ('ls8', 'serial', 0.9)
+    assert row['friction_energy_j'] == alone.metrics['friction_energy_j']
+    assert (row['valid'], row['verdict_state']) == (True, alone.verdict['state'])
+    peak = next(each for each in alone.verdict['criteria'] if each['name'] == 'peak_jerk')
+    assert row['criterion.peak_jerk'] == peak['value']
+
+
+def test_a_run_that_fails_is_invalid_with_its_reason_and_without_figures():
+    chosen = chosen_from(Diverging, 'diverging')
+    entry = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
+    row = result_row(entry, {'wear_gain': 0.9})
+    assert (row['valid'], row['verdict_state']) == (False, 'invalid')
+    assert 'diverging' in row['reason']
+    assert row['engagement_time_s'] is row['slip_final_rpm'] is None
+    sound = scored_headless(BASE.at({}), 'pi', packaged_limits())
+    assert row.keys() == result_row(sound, {'wear_gain': 1.0}).keys()
+
+
+def test_results_come_in_order_whatever_the_number_of_workers():
+    for workers in (1, 2, 3):
+        with in_processes(lambda index: index**2, 40, workers) as results:
+            assert list(results) == [index**2 for index in range(40)]
+
+
+def test_work_is_done_in_other_processes():
+    with in_processes(lambda _: os.getpid(), 4, 2) as results:
+        assert os.getpid() not in set(results)
+
+
+def test_a_killed_worker_is_told_in_a_line():
+    with (
+        pytest.raises(DdctError, match='killed'),
+        in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,
+    ):
+        list(results)
