@@ -17,7 +17,8 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
 
     Until then feedback is off and only the static controller C_fOL acts, so no controller enters:
-    the values are those of any controller's detailed run at wear gain 1, to the last bit.
+    the values are those of any controller's detailed run at wear gain 1 with the actuator as
+    printed, to the last bit.
     """
     settings = RunSettings(scenario, architecture='detailed')
     initial = initial_state(settings)

@@ -12,9 +12,11 @@ class GuardedActuator:
     requests stop for longer than the timeout, the clutch opens and obeys no request any more.
     """
 
-    def __init__(self, initial_request: float, fail_safe: FailSafeSettings) -> None:
-        """Start at rest on `initial_request` in N m."""
-        self._actuator = Actuator(initial_request)
+    def __init__(
+        self, actuator: Actuator, initial_request: float, fail_safe: FailSafeSettings
+    ) -> None:
+        """Guard an actuator that is at rest on `initial_request` in N m."""
+        self._actuator = actuator
         self._fail_safe = FailSafe(fail_safe)
         self._held_request = initial_request
         self._next_step = 0

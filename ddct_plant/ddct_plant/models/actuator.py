@@ -1,35 +1,111 @@
-"""Actuator: saturation, 10 ms delay and the second-order pair G_a(s) (Section 1.4.2)."""
+"""Actuator: saturation, delay and the second-order pair G_a(s) (Section 1.4.2)."""
+
+from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
-from ddct_plant.linear.lti import lift_zoh_dense
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import OptionGroup, option
+from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
+from ddct_plant.linear.lti import StateSpace, lift_zoh_dense
 from ddct_plant.models.printed import ACTUATOR
+
+
+@dataclass(frozen=True)
+class ActuatorParameters(OptionGroup, prefix='actuator.'):
+    """How the actuator of the plant differs from the printed one, of which controllers know."""
+
+    delay_s: float = option(
+        0.01,
+        'delay of the request in front of G_a, a multiple of 1 ms; controllers go by 10 ms',
+        's',
+        source='Section 1.4.2',
+        at_least=0.0,
+        at_most=1.0,
+    )
+    bandwidth_factor: float = option(
+        1.0,
+        'how many times as fast G_a(s) is as printed: G_a(s / factor); controllers go by 1',
+        source='Section 1.4.2',
+        at_least=0.05,
+        at_most=10.0,
+    )
+
+    def __post_init__(self) -> None:
+        """Check both; raise ParameterError that names a bad one."""
+        super().__post_init__()
+        if abs(self.delay_s / SUBSTEP_S - self.delay_substeps) > 1e-6:
+            raise ParameterError(
+                f'actuator.delay_s is {self.delay_s:g} s: give a multiple of {SUBSTEP_S} s'
+            )
+
+    @property
+    def delay_substeps(self) -> int:
+        """The delay in steps of 1 ms."""
+        return round(self.delay_s / SUBSTEP_S)
+
+    def dynamics(self) -> StateSpace:
+        """Return G_a(s / factor), one input, one output."""
+        model, factor = ACTUATOR.to_state_space(), self.bandwidth_factor
+        return StateSpace(factor * model.a, factor * model.b, model.c, model.d)
 
 
 class Actuator:
     """
     Torque of the actuator for the requested torque, exact between samples.
 
-    The request is cut off below zero, delayed by one period and filtered by G_a(s). G_a is
-    strictly proper, so the torque is continuous; its 11 nodes over a period resolve modes up to
-    206 rad/s, which the 10 ms grid would not.
+    The request is cut off below zero, delayed and filtered by G_a(s). G_a is strictly proper, so
+    the torque is continuous; its 11 nodes over a period resolve modes up to 206 rad/s, which the
+    10 ms grid would not.
     """
 
-    def __init__(self, initial_request: float = 0.0) -> None:
+    def __init__(
+        self, initial_request: float = 0.0, parameters: ActuatorParameters | None = None
+    ) -> None:
         """Start at rest on `initial_request` in N m, delay line included."""
-        model = ACTUATOR.to_state_space()
-        transition, held_input, outputs, feedthrough = lift_zoh_dense(model, PERIOD_S, SUBSTEPS)
-        self._state_update = np.hstack([transition, held_input])
-        self._nodes = np.hstack([outputs, feedthrough])
+        parameters = parameters or ActuatorParameters()
+        model = parameters.dynamics()
+        periods, late = divmod(parameters.delay_substeps, SUBSTEPS)
+        self._inputs = 2 if late else 1
+        """Requests in effect within one period: a delay of 13 ms changes them after 3 ms."""
+        self._state_update, self._nodes = lifted(model, late)
         delayed = max(initial_request, 0.0)
         at_rest = np.linalg.solve(model.a, -model.b[:, 0] * delayed)
-        self._state_and_delayed = np.array([*at_rest, delayed])
+        self._state_and_delayed = np.array([*at_rest, *[delayed] * self._inputs])
+        self._waiting = deque([delayed] * (periods + self._inputs - 1))
 
     def update(self, request: float) -> list[float]:
         """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and take the next request in."""
-        values = self._state_and_delayed
+        values, waiting = self._state_and_delayed, self._waiting
+        waiting.append(max(request, 0.0))
+        values[-1] = waiting[self._inputs - 1]
+        values[-self._inputs] = waiting.popleft()
         nodes = (self._nodes @ values).tolist()
-        values[:-1] = self._state_update @ values
-        values[-1] = max(request, 0.0)
+        values[: -self._inputs] = self._state_update @ values
         return nodes
+
+
+def lifted(model: StateSpace, late: int) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return what gives state and torque of a period from its state and the requests in effect.
+
+    `late` is after how many ms, 0 to 9, the later of two requests takes effect; 0: there is one.
+    The first result is (n, n + inputs), the second (11, n + inputs), in the order state, earlier,
+    later request.
+    """
+    transition, held, outputs, feedthrough = _over(model, SUBSTEPS - late)
+    if not late:
+        return np.hstack([transition, held]), np.hstack([outputs, feedthrough])
+    first_transition, first_held, first_outputs, first_feedthrough = _over(model, late)
+    begun = np.hstack([first_transition, first_held, np.zeros_like(first_held)])
+    state_update = transition @ begun
+    state_update[:, -1:] += held
+    before = np.hstack([first_outputs, first_feedthrough, np.zeros_like(first_feedthrough)])
+    after = outputs @ begun
+    after[:, -1:] += feedthrough
+    return state_update, np.vstack([before[:-1], after])
+
+
+def _over(model: StateSpace, substeps: int) -> tuple[np.ndarray, ...]:
+    return lift_zoh_dense(model, substeps * SUBSTEP_S, substeps)

@@ -12,6 +12,7 @@ from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_ti
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_actuator
 
 REQUEST = TORQUE_REQUEST.name
 
@@ -34,7 +35,9 @@ class ActuatorNode(FollowerNode):
         fail_safe = FailSafeSettings(
             declare_request_timeout(self, 'the clutch opens'), declare_fail_safe_ramp(self)
         )
-        self._actuator = GuardedActuator(initial_state(self.settings).torque_request, fail_safe)
+        initial = initial_state(self.settings)
+        actuator = make_actuator(self.settings, initial)
+        self._actuator = GuardedActuator(actuator, initial.torque_request, fail_safe)
         self._torque = Output(self, ACTUATOR_TORQUE)
         self._requests_without_clock = 0
         self.publish_run_info(fail_safe.info())

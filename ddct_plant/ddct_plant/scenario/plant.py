@@ -4,6 +4,7 @@ import math
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
+from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import STICK_SLIP, LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
 from ddct_plant.models.driveline import Driveline, InitialState
@@ -85,6 +86,11 @@ def cut_speed(scenario: Scenario) -> float:
     """Return w_m in rad/s from which the rev limiter cuts the fuel, infinite without one."""
     limits = scenario.engine_limits
     return limits.cut_rad_s if limits else math.inf
+
+
+def make_actuator(settings: RunSettings, initial: InitialState) -> Actuator:
+    """Return the actuator of the plant, at rest on the run's first request."""
+    return Actuator(initial.torque_request, settings.scenario.actuator)
 
 
 def linear_clutch(settings: RunSettings) -> LinearClutch:

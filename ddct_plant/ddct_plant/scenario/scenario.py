@@ -9,6 +9,7 @@ from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import ASSUMED, REQUIRED, Option, OptionGroup, option
 from ddct_plant.base.timebase import steps_in
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.driveline import LOCKED, PHASES, SLIPPING
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
@@ -186,6 +187,7 @@ class Scenario(OptionGroup):
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
+    actuator: ActuatorParameters = _left_out(ActuatorParameters())
     friction: FrictionParameters = _section(FrictionParameters())
     heat: HeatParameters = _section(HeatParameters())
     brake: BrakeProfile = _section(BrakeProfile())

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.plant import (
     end_cause,
     holding_torque,
     linear_clutch,
+    make_actuator,
     make_driveline,
     make_engine,
     make_load,
@@ -90,7 +90,7 @@ class WholePlant:
         self.driveline = make_driveline(settings, initial)
         self._engine = make_engine(settings)
         self._load = make_load(settings)
-        self.actuator: TorqueActuator = Actuator(initial.torque_request)
+        self.actuator: TorqueActuator = make_actuator(settings, initial)
         self._friction = StickSlip(settings) if settings.stick_slip else Linear(settings)
 
     def look(self, step: int) -> PlantSight:

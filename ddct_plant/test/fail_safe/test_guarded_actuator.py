@@ -11,7 +11,7 @@ RAMP_PER_STEP = 10.0
 
 
 def guarded(initial: float = 200.0) -> GuardedActuator:
-    return GuardedActuator(initial, FailSafeSettings(0.05, 1000.0))
+    return GuardedActuator(Actuator(initial), initial, FailSafeSettings(0.05, 1000.0))
 
 
 def bare(requests: list[float], initial: float = 200.0) -> list[list[float]]:

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.engine import Engine, TorqueProfile
 from ddct_plant.models.load import LoadParameters, RoadLoad
@@ -73,24 +73,28 @@ def test_actuator_at_rest_stays_at_rest():
         assert actuator.update(100.0) == pytest.approx([at_rest] * 11, rel=1e-12)
 
 
-def integrated(held_n_m):
-    """Return G_a's torque at every 1 ms node, (n, 11), by a tight-tolerance integration."""
-    model = ACTUATOR.to_state_space()
-    state, nodes = np.zeros(len(model.a)), []
-    for held in held_n_m:
+def integrated(held_n_m, delay_ms=0, factor=1.0):
+    """
+    Return the torque of G_a(s / factor) at every 1 ms node, (n, 11), by a tight integration.
+
+    Each value is held for 10 ms, the first from `delay_ms` on.
+    """
+    printed = ACTUATOR.to_state_space()
+    a, b = factor * printed.a, factor * printed.b[:, 0]
+    state, torques = np.zeros(len(a)), [0.0]
+    for held in [*[0.0] * delay_ms, *np.repeat(held_n_m, 10)][: 10 * len(held_n_m)]:
         solution = solve_ivp(
-            lambda _, x, held=held: model.a @ x + model.b[:, 0] * held,
-            (0.0, 0.01),
+            lambda _, x, held=held: a @ x + b * held,
+            (0.0, 0.001),
             state,
             method='DOP853',
-            t_eval=np.linspace(0.0, 0.01, 11),
             rtol=1e-12,
             atol=1e-9,
             max_step=2e-4,
         )
-        nodes.append(model.c[0] @ solution.y)
         state = solution.y[:, -1]
-    return np.array(nodes)
+        torques.append(printed.c[0] @ state)
+    return np.array([torques[first : first + 11] for first in range(0, len(torques) - 1, 10)])
 
 
 def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_function():
@@ -98,6 +102,25 @@ def test_actuator_delays_by_one_period_and_filters_by_the_printed_transfer_funct
     actuator = Actuator(0.0)
     nodes = np.array([actuator.update(request) for request in requests])
     assert np.abs(nodes - integrated([0.0, *requests[:-1]])).max() < 1e-8 * max(requests)
+
+
+@pytest.mark.parametrize(
+    ('delay_s', 'factor'), [(0.0, 1.0), (0.003, 1.0), (0.013, 0.5), (0.029, 2.0), (0.04, 1.0)]
+)
+def test_another_delay_and_bandwidth_are_exact_too(delay_s, factor):
+    requests = [120.0, 40.0, 0.0, 300.0, 310.0, 90.0]
+    actuator = Actuator(0.0, ActuatorParameters(delay_s, factor))
+    nodes = np.array([actuator.update(request) for request in requests])
+    expected = integrated(requests, round(1000 * delay_s), factor)
+    assert np.abs(nodes - expected).max() < 1e-8 * max(requests)
+    assert Actuator(80.0, ActuatorParameters(delay_s, factor)).update(0.0)[0] == pytest.approx(
+        80.0, rel=2e-5
+    )
+
+
+def test_a_delay_between_milliseconds_is_refused():
+    with pytest.raises(ParameterError, match=r'actuator.delay_s is 0.0125 s: give a multiple'):
+        ActuatorParameters(delay_s=0.0125)
 
 
 def test_actuator_saturates_before_its_dynamics():
