@@ -1,4 +1,4 @@
-# Set-up, demo and checks on the ROS 2 wheels; docs/setup.md also has the way with apt's ROS 2.
+# Set-up, demo and checks on the ROS 2 wheels; docs/use/setup.md also has the way with apt's ROS 2.
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
@@ -29,7 +29,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | bench | clean   (see docs/setup.md)'
+	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | bench | clean   (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 

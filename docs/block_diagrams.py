@@ -1,5 +1,5 @@
 """
-The diagrams of docs/plant.md: the thesis's Figures 1.9 to 1.26 in our names.
+The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 in our names.
 
 `python docs/block_diagrams.py` draws them.
 """

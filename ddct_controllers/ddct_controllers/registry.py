@@ -153,7 +153,7 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
     if '.' in name or '/' in name:
         raise ParameterError(
             f'{name} is no controller file: give a YAML file; for an FMU or a library in C, one '
-            'that names it (docs/fmu_controller.md, docs/c_controller.md)'
+            'that names it (docs/controllers/fmu_controller.md, docs/controllers/c_controller.md)'
         )
     choices = ', '.join(controller_names())
     raise ParameterError(

@@ -21,7 +21,7 @@ def install_example(site: Path) -> None:
     code = next(
         block.text
         for block in blocks()
-        if block.page == 'docs/writing_a_controller.md' and block.language == 'python'
+        if block.page == 'docs/controllers/writing_a_controller.md' and block.language == 'python'
     )
     package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
     for folder in (package, record):

@@ -30,12 +30,17 @@ def test_commands_say_where_their_program_is():
 
 def test_there_are_commands_to_run():
     assert len(SHELL_BLOCKS) > 15
-    assert {block.page for block in SHELL_BLOCKS} >= {'README.md', 'docs/mpc.md'}
+    assert {block.page for block in SHELL_BLOCKS} >= {'README.md', 'docs/controllers/mpc.md'}
 
 
 @pytest.mark.parametrize(
     'page',
-    ['README.md', 'docs/python.md', 'docs/writing_a_controller.md', 'docs/controller_files.md'],
+    [
+        'README.md',
+        'docs/use/python.md',
+        'docs/controllers/writing_a_controller.md',
+        'docs/controllers/controller_files.md',
+    ],
 )
 def test_python_examples_run(page, tmp_path):
     """One after the other, as one reads them."""
@@ -53,7 +58,7 @@ def test_python_examples_run(page, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize('page', PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_to_files(page):
     assert [str(target) for target in links(page) if not target.exists()] == []
 

@@ -1,4 +1,4 @@
-"""Rows of docs/engagements.md are what the runs give; the page has all rows and all charts."""
+"""Rows of docs/use/engagements.md are what the runs give; the page has all rows and all charts."""
 
 import re
 from pathlib import Path
@@ -11,8 +11,8 @@ from ddct_bringup.reproduction.studies.table_5_2 import rows_of
 from ddct_controllers.registry import controller_names
 
 DOCS = Path(__file__).resolve().parents[2] / 'docs'
-PAGE = (DOCS / 'engagements.md').read_text(encoding='utf-8')
-MAKE = 'run: reproduce studies --write-doc docs/engagements.md --charts docs/images'
+PAGE = (DOCS / 'use' / 'engagements.md').read_text(encoding='utf-8')
+MAKE = 'run: reproduce studies --write-doc docs/use/engagements.md --charts docs/images'
 SAMPLE = {
     'engagements_thesis_linear': ('thesis', 'linear', 1.3, 'ls8'),
     'engagements_thesis_stick_slip': ('thesis', 'stick_slip', 0.7, 'mpc3'),
@@ -54,5 +54,5 @@ def test_rows_of_table_5_2_are_what_the_runs_give(clutch):
 
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
 def test_a_small_chart_stands_beside_each_table(study):
-    assert f'](images/{study}.png)' in PAGE
+    assert f'](../images/{study}.png)' in PAGE
     assert (DOCS / 'images' / f'{study}.png').stat().st_size < LARGEST_CHART_BYTES

@@ -1,4 +1,4 @@
-"""The table of docs/launches.md is what the packaged scenarios give."""
+"""The table of docs/use/launches.md is what the packaged scenarios give."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'launches.md'
+PAGE = Path(__file__).resolve().parents[2] / 'docs' / 'use' / 'launches.md'
 SCENARIOS = ('launch', 'launch_hill', 'launch_gentle', 'launch_hot', 'tip_in')
 CONTROLLERS = ('ls8', 'hinf1', 'hinf_sampled')
 

@@ -1,12 +1,12 @@
 """The tables of options in the pages are what the code declares."""
 
 import pytest
-from support.documented import PAGES
+from support.documented import PAGES, ROOT
 from support.option_tables import MARK, TABLES, filled
 
 from ddct_plant.program.page_tables import marked_tables
 
-TEXTS = {page.name: page.read_text(encoding='utf-8') for page in PAGES}
+TEXTS = {str(page.relative_to(ROOT)): page.read_text(encoding='utf-8') for page in PAGES}
 
 
 @pytest.mark.parametrize(

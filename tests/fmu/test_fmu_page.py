@@ -14,7 +14,7 @@ from ddct_bringup.programs import compare
 from ddct_controllers.from_file.fmu import AHEAD, CLUTCH, ENGINE, SCALARS
 from ddct_controllers.from_file.kinds import load_spec
 
-PAGE = 'docs/fmu_controller.md'
+PAGE = 'docs/controllers/fmu_controller.md'
 BLOCKS = [block for block in blocks() if block.page == PAGE]
 LINES = [line for block in BLOCKS for line in block.lines]
 PYTHON = '.venv/bin/python '

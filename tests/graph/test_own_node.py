@@ -15,7 +15,7 @@ from ddct_plant.graph.topics import all_signals
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-PAGE = 'docs/own_node.md'
+PAGE = 'docs/develop/own_node.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
 MOST_LINES = 40
 """Of code, as the page says."""

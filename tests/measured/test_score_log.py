@@ -121,7 +121,7 @@ def test_what_lies_beside_a_log_is_not_its_own(folder: Path) -> None:
 
 
 def test_the_page_lists_the_quantities_with_their_units() -> None:
-    page = (ROOT / 'docs' / 'own_car.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'use' / 'own_car.md').read_text(encoding='utf-8')
     rows = re.findall(r'^\| `(\w+)` \| ([^|]+) \|', page, re.MULTILINE)
     assert [name for name, _ in rows] == list(QUANTITIES)
     for name, units in rows:

@@ -116,7 +116,7 @@ def test_setup_py_requires_exactly_what_is_imported_from_pypi(package: str) -> N
 
 
 def test_the_page_on_apt_names_what_rosdep_cannot_install() -> None:
-    page = (ROOT / 'docs' / 'setup.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'use' / 'setup.md').read_text(encoding='utf-8')
     told = set(re.findall(r'`([a-z0-9-]+)`', page.partition('## With apt')[2]))
     modules = {module for package in PACKAGES for module in imported(package)}
     assert {name for module in modules for name in without_key(module)} <= told

@@ -66,7 +66,7 @@ def test_no_room_imports_in_a_circle(package: str) -> None:
 
 @pytest.mark.parametrize('package', ['ddct_plant', 'ddct_bringup'])
 def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> None:
-    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'develop' / 'architecture.md').read_text(encoding='utf-8')
     section = page.partition(f'## The rooms of `{package}`')[2].partition('\n## ')[0]
     rows = re.findall(r'^\| `(\w+)/` \|', section, re.MULTILINE)
     folders = (ROOT / package / package).glob('*/__init__.py')
@@ -76,7 +76,7 @@ def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> 
 
 
 def test_the_steps_from_a_program_to_the_model_are_there() -> None:
-    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'develop' / 'architecture.md').read_text(encoding='utf-8')
     section = page.partition('## From a program to the model')[2].partition('\n## ')[0]
     steps = re.findall(r'^\| \d+ \| `([\w/]+\.py)`(?:: (.*?))? \|', section, re.MULTILINE)
     assert len(steps) >= 18

@@ -19,7 +19,7 @@ NAMES = {
     topics.TICKS_STATUS,
     topics.SAFE_STATE,
 }
-PAGE = (ROOT / 'docs' / 'interfaces.md').read_text(encoding='utf-8')
+PAGE = (ROOT / 'docs' / 'develop' / 'interfaces.md').read_text(encoding='utf-8')
 
 
 def product_files() -> Iterator[Path]:

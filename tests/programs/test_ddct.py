@@ -98,7 +98,7 @@ def test_a_node_without_ros_says_what_is_missing_and_where_to_read_on(
     assert ddct.main(['extra']) == 1
     assert capsys.readouterr().err == (
         'ddct: the graph and its nodes need ROS 2, and its package rclpy is not installed: '
-        'run headless, or set ROS up as docs/setup.md tells\n'
+        'run headless, or set ROS up as docs/use/setup.md tells\n'
     )
 
 

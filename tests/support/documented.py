@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md')))
+PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
 _FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
 _LINK = re.compile(r'\[[^\]]*\]\(([^)#\s]+)[^)]*\)')

@@ -88,7 +88,7 @@ TABLES = {
 
 def main() -> None:
     """Write the tables into the pages."""
-    for path in DOCS.glob('*.md'):
+    for path in DOCS.glob('*/*.md'):
         page = path.read_text(encoding='utf-8')
         path.write_text(filled(page), encoding='utf-8')
 

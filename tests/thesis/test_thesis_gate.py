@@ -27,7 +27,7 @@ from ddct_plant.program.page_tables import fill_tables
 pytestmark = pytest.mark.slow
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PAGE = REPOSITORY / 'docs' / 'thesis_gate.md'
+PAGE = REPOSITORY / 'docs' / 'thesis' / 'thesis_gate.md'
 NUMBERS = thesis_numbers()
 
 
@@ -98,7 +98,7 @@ def test_readme_and_overview_quote_the_distinct_facts(rows: tuple[GateRow, ...])
         f'{facts["calibrated hit"] + facts["calibrated miss"]} fits and {predicted[0]} of '
         f'{sum(predicted)} predictions within their tolerance'
     )
-    for page in (REPOSITORY / 'README.md', REPOSITORY / 'docs' / 'reproducing.md'):
+    for page in (REPOSITORY / 'README.md', REPOSITORY / 'docs' / 'thesis' / 'reproducing.md'):
         text = ' '.join(page.read_text(encoding='utf-8').split())
         assert quote in text, f'{page.name} must say: {quote}'
 

@@ -1,5 +1,5 @@
 """
-The stable interface for scripts and notebooks: run, judge, tabulate and draw; docs/python.md.
+The stable interface for scripts and notebooks: run, judge, tabulate and draw; docs/use/python.md.
 
     from ddct_bringup.api import run
     print(run('pi', wear_gain=0.7).metrics['engagement_time_s'])

@@ -94,7 +94,7 @@ class Run:
 
     @property
     def verdict(self) -> dict[str, Any]:
-        """`state`, `limits` and `criteria`, as docs/verdict.md tells."""
+        """`state`, `limits` and `criteria`, as docs/use/verdict.md tells."""
         return self.entry['verdict']
 
     @property

@@ -63,7 +63,7 @@ SHOWN = {
     'C_f_clutch': (RUN.clutch_torque[:, 0], 'N m'),
     'C_m': (RUN.engine_torque, 'N m'),
 }
-"""The values by chart, as docs/interfaces.md names the signals."""
+"""The values by chart, as docs/develop/interfaces.md names the signals."""
 
 
 @pytest.fixture(scope='module')

@@ -1,4 +1,4 @@
-"""What docs/mpc4.md claims of clutch and engine together holds in the thesis's scenario."""
+"""What docs/controllers/mpc4.md claims of clutch and engine together holds in its scenario."""
 
 import math
 from typing import Any

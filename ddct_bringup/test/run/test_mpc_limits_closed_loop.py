@@ -15,7 +15,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'mpc.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'mpc.md'
 START = load_scenario('thesis').control_start_step
 AS_DRAWN = ('mpc1', 'mpc2', 'mpc3')
 TOLD_ALL = ('measured=speeds', 'load_known=true', 'delay_in_model=true', 'preview=true')

@@ -1,4 +1,4 @@
-"""The page docs/verdict.md says what the code and the packaged limits say."""
+"""The page docs/use/verdict.md says what the code and the packaged limits say."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,9 @@ from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_bringup.verdict.state import STATES
 
-PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'verdict.md').read_text(encoding='utf-8')
+PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict.md').read_text(
+    encoding='utf-8'
+)
 
 
 def rows(heading):

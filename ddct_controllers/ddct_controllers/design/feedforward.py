@@ -14,7 +14,7 @@ from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 
 TORQUE_RATE_WEIGHT = 0.03
-"""rho in rad/s per N m/s: the price of torque beyond the static law; docs/feedforward.md tells."""
+"""rho, rad/s per N m/s: price of torque beyond the static law; docs/controllers/feedforward.md."""
 
 _ENGINE, _CLUTCH, _LOAD = range(3)
 

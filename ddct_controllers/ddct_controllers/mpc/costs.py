@@ -39,11 +39,11 @@ PREDICTION_STEPS = 7
 SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
 """Of w_d per rad/s and of dw_d/dt per rad/s^2: roots, as (4.1) does not square Q = (1, 0.05)."""
 DEMAND_WEIGHT = 0.14
-"""Per N m that C_m is away from the demand; docs/mpc4.md has the argument."""
+"""Per N m that C_m is away from the demand; docs/controllers/mpc4.md has the argument."""
 
 
 def thesis_settings(row: TableRow, *, preview: bool = False) -> MpcSettings:
-    """Return what the row means; docs/mpc.md gives the other readings of Q and R."""
+    """Return what the row means; docs/controllers/mpc.md gives the other readings of Q and R."""
     per_rad_s, final_per_rad_s = map(rpm_from_rad_s, (row.output_weight, row.final_weight))
     return MpcSettings(
         prediction_steps=row.prediction_steps,

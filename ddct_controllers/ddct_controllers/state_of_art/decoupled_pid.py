@@ -21,7 +21,7 @@ OPTIONS = {
         10.0, 'of the loop of the slip', 'rad/s', at_least=5.0, at_most=20.0
     ),
 }
-"""Tested to be stable at wear gains from 0.7 to 1.3; docs/state_of_art.md has the argument."""
+"""Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md says why."""
 
 
 class DecoupledPid(Controller):

@@ -27,7 +27,7 @@ OPTIONS = {
         30.0, 'of the estimator of the clutch torque', 'rad/s', at_least=10.0, at_most=60.0
     ),
 }
-"""Tested to be stable at wear gains from 0.7 to 1.3; docs/state_of_art.md has the argument."""
+"""Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md says why."""
 
 
 class ClutchTorqueEstimator:

@@ -122,7 +122,7 @@ def _tell(options: argparse.Namespace, name: str, missing: str) -> None:
 
 
 def page_tables() -> dict[str, Any]:
-    """Return the tables of docs/h_infinity.md: our three designs beside the printed ones."""
+    """Return the tables of docs/controllers/h_infinity.md: our designs beside the printed ones."""
     corners = PlantCorners()
     records = [
         design_record(name, recipe, _DEFAULTS, synthesised_design(name), corners)

@@ -15,7 +15,7 @@ from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 _DESCRIPTION = """\
 Write a predictive controller, with its observer and solver, as self-contained C99 for a
-control unit (docs/control_unit.md). Studies of these controllers: reproduce studies."""
+control unit: docs/controllers/control_unit.md. Studies of these controllers: reproduce studies."""
 _EPILOG = """\
 examples:
   ddct design mpc --export control_unit

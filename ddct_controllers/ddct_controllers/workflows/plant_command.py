@@ -22,7 +22,7 @@ from ddct_plant.scenario.options import add_scenario_options, scenario_of
 _DESCRIPTION = """\
 The linear plant of a scenario, with its numbers: parameters, A, B, C, D, the transfer functions
 P_1, P_2, P_3 to slip speed and G_a of the actuator, its delay, and C_fOL. SI units; the clutch
-slips, and no torque is limited. docs/plant.md explains the symbols and signs."""
+slips, and no torque is limited. docs/thesis/plant.md explains the symbols and signs."""
 _EXAMPLES = """\
 examples:
   ddct design plant

@@ -16,7 +16,7 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 
-PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'feedforward.md'
+PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'controllers' / 'feedforward.md'
 DRIVELINE = load_scenario('thesis').driveline
 NEARLY_EXACT = 1e-4
 FILTER = design_feedforward(DRIVELINE)

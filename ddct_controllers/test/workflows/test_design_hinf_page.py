@@ -1,4 +1,4 @@
-"""The page docs/h_infinity.md says what the program computes."""
+"""The page docs/controllers/h_infinity.md says what the program computes."""
 
 import re
 from pathlib import Path
@@ -13,7 +13,7 @@ from ddct_plant.program.page_tables import fill_tables
 
 pytestmark = pytest.mark.slow
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'h_infinity.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'h_infinity.md'
 NOT_TO_THE_DIGIT = {'cleaning', 'controllers'}
 """Where the fast pole at the optimum is, and how double roots split, is up to rounding."""
 BLOCK = re.compile(r'<!-- h-infinity: (\w+) -->\n.*?<!-- end -->', re.DOTALL)
@@ -24,7 +24,7 @@ def blocks(page: str) -> dict[str, str]:
 
 
 def test_its_tables_are_those_of_the_program():
-    """After a change: design h-infinity --write-doc docs/h_infinity.md."""
+    """After a change: design h-infinity --write-doc docs/controllers/h_infinity.md."""
     page = PAGE.read_text(encoding='utf-8')
     written, computed = blocks(page), blocks(fill_tables(page, 'h-infinity', page_tables()))
     for name in written.keys() - NOT_TO_THE_DIGIT:

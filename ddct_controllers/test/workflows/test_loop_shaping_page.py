@@ -1,4 +1,4 @@
-"""The page docs/loop_shaping.md says what the program computes."""
+"""The page docs/controllers/loop_shaping.md says what the program computes."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.program.page_tables import fill_tables
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'loop_shaping.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'loop_shaping.md'
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def page() -> str:
 
 
 def test_its_tables_are_those_of_the_program(page):
-    """After a change: design loop-shaping --write-doc docs/loop_shaping.md."""
+    """After a change: design loop-shaping --write-doc docs/controllers/loop_shaping.md."""
     assert fill_tables(page, 'loop-shaping', thesis_tables(thesis_record())) == page
 
 

@@ -17,7 +17,7 @@ from ddct_plant.program.command_line import run_program
 pytestmark = pytest.mark.slow
 
 ZERO, ONE = np.zeros((1, 1)), np.eye(1)
-PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'frequency_evidence.md'
+PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'thesis' / 'frequency_evidence.md'
 
 
 def run(*arguments: str) -> int:

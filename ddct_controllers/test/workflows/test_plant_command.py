@@ -17,7 +17,7 @@ from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.program.page_tables import marked_tables
 from ddct_plant.scenario.file import load_scenario
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'plant.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'thesis' / 'plant.md'
 STIFFER = ['driveline.halfshaft_stiffness=8000']
 
 

@@ -14,7 +14,7 @@ def require_ros() -> None:
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '
-            'headless, or set ROS up as docs/setup.md tells'
+            'headless, or set ROS up as docs/use/setup.md tells'
         )
 
 

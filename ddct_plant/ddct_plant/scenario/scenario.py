@@ -128,7 +128,7 @@ class ReferenceParameters(OptionGroup, prefix='reference.'):
 
 @dataclass(frozen=True)
 class Scenario(OptionGroup):
-    """One driving situation and how it is scored; see docs/scenario.md for every key."""
+    """One driving situation and how it is scored; see docs/use/scenario.md for every key."""
 
     name: str = option(
         REQUIRED,

@@ -1,7 +1,7 @@
 """
 The kept admissible scenarios: centres and rims of the region, with other assumptions too.
 
-They are chosen by the nine fitted figures; docs/predictions.md states the choice.
+They are chosen by the nine fitted figures; docs/thesis/predictions.md states the choice.
 """
 
 import dataclasses
@@ -68,7 +68,7 @@ def write_members(scenarios: list[Scenario], folder: Path) -> None:
         head = (
             f'# An admissible scenario: {what[0].lower()}{what[1:]}.',
             '# Written by `ddct reproduce calibration --ensemble DIR`;'
-            ' docs/predictions.md tells how.',
+            ' docs/thesis/predictions.md tells how.',
         )
         write_text(str(folder / f'{scenario.name}.yaml'), annotated_yaml(scenario, head))
 

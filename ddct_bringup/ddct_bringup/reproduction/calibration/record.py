@@ -34,9 +34,9 @@ MOVES = ('torque_rise_n_m', *NAMES[2:])
 """What a refit is compared in: C_m end less C_m start, as the two alone are not determined."""
 _SCENARIO_HEAD = (
     '# The slip phase behind Table 5.1 of the thesis, which does not print it.',
-    '# Written by `ddct reproduce calibration --write FILE`; docs/calibration.md tells how.',
+    '# Written by `ddct reproduce calibration --write FILE`: docs/thesis/calibration.md.',
     '# fitted: to the LS8, Hinf1 and PI rows of Table 5.1; what they show is a fit residual.',
-    '# assumed: chosen by us; docs/calibration.md shows fits with other choices.',
+    '# assumed: chosen by us; docs/thesis/calibration.md shows fits with other choices.',
 )
 
 

@@ -45,7 +45,7 @@ _EXAMPLES = """\
 examples:
   ddct reproduce figures --out figures
   ddct reproduce figures --out figures --only 2.10,3.5 --overwrite
-  ddct reproduce figures --out figures --overwrite --write-doc docs/figures.md"""
+  ddct reproduce figures --out figures --overwrite --write-doc docs/thesis/figures.md"""
 _PAGE = 'index.html'
 
 
@@ -109,7 +109,7 @@ def figures_not_drawn() -> dict[str, str]:
 def page_tables(
     drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]
 ) -> dict[str, Table]:
-    """Return the tables of docs/figures.md by name; `drawn` has a remark by figure."""
+    """Return the tables of docs/thesis/figures.md by name; `drawn` has a remark by figure."""
     shared: dict[str, list[str]] = {}
     for number, reason in not_drawn.items():
         shared.setdefault(reason, []).append(number)

@@ -42,7 +42,7 @@ examples:
   ddct reproduce numbers
   ddct reproduce numbers --json numbers.json
   ddct reproduce numbers --json -                  as JSON on standard output, alone
-  ddct reproduce numbers --write-doc docs/thesis_gate.md
+  ddct reproduce numbers --write-doc docs/thesis/thesis_gate.md
 
 The exit code is 0 when every claim holds: what is called reproduced is within its
 tolerance, what is called calibrated is too or is listed as a miss, and every erratum

@@ -59,8 +59,8 @@ examples:
   ddct reproduce studies                                every study
   ddct reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
   ddct reproduce studies --study wear --json wear.json
-  ddct reproduce studies --write-doc docs/mpc.md        fill in the tables that the page marks
-  ddct reproduce studies --write-doc docs/engagements.md --charts docs/images"""
+  ddct reproduce studies --write-doc docs/controllers/mpc.md   fill in its tables
+  ddct reproduce studies --write-doc docs/use/engagements.md --charts docs/images"""
 
 
 def add_parser(subparsers: Any) -> None:

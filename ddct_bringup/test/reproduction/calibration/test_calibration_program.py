@@ -14,7 +14,7 @@ from ddct_plant.scenario.scenario import ReferenceParameters
 pytestmark = pytest.mark.slow
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
-RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
+RECORD = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_json_on_standard_output_stands_alone(calibrated, capsys):
 
 def test_outputs_are_the_kept_files(calibrated, capsys, tmp_path):
     page = tmp_path / 'page.md'
-    kept = (DOCS / 'calibration.md').read_text(encoding='utf-8')
+    kept = (DOCS / 'thesis' / 'calibration.md').read_text(encoding='utf-8')
     page.write_text(kept.replace('0.524', '0.999'), encoding='utf-8')
     scenario = tmp_path / 'thesis.yaml'
     assert reproduce.main(['calibration', '--write', str(scenario), '--write-doc', str(page)]) == 0

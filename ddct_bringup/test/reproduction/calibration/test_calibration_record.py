@@ -21,8 +21,8 @@ from ddct_plant.program.page_tables import fill_tables
 from ddct_plant.scenario.file import load_scenario
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
-RECORD = json.loads((DOCS / 'calibration.json').read_text(encoding='utf-8'))
-PAGE = (DOCS / 'calibration.md').read_text(encoding='utf-8')
+RECORD = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
+PAGE = (DOCS / 'thesis' / 'calibration.md').read_text(encoding='utf-8')
 SCENARIO = load_scenario('thesis')
 
 

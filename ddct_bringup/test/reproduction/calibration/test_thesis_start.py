@@ -1,4 +1,4 @@
-"""What docs/calibration.md says of the start of the thesis's scenario."""
+"""What docs/thesis/calibration.md says of the start of the thesis's scenario."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
-PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'calibration.md'
+PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'calibration.md'
 SETTINGS = RunSettings(load_scenario('thesis'))
 
 

@@ -1,4 +1,4 @@
-"""docs/feedforward.md says what the code computes, to the last printed digit."""
+"""docs/controllers/feedforward.md says what the code computes, to the last printed digit."""
 
 import re
 from pathlib import Path
@@ -20,7 +20,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'feedforward.md'
+PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'controllers' / 'feedforward.md'
 SCENARIO = load_scenario('thesis')
 DRIVELINE = SCENARIO.driveline
 NEARLY_EXACT = 1e-4

@@ -1,4 +1,4 @@
-"""The tables of docs/predictions.md are those of the studies, and bear out what the page says."""
+"""The tables of docs/thesis/predictions.md are those of the studies and bear out its text."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from ddct_plant.program.page_tables import fill_tables
 
 pytestmark = pytest.mark.slow
 
-PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'predictions.md'
+PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'predictions.md'
 
 
 @pytest.fixture(scope='module')
@@ -30,7 +30,7 @@ def figures(cell: str) -> list[float | None]:
 
 
 def test_page_has_the_tables_of_the_studies(studies):
-    """After a change: reproduce studies --write-doc docs/predictions.md."""
+    """After a change: reproduce studies --write-doc docs/thesis/predictions.md."""
     page = PAGE.read_text(encoding='utf-8')
     assert fill_tables(page, 'studies', studies) == page
 

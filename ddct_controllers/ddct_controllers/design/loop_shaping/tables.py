@@ -30,7 +30,7 @@ _TRANSLATED = (
 
 
 def thesis_tables(record: Record) -> dict[str, Table]:
-    """Return the tables of `thesis_record` by the names that docs/loop_shaping.md has."""
+    """Return the tables of `thesis_record` by their names in docs/controllers/loop_shaping.md."""
     return {
         'specifications': _specification_table(),
         'network_steps': Table(

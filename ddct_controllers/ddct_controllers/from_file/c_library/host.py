@@ -32,7 +32,7 @@ MOST_BYTES = 1 << 16
 MOST_PREVIEW_STEPS = 1000
 MOST_SECONDS = 10
 """Of a call: the alarm then ends the process."""
-_EXAMPLE = 'start from the template in docs/c_controller.md'
+_EXAMPLE = 'start from the template in docs/controllers/c_controller.md'
 
 
 def measurement_layout(preview_steps: int) -> struct.Struct:

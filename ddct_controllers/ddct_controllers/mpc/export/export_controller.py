@@ -37,9 +37,10 @@ def export_controller(
     """
     Write `controller`, which `settings` built, into `folder`, with what calls it.
 
-    Return the paths; docs/control_unit.md says what they are. Raise ParameterError when the C
-    cannot do what the controller does, DdctError when the folder holds anything (with `overwrite`:
-    a file in the way that is not such an export) or cannot be written.
+    Return the paths; docs/controllers/control_unit.md says what they are. Raise
+    ParameterError when the C cannot do what the controller does, DdctError when the folder holds
+    anything (with `overwrite`: a file in the way that is not such an export) or cannot be
+    written.
     """
     predictive, observer = exportable(controller, name)
     _require_free(folder, overwrite=overwrite)

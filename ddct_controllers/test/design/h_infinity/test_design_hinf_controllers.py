@@ -156,7 +156,7 @@ def test_no_gain_of_hinf1_has_the_printed_norm_of_w_t_t():
         method='bounded',
     ).fun
     assert least == pytest.approx(1.041, abs=5e-4)
-    for page in ('h_infinity.md', 'thesis_gate.md'):
+    for page in ('controllers/h_infinity.md', 'thesis/thesis_gate.md'):
         text = (Path(__file__).parents[4] / 'docs' / page).read_text(encoding='utf-8')
         assert f'at least {least:.3f}' in text
 
