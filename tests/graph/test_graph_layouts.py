@@ -11,9 +11,9 @@ from support.runs import LAYOUTS, bag_bytes, expected, plan, record
     ('controller', 'wear_gain', 'changes', 'layouts'),
     [
         ('ls8', 1.0, (), (*LAYOUTS, 'processes')),
-        ('pi', 0.7, ('load.slope_rad=0.05',), LAYOUTS),
+        ('pi', 0.7, ('load.slope_rad=0.05', 'actuator.delay_s=0.013'), LAYOUTS),
     ],
-    ids=['repeated', 'worn clutch uphill'],
+    ids=['repeated', 'worn clutch, later actuator, uphill'],
 )
 def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
     tmp_path: Path,
