@@ -58,7 +58,7 @@ class Trajectory:
     @property
     def steps(self) -> int:
         """N, the number of periods integrated."""
-        return len(self.slip_speed) - 1
+        return self.slip_speed.shape[-1] - 1
 
     @property
     def time_s(self) -> np.ndarray:

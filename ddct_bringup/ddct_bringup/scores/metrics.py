@@ -86,19 +86,8 @@ def compute_metrics(
 ) -> Metrics:
     """Compute every metric; times are scenario times in s, multiples of 10 ms."""
     start = steps_in('control_start_s', control_start_s)
-    first, last = (steps_in('score_window_s', time) for time in score_window_s)
-    slip = trajectory.slip_speed
-    with np.errstate(all='ignore'):  # what is not finite becomes None
-        engagement_time, lockup_slope = _first_sign_change(slip, start)
-        values = {
-            'engagement_time_s': engagement_time,
-            'lockup_slip_acceleration_rad_s2': lockup_slope,
-            'slip_final_rpm': rpm_from_rad_s(slip[-1]),
-            'friction_energy_j': _friction_energy(trajectory),
-            'torque_total_variation_n_m': np.sum(np.abs(np.diff(trajectory.torque_request))),
-            **_window_metrics(trajectory, first, last),
-            **_update_times(timing),
-        }
+    window = tuple(steps_in('score_window_s', time) for time in score_window_s)
+    values = {**metric_values(trajectory, start, window), **_update_times(timing)}
     return Metrics(
         **{name: finite(value) for name, value in values.items()},
         steps=trajectory.steps,
@@ -108,45 +97,75 @@ def compute_metrics(
     )
 
 
-def _first_sign_change(slip: np.ndarray, start: int) -> tuple[float | None, float | None]:
+def metric_values(
+    trajectory: Trajectory, start: int, window: tuple[int, ...]
+) -> dict[str, np.ndarray]:
+    """
+    Return every metric of the trajectory itself by name, (...), not finite where undefined.
+
+    Signals may be stacks, (..., N+1), of runs of one length. Control starts at step `start`;
+    `window` is the first and the last scored step.
+    """
+    slip = trajectory.slip_speed
+    with np.errstate(all='ignore'):  # what is not finite becomes None
+        engagement_time, lockup_slope = _first_sign_change(slip, start)
+        return {
+            'engagement_time_s': engagement_time,
+            'lockup_slip_acceleration_rad_s2': lockup_slope,
+            'slip_final_rpm': rpm_from_rad_s(slip[..., -1]),
+            'friction_energy_j': _friction_energy(trajectory),
+            'torque_total_variation_n_m': np.sum(
+                np.abs(np.diff(trajectory.torque_request)), axis=-1
+            ),
+            **_window_metrics(trajectory, *window),
+        }
+
+
+def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the time in s from step `start` to where the slip changes its sign, and its slope."""
-    if start >= len(slip) or not slip[start]:
-        return None, None
-    changed = np.flatnonzero(slip[start:] * np.sign(slip[start]) <= 0.0)
-    if not changed.size:
-        return None, None
-    after = start + int(changed[0])
-    step = slip[after - 1] - slip[after]
-    time = (after - 1 - start + slip[after - 1] / step) * PERIOD_S
-    if slip[after] == 0.0 and after >= 2:
-        step = slip[after - 2] - slip[after - 1]
-    return time, -step / PERIOD_S
+    if start >= slip.shape[-1]:
+        never = np.full(slip.shape[:-1], math.nan)
+        return never, never
+    changed = slip[..., start:] * np.sign(slip[..., start : start + 1]) <= 0.0
+    after = start + np.argmax(changed, axis=-1)
+    # Without a change the first one seems to be at `start`, as it is where the slip is zero there.
+    found = after > start
+    last, before, earlier = (_at(slip, np.maximum(after - back, 0)) for back in range(3))
+    step = before - last
+    time = (after - 1 - start + before / step) * PERIOD_S
+    step = np.where((last == 0.0) & (after >= 2), earlier - before, step)
+    return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
 
 
-def _friction_energy(trajectory: Trajectory) -> float:
+def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
+    return np.take_along_axis(values, index[..., np.newaxis], axis=-1)[..., 0]
+
+
+def _friction_energy(trajectory: Trajectory) -> np.ndarray:
     work = trajectory.friction_work
     if work is not None:
-        return np.sum(work)
-    power = np.abs(trajectory.joint_effort[:, 1] * trajectory.slip_speed)
+        return np.sum(work, axis=-1)
+    power = np.abs(trajectory.joint_effort[..., 1] * trajectory.slip_speed)
     return trapezoid(power, dx=PERIOD_S)
 
 
-def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, float | None]:
+def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, np.ndarray]:
     """Return the metrics over the samples `first` to `last`, both included."""
     if trajectory.steps < last:
-        return dict.fromkeys(_OF_WINDOW)
+        runs = trajectory.slip_speed.shape[:-1]
+        return dict.fromkeys(_OF_WINDOW, np.full(runs, math.nan))
     window = slice(first, last + 1)
     # Filters see no sample beyond the window, so that a longer run scores the same.
-    acceleration = trajectory.vehicle_accel[: last + 1]
-    weighted = weighted_acceleration(acceleration)[window]
-    error = (trajectory.slip_reference[:, 0] - trajectory.slip_speed)[window]
+    acceleration = trajectory.vehicle_accel[..., : last + 1]
+    weighted = weighted_acceleration(acceleration)[..., window]
+    error = (trajectory.slip_reference[..., 0] - trajectory.slip_speed)[..., window]
     values = (
-        rpm_from_rad_s(np.std(trajectory.joint_speed[window, 3])),
-        np.std(acceleration[window]),
-        rpm_from_rad_s(np.sqrt(np.mean(error**2))),
-        np.max(np.abs(jerk(acceleration)[first:]), initial=-math.inf),
+        rpm_from_rad_s(np.std(trajectory.joint_speed[..., window, 3], axis=-1)),
+        np.std(acceleration[..., window], axis=-1),
+        rpm_from_rad_s(np.sqrt(np.mean(error**2, axis=-1))),
+        np.max(np.abs(jerk(acceleration)[..., first:]), axis=-1, initial=-math.inf),
         vibration_dose(weighted),
-        np.sqrt(np.mean(weighted**2)),
+        np.sqrt(np.mean(weighted**2, axis=-1)),
     )
     return dict(zip(_OF_WINDOW, values, strict=True))
 

@@ -16,22 +16,27 @@ _JERK_FILTER = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD
 
 def jerk(acceleration: np.ndarray) -> np.ndarray:
     """
-    Return the (n-1,) jerk in m/s^3 midway between the (n,) samples in m/s^2.
+    Return the (..., n-1) jerk in m/s^3 midway between the (..., n) samples in m/s^2.
 
     The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
     that it is not delayed, and is differenced. Shorter than 10 samples gives an empty array.
     """
     padding = 3 * (_JERK_FILTER_ORDER + 1)
-    if len(acceleration) <= padding:
-        return np.empty(0)
+    if acceleration.shape[-1] <= padding:
+        return np.empty((*acceleration.shape[:-1], 0))
     return np.diff(signal.filtfilt(*_JERK_FILTER, acceleration, padlen=padding)) / PERIOD_S
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
-    """Return the (n,) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
+    """Return the (..., n) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
     sos = _weighting()
-    start = signal.sosfilt_zi(sos) * acceleration[0]
-    return signal.sosfilt(sos, acceleration, zi=start)[0]
+    return signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
+
+
+def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the states (sections, ..., 2) of a filter that rests on values (..., 1)."""
+    states = signal.sosfilt_zi(sos)
+    return states.reshape(len(sos), *(1,) * (values.ndim - 1), 2) * values
 
 
 @cache
@@ -51,21 +56,23 @@ def _weighting() -> np.ndarray:
     return np.vstack([np.hstack(_digital(*section)) for section in sections])
 
 
-def vibration_dose(weighted: np.ndarray) -> float:
+def vibration_dose(weighted: np.ndarray) -> np.ndarray:
     """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
-    return float(trapezoid(weighted**4, dx=PERIOD_S) ** 0.25)
+    return trapezoid(weighted**4, dx=PERIOD_S) ** 0.25
 
 
-def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[float, float]:
+def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the largest r.m.s. and the largest dose of the (n,) `weighted` over any such stretch.
+    Return the largest r.m.s. and the largest dose of (..., n) `weighted` over any such stretch.
 
     It has `periods` periods, of which there must be as many. What comes late cannot hide from it.
     """
-    squares = np.cumsum(np.pad(weighted**2, (1, 0)))
+    before = np.zeros((*weighted.shape[:-1], 1))
+    squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
     fourths = cumulative_trapezoid(weighted**4, dx=PERIOD_S, initial=0.0)
-    mean = np.max(squares[periods + 1 :] - squares[: -periods - 1]) / (periods + 1)
-    return float(np.sqrt(mean)), float(np.max(fourths[periods:] - fourths[:-periods]) ** 0.25)
+    means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
+    doses = fourths[..., periods:] - fourths[..., :-periods]
+    return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
 
 
 def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,8 @@ AXIS_FACTOR = 1.4
 """Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
 _DRIVESHAFT = 3
 """Its place among the joints."""
+Values = float | int | np.ndarray
+"""A number, or one for each of many runs."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,7 @@ class JudgedRun:
     control_start: int
     """Step at which feedback starts."""
     score_window_s: tuple[float, float]
-    metrics: Mapping[str, float | int | None]
+    metrics: Mapping[str, Any]
     """Those of `scores.json`, by name."""
     engagements_a_day: float
 
@@ -42,16 +45,21 @@ class JudgedRun:
     @cached_property
     def torsion_speed_rpm(self) -> np.ndarray:
         """(N+1,) w_sr in rpm."""
-        return rpm_from_rad_s(self.trajectory.joint_speed[:, _DRIVESHAFT])
+        return rpm_from_rad_s(self.trajectory.joint_speed[..., _DRIVESHAFT])
 
     @cached_property
-    def shuffle(self) -> tuple[float | None, float | None]:
+    def shuffle(self) -> tuple[Values | None, Values | None]:
         """Amplitude in rpm and decay in s of w_sr once the plates are together."""
         together = self.locking.together_from
         return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
 
+    @property
+    def judder(self) -> Values | None:
+        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
+        return judder(self.torsion_speed_rpm[self.locking.slipping])
+
     @cached_property
-    def strongest(self) -> tuple[float | None, float | None]:
+    def strongest(self) -> tuple[Values | None, Values | None]:
         """
         Weighted acceleration and dose where they are strongest, None where the window has none.
 
@@ -62,39 +70,45 @@ class JudgedRun:
         if self.metrics['vdv_m_s1_75'] is None:
             return None, None
         weighted = weighted_acceleration(self.trajectory.vehicle_accel)
-        return strongest_stretch(weighted[min(first, self.control_start) :], last - first)
+        return strongest_stretch(weighted[..., min(first, self.control_start) :], last - first)
 
-    def after_control_start(self, name: str) -> np.ndarray:
-        """Return a signal from control start on."""
-        return getattr(self.trajectory, name)[self.control_start :]
+    @property
+    def acceleration(self) -> np.ndarray:
+        """A_x in m/s^2 from control start on."""
+        return self.trajectory.vehicle_accel[..., self.control_start :]
+
+    @property
+    def driveshaft_torque(self) -> np.ndarray:
+        """Torque of the driveshaft in N m from control start on."""
+        return self.trajectory.joint_effort[..., self.control_start :, _DRIVESHAFT]
 
 
 @dataclass(frozen=True)
 class Criterion(Figure):
     """One quantity that an engagement is judged by; its key names it in `verdict`."""
 
-    value: Callable[[JudgedRun], float | int | None] = field(kw_only=True)
-    """None where it is not defined."""
+    value: Callable[[JudgedRun], Values | None] = field(kw_only=True)
+    """None, or a number that is not finite, where it is not defined."""
 
 
-def _daily_dose(run: JudgedRun) -> float | None:
+def _daily_dose(run: JudgedRun) -> Values | None:
     dose = run.strongest[1]
     return None if dose is None else AXIS_FACTOR * dose * run.engagements_a_day**0.25
 
 
-def _peak_temperature(run: JudgedRun) -> float | None:
+def _peak_temperature(run: JudgedRun) -> Values | None:
     temperature = run.trajectory.clutch_temperature
     return None if temperature is None else np.max(temperature)
 
 
-def _peak_acceleration(run: JudgedRun) -> float:
-    return np.max(np.abs(run.after_control_start('vehicle_accel')), initial=-math.inf)
+def _peak_acceleration(run: JudgedRun) -> Values:
+    return np.max(np.abs(run.acceleration), axis=-1, initial=-math.inf)
 
 
 def _criterion(
     name: str,
     unit: str,
-    value: Callable[[JudgedRun], float | int | None],
+    value: Callable[[JudgedRun], Values | None],
     meaning: str,
     undefined: str,
 ) -> Criterion:
@@ -131,7 +145,7 @@ CRITERIA = (
     _criterion(
         'mean_jerk',
         'm/s^3',
-        lambda run: mean_jerk(run.after_control_start('vehicle_accel')),
+        lambda run: mean_jerk(run.acceleration),
         "largest of the jerk's means over 1 s after control start",
         'the run ends less than 1 s after control start',
     ),
@@ -176,7 +190,7 @@ CRITERIA = (
     _criterion(
         'judder',
         'rpm',
-        lambda run: judder(run.torsion_speed_rpm[run.locking.slipping]),
+        lambda run: run.judder,
         'r.m.s. of w_sr from 2 to 20 Hz over the longest stretch of slipping',
         'the clutch slips for less than 1 s',
     ),
@@ -197,7 +211,7 @@ CRITERIA = (
     _criterion(
         'torque_dip',
         'N m',
-        lambda run: torque_dip(run.after_control_start('joint_effort')[:, _DRIVESHAFT]),
+        lambda run: torque_dip(run.driveshaft_torque),
         "largest fall of the driveshaft's torque after control start",
         _NOTHING,
     ),
@@ -210,11 +224,16 @@ CRITERION_UNITS = {criterion.key: criterion.unit for criterion in CRITERIA}
 
 def criterion_values(run: JudgedRun) -> dict[str, float | int | None]:
     """Return the value of every criterion by name, None where it is not defined."""
+    return {key: finite(value) for key, value in raw_criteria(run).items()}
+
+
+def raw_criteria(run: JudgedRun) -> dict[str, Values | None]:
+    """Return the values by name as their functions give them."""
     with np.errstate(all='ignore'):  # what is not finite becomes None
-        return {criterion.key: finite(criterion.value(run)) for criterion in CRITERIA}
+        return {criterion.key: criterion.value(run) for criterion in CRITERIA}
 
 
-def finite(value: float | int | None) -> float | int | None:
+def finite(value: Any) -> float | int | None:
     """Return a number of Python's own, None for one that is not finite."""
     if value is None or not math.isfinite(value):
         return None

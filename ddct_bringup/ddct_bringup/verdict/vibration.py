@@ -39,14 +39,14 @@ def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:
     return float(magnitude[peak]), decay
 
 
-def torque_dip(torque: np.ndarray) -> float | None:
-    """Return how far the (n,) torque falls at most below an earlier value, in its unit."""
+def torque_dip(torque: np.ndarray) -> np.ndarray | None:
+    """Return how far the (..., n) torque falls at most below an earlier value, in its unit."""
     if not torque.size:
         return None
-    return float(np.max(np.maximum.accumulate(torque) - torque))
+    return np.max(np.maximum.accumulate(torque, axis=-1) - torque, axis=-1)
 
 
-def mean_jerk(acceleration: np.ndarray) -> float | None:
+def mean_jerk(acceleration: np.ndarray) -> np.ndarray | None:
     """Return the largest magnitude of the jerk's mean over 1 s in m/s^3; None below 1 s."""
-    changes = acceleration[STEPS_PER_S:] - acceleration[:-STEPS_PER_S]
-    return float(np.max(np.abs(changes))) if changes.size else None
+    changes = acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]
+    return np.max(np.abs(changes), axis=-1) if changes.size else None

@@ -29,6 +29,10 @@ class Profile(OptionGroup):
         """Return the value at a scenario time; there must be points."""
         return float(np.interp(time_s, getattr(self, TIME), self._values))
 
+    def over(self, times_s: np.ndarray) -> np.ndarray:
+        """Return the values at scenario times, (n,)."""
+        return np.interp(times_s, getattr(self, TIME), self._values)
+
     @cached_property
     def _values(self) -> Any:
         # `at` wants them at every step, and for every step of a preview.

@@ -179,11 +179,17 @@ def discretise_zoh(system: StateSpace, period_s: float) -> StateSpace:
     """
     _require_continuous(system)
     require_number('period_s', period_s, above=0.0)
-    states, inputs = system.b.shape
-    block = np.zeros((states + inputs, states + inputs))
-    block[:states, :states], block[:states, states:] = system.a, system.b
-    transition = _exponential(block * period_s)[:states]
-    return StateSpace(transition[:, :states], transition[:, states:], system.c, system.d, period_s)
+    a_d, b_d = hold_inputs(system.a, system.b, period_s)
+    return StateSpace(a_d, b_d, system.c, system.d, period_s)
+
+
+def hold_inputs(a: np.ndarray, b: np.ndarray, period_s: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a_d and b_d of `discretise_zoh`; a (..., n, n) and b (..., n, m) may be stacks."""
+    states, inputs = b.shape[-2:]
+    block = np.zeros((*a.shape[:-2], states + inputs, states + inputs))
+    block[..., :states, :states], block[..., :states, states:] = a, b
+    transition = _exponential(block * period_s)[..., :states, :]
+    return transition[..., :states], transition[..., states:]
 
 
 def lift_piecewise_linear(
@@ -195,19 +201,21 @@ def lift_piecewise_linear(
     `b` is the column of one input, (n,) or (n, 1); `nodes` are its values at the ends of
     `intervals` equal parts of the period, between which it is linear. Exact: over one part of
     length h, u(t) = u_0 + (u_1 - u_0) t / h makes (x, u, u_1 - u_0) an autonomous linear system.
+    Of stacks, a (..., n, n) and b (..., n, 1), both results are stacks.
     """
     require_number('intervals', intervals, at_least=1)
     require_number('period_s', period_s, above=0.0)
-    states = len(a)
+    stack, states = a.shape[:-2], a.shape[-1]
     part_s = period_s / intervals
-    block = np.zeros((states + 2, states + 2))
-    block[:states, :states], block[:states, states] = a, np.reshape(b, states)
-    block[states, states + 1] = 1.0 / part_s
-    transition = _exponential(block * part_s)[:states]
-    step, level, change = transition[:, :states], transition[:, -2], transition[:, -1]
-    a_d, gamma = np.eye(states), np.zeros((states, intervals + 1))
+    block = np.zeros((*stack, states + 2, states + 2))
+    block[..., :states, :states] = a
+    block[..., :states, states] = np.reshape(b, (*stack, states))
+    block[..., states, states + 1] = 1.0 / part_s
+    transition = _exponential(block * part_s)[..., :states, :]
+    step, level, change = transition[..., :states], transition[..., -2], transition[..., -1]
+    a_d, gamma = np.eye(states), np.zeros((*stack, states, intervals + 1))
     for part in reversed(range(intervals)):
-        gamma[:, part : part + 2] += a_d @ np.column_stack([level - change, change])
+        gamma[..., part : part + 2] += a_d @ np.stack([level - change, change], axis=-1)
         a_d = a_d @ step
     return a_d, gamma
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
-from ddct_plant.linear.lti import StateSpace, discretise_zoh, lift_piecewise_linear
+from ddct_plant.linear.lti import hold_inputs, lift_piecewise_linear
 from ddct_plant.models.driveline_model import matrices_with_angles
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
@@ -128,7 +129,7 @@ class Driveline:
         """Start in the given state."""
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
-        self._step_matrix = _step_matrix(parameters)
+        self._step_matrix = step_matrix(parameters)
         self._state_and_inputs = np.zeros(self._step_matrix.shape[1])
         self._state_and_inputs[:4] = (
             initial.engine_speed,
@@ -160,15 +161,22 @@ class Driveline:
         self._torques = (engine_torque, clutch_torque[-1], load_torque)
 
 
-def _step_matrix(parameters: DrivelineParameters) -> np.ndarray:
-    """Return the (7, 20) map from states, angles, C_m, C_load and C_f nodes to the next states."""
+def step_matrix(parameters: DrivelineParameters) -> np.ndarray:
+    """
+    Return the (..., 7, 20) map to the next states and angles.
+
+    It takes states and angles (7,), C_m, C_load and the C_f nodes. Parameters that are arrays,
+    (...), give a stack. Raise ParameterError where a number is not finite.
+    """
     a, b = matrices_with_angles(parameters)
-    engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
-    held = discretise_zoh(_inputs_only(a, np.hstack([engine, load])), PERIOD_S)
+    _require_finite(a, b)
+    engine, clutch, load = b[..., 0:1], b[..., 1:2], b[..., 2:3]
+    _, held = hold_inputs(a, np.concatenate([engine, load], axis=-1), PERIOD_S)
     transition, nodes = lift_piecewise_linear(a, clutch, PERIOD_S, SUBSTEPS)
-    return np.hstack([transition, held.b, nodes])
+    _require_finite(transition, held, nodes)
+    return np.concatenate([transition, held, nodes], axis=-1)
 
 
-def _inputs_only(a: np.ndarray, b: np.ndarray) -> StateSpace:
-    states, inputs = b.shape
-    return StateSpace(a, b, np.eye(states), np.zeros((states, inputs)))
+def _require_finite(*matrices: np.ndarray) -> None:
+    if not all(np.isfinite(matrix).all() for matrix in matrices):
+        raise ParameterError('driveline: its matrices have numbers that are not finite')

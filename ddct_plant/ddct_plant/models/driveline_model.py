@@ -1,5 +1,7 @@
 """The driveline as linear equations: its four states and its transfer functions to slip speed."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -15,6 +17,13 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     c_sa/(J_p tau), an erratum: the half-shaft would not push back with the torque it is pushed
     with. Equation (1.4) leaves out c_prim, which the matrix has.
     """
+    a, b = _states_and_torques(parameters)
+    c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / parameters.total_ratio, -1.0, 0.0]]
+    return StateSpace(a, b, np.array(c), np.zeros((2, 3)))
+
+
+def _states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
+    """Return a (..., 4, 4) and b (..., 4, 3); parameters that are arrays, (...), give stacks."""
     p = parameters
     tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
     j_p, j_v = p.shaft_inertia, p.vehicle_inertia
@@ -35,17 +44,27 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
         [0.0, 0.0, -1.0 / j_v],
         [0.0, 0.0, 0.0],
     ]
-    c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / tau, -1.0, 0.0]]
-    return StateSpace(np.array(a), np.array(b), np.array(c), np.zeros((2, 3)))
+    return _stacked(a), _stacked(b)
+
+
+def _stacked(rows: Sequence[Sequence[float]]) -> np.ndarray:
+    """Return (..., rows, columns) of entries that are numbers or arrays, (...)."""
+    entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
+    return np.stack(entries, axis=-1).reshape(*entries[0].shape, len(rows), len(rows[0]))
 
 
 def matrices_with_angles(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
-    """Return a (7, 7) and b (7, 3) of the four states and the angles of w_m, w_p and w_r."""
-    model = driveline_matrices(parameters)
-    a = np.zeros((7, 7))
-    a[:4, :4] = model.a
-    a[4:7, :3] = np.eye(3)
-    return a, np.vstack([model.b, np.zeros((3, 3))])
+    """
+    Return a (..., 7, 7) and b (..., 7, 3) of the four states and the angles of w_m, w_p and w_r.
+
+    Parameters that are arrays, (...), give stacks.
+    """
+    driven, torques = _states_and_torques(parameters)
+    stack = driven.shape[:-2]
+    a, b = np.zeros((*stack, 7, 7)), np.zeros((*stack, 7, 3))
+    a[..., :4, :4], b[..., :4, :] = driven, torques
+    a[..., 4:7, :3] = np.eye(3)
+    return a, b
 
 
 def engine_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:

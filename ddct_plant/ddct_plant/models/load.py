@@ -2,6 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.profile import Profile
@@ -50,6 +53,14 @@ class SlopeProfile(Profile, prefix='slope.'):
     )
 
 
+def resisting_torque(
+    drag: Any, wind: Any, force: Any, wheel_radius: Any, vehicle_speed: Any
+) -> Any:
+    """Return C_load in N m, as `RoadLoad` has it; all may be arrays, of F_r + F_g in N too."""
+    air_speed = wind + vehicle_speed
+    return (drag * air_speed * abs(air_speed) + force) * wheel_radius
+
+
 class RoadLoad:
     """
     Wheel torque that resists a vehicle at speed v_v (Section 1.4.4).
@@ -69,15 +80,18 @@ class RoadLoad:
         self._weight = vehicle.mass_kg * vehicle.gravity_m_s2
         self._rolling = parameters.rolling_coefficient
         self._slope = slope if slope and slope.given else None
-        self._drag = (
+        self.drag = (
             0.5
             * parameters.air_density_kg_m3
             * parameters.frontal_area_m2
             * parameters.drag_coefficient
         )
-        self._wind = parameters.wind_speed_m_s
+        """0.5 rho_a A_f C_a in kg/m."""
+        self.wind = parameters.wind_speed_m_s
+        """v_a in m/s."""
         self._constant_force = self._force(parameters.slope_rad)
-        self._wheel_radius = vehicle.wheel_radius_m
+        self.wheel_radius = vehicle.wheel_radius_m
+        """r_w in m."""
 
     def torque(self, vehicle_speed: float, time_s: float = 0.0) -> float:
         """
@@ -85,9 +99,14 @@ class RoadLoad:
 
         `vehicle_speed` is in m/s; the scenario time matters to a slope that changes.
         """
-        air_speed = self._wind + vehicle_speed
         force = self._force(self._slope.at(time_s)) if self._slope else self._constant_force
-        return (self._drag * air_speed * abs(air_speed) + force) * self._wheel_radius
+        return resisting_torque(self.drag, self.wind, force, self.wheel_radius, vehicle_speed)
 
-    def _force(self, slope_rad: float) -> float:
-        return self._weight * (self._rolling * math.cos(slope_rad) + math.sin(slope_rad))
+    def forces(self, times_s: np.ndarray) -> np.ndarray:
+        """Return F_r + F_g in N at scenario times, (n,)."""
+        if self._slope is None:
+            return np.full(len(times_s), self._constant_force)
+        return self._force(self._slope.over(times_s), np.cos, np.sin)
+
+    def _force(self, slope_rad: Any, cos: Any = math.cos, sin: Any = math.sin) -> Any:
+        return self._weight * (self._rolling * cos(slope_rad) + sin(slope_rad))
