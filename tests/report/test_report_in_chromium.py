@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from headless_chromium import PRINT, chromium, visit
 
-from ddct_bringup.report.run_marks import LIGHT_COLOURS
+from ddct_controllers.design.drawing.line_looks import controller_look
 
 pytestmark = pytest.mark.browser
 
@@ -14,6 +14,7 @@ pytestmark = pytest.mark.skipif(
     chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
 )
 CHARTS = 8
+CONTROLLERS = ('pi', 'ls8', 'hinf1')
 COUNT_PAINTED = """[...document.querySelectorAll('.chart')].map((place) => {
   const view = [...Bokeh.index].find((each) => each.el.parentElement === place);
   const {canvas: whole, ctx} = view.export('png', false);
@@ -149,7 +150,8 @@ def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
         return [inked, lines.every((colour) => found.has(colour))];
       });
     })"""
-    light = f'window.light = {json.dumps(LIGHT_COLOURS[:3])}'
+    lines = [controller_look(name).light for name in CONTROLLERS]
+    light = f'window.light = {json.dumps(lines)}'
     after = """[document.querySelectorAll('.paper canvas').length,
       document.documentElement.dataset.theme ?? 'auto']"""
     seen = visit(page, scheme='dark', scripts=[light, listen, PRINT, 'window.onPaper', after])

@@ -7,8 +7,9 @@ from matplotlib.figure import Figure
 from ddct_bringup.api.runs import Run, as_runs
 from ddct_bringup.report.quantities import Quantity, quantities_of
 from ddct_bringup.report.run_marks import run_labels
-from ddct_controllers.design.drawing.chart_style import chart_style, line_styles
+from ddct_controllers.design.drawing.chart_style import chart_style, look_style
 from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
 
@@ -28,15 +29,16 @@ def figure(
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
     labels = run_labels([each.entry for each in shown])
+    looks = looks_of(each.entry['controller'] or each.entry['bag'] for each in shown)
     end_s = max(each.trajectory.time_s[-1] for each in shown)
     with chart_style():
         drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities)))
         charts = drawing.subplots(len(quantities), squeeze=False)[:, 0]
         for axes, key in zip(charts, quantities, strict=True):
-            for each, label, style in zip(shown, labels, line_styles(), strict=False):
+            for each, label, look in zip(shown, labels, looks, strict=True):
                 quantity = _quantity(each, key)
                 values = quantity.values(each.trajectory)
-                axes.plot(each.trajectory.time_s, values, label=label, **style)
+                axes.plot(each.trajectory.time_s, values, label=label, **look_style(look))
             label_time_axis(axes, f'{key}, {quantity.unit}', (0.0, end_s))
     return drawing
 

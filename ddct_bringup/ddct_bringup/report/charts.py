@@ -6,7 +6,15 @@ from typing import Any
 
 import numpy as np
 from bokeh.document import Document
-from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, HoverTool, Range1d
+from bokeh.models import (
+    CDSView,
+    ColumnDataSource,
+    CrosshairTool,
+    DataRange1d,
+    HoverTool,
+    IndexFilter,
+    Range1d,
+)
 from bokeh.models.annotations import BoxAnnotation, Span
 from bokeh.models.renderers import DataRenderer, GlyphRenderer
 from bokeh.plotting import figure
@@ -15,11 +23,13 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
 from ddct_bringup.report.quantities import Quantity, quantities_of
-from ddct_bringup.report.run_marks import LIGHT_COLOURS, LineLook
+from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300
 _LANE_PX, _LANES_FRAME_PX = 28, 70
+_MARK_SPACING = 0.12
+"""Between the marks of a line, as a share of the run."""
 FAINT = 0.6
 """Opacity of a limit beside the line that it bounds."""
 NEUTRAL = '#808080'
@@ -141,12 +151,14 @@ def _line(
         quantity.key,
         source=source,
         line_width=1.8,
-        line_color=LIGHT_COLOURS[run.look.colour],
+        line_color=run.look.light,
         line_dash=list(run.look.dash),
         name=run.label,
         visible=run.shown,
     )
     line.tags = [_tag(run)]
+    if run.look.mark:
+        _mark_line(chart, quantity, run, source)
     if quantity.limit:
         limit = chart.line(
             't',
@@ -154,11 +166,31 @@ def _line(
             source=source,
             line_width=1.0,
             line_alpha=FAINT,
-            line_color=LIGHT_COLOURS[run.look.colour],
+            line_color=run.look.light,
             visible=run.shown,
         )
         limit.tags = [{**_tag(run), 'alpha': FAINT}]
     return line
+
+
+def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
+    """Draw the marks of a line that has some, each run's at its own times."""
+    steps = len(run.trajectory.time_s)
+    spacing = max(1, round(_MARK_SPACING * steps))
+    first = round(0.37 * run.index % 1.0 * spacing)
+    marks = chart.scatter(
+        't',
+        quantity.key,
+        source=source,
+        view=CDSView(filter=IndexFilter(indices=list(range(first, steps, spacing)))),
+        marker=run.look.mark,
+        size=8,
+        line_width=1.5,
+        line_color=run.look.light,
+        fill_color=run.look.light if run.look.filled else None,
+        visible=run.shown,
+    )
+    marks.tags = [{**_tag(run), 'fill': run.look.filled}]
 
 
 def _draw_references(
@@ -193,7 +225,7 @@ def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
             marker='diamond',
             size=13,
             fill_color=None,
-            line_color=LIGHT_COLOURS[run.look.colour],
+            line_color=run.look.light,
             line_width=2,
             visible=run.shown,
         )
@@ -209,7 +241,7 @@ def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
     chart.ygrid.grid_line_color = None
     shades: list[DataRenderer] = []
     for lane, run in enumerate(runs):
-        shade = draw_phases(chart, run.trajectory, lane, LIGHT_COLOURS[run.look.colour])
+        shade = draw_phases(chart, run.trajectory, lane, run.look.light)
         shade.name = run.label
         shade.tags = [{**_tag(run), 'fill': True}]
         marks = draw_events(chart, run.trajectory, lane, NEUTRAL)
@@ -231,7 +263,7 @@ def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
     for run in runs:
         if run.trajectory.clutch_phase is None:
             continue
-        for mark in draw_events(chart, run.trajectory, 0.0, LIGHT_COLOURS[run.look.colour]):
+        for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
             mark.visible = run.shown
             mark.tags = [_tag(run)]
 

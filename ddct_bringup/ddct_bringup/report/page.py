@@ -17,22 +17,23 @@ from ddct_bringup.report.output import MARKER
 from ddct_bringup.report.page_parts import json_data, page_part, page_template
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
-from ddct_bringup.report.run_marks import (
-    DARK_COLOURS,
-    LIGHT_COLOURS,
-    common_conditions,
-    line_looks,
-    run_labels,
-)
+from ddct_bringup.report.run_marks import common_conditions, run_labels
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.summary import comparable_rows, metric_cells
 from ddct_bringup.report.update_times import TICKS, update_times
 from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
-from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE, THESIS_TABLE
+from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.drawing.line_looks import (
+    DARK_COLOURS,
+    LIGHT_COLOURS,
+    css_colours,
+    looks_of,
+    sample_svg,
+)
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
@@ -71,8 +72,8 @@ def report_page(
         pareto=pareto,
         front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,
-        light=LIGHT_COLOURS,
-        dark=DARK_COLOURS,
+        light=Markup(css_colours(LIGHT_COLOURS)),
+        dark=Markup(css_colours(DARK_COLOURS)),
         runs=shown,
         columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
         further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
@@ -104,7 +105,7 @@ def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
     """Return what the template needs of each run."""
     entries = [run.entry for run in runs]
     controllers = [entry['controller'] or entry['bag'] for entry in entries]
-    looks = line_looks(controllers, [row.controller for row in THESIS_TABLE])
+    looks = looks_of(controllers)
     of_each = zip(
         runs, run_labels(entries), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
     )
@@ -113,6 +114,7 @@ def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
             'index': index,
             'label': label,
             'look': look,
+            'sample': Markup(sample_svg(look)),
             'entry': run.entry,
             'recording': run.recording,
             'charted': run.recording is not None,

@@ -14,7 +14,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.charts import ChartRun, chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_bringup.report.quantities import quantities_of
-from ddct_bringup.report.run_marks import LineLook
+from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.graph.topics import all_signals
 
 STEPS = 20
@@ -106,6 +106,18 @@ def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
     np.testing.assert_allclose(drawn(reference)[1], RUN.slip_reference[:, 0] * RPM, rtol=1e-6)
     (mark,) = [each for each in charts['w_d'].renderers if each not in lines(charts['w_d'])]
     assert [list(each) for each in drawn(mark)] == [[pytest.approx(0.148)], [0.0]]
+
+
+def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
+    look = LineLook(3, (2, 2), 'star', filled=True)
+    document: Any = chart_document([ChartRun(1, 'mine', look, RUN, FACTS, shown=False)])[0]
+    chart: Any = Document.from_json(document).roots[2]
+    (marks,) = [each for each in chart.renderers if each not in lines(chart)]
+    assert chart.name == 'w_sr'
+    np.testing.assert_allclose(drawn(marks)[1], RUN.joint_speed[:, 3] * RPM, rtol=1e-6)
+    assert len(marks.view.filter.indices) > 5
+    assert (marks.glyph.marker.value, marks.glyph.fill_color.value) == ('star', look.light)
+    assert (marks.visible, marks.tags) == (False, [{'runs': [1], 'colour': 3, 'fill': True}])
 
 
 def sticking_run() -> Trajectory:

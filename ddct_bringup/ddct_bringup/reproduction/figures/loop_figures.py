@@ -7,6 +7,7 @@ from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.drawing.chart_style import controller_style
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
@@ -23,13 +24,19 @@ def nichols_figure(
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
     thesis_says: str,
+    styled_as: str | None = None,
 ) -> ThesisFigure:
-    """Return L of one controller, without hold and delay, with the bounds it was made for."""
+    """
+    Return L of one controller, without hold and delay, with the bounds it was made for.
+
+    `styled_as` is the controller's registry name, None for one that has none.
+    """
 
     def draw(axes: Axes) -> str:
         loop = continuous_loop(controller)
         curve = LoopCurve(loop)
-        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications)
+        styles = [controller_style(styled_as)] if styled_as else None
+        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
         margins = loop_margins(loop)
         if not margins.stable:
             return f'The closed loop is unstable. Thesis: {thesis_says}.'
@@ -54,12 +61,17 @@ def step_figure(
     name: str,
     controller: FactoredTransferFunction,
     printed: tuple[float, float],
+    styled_as: str,
 ) -> ThesisFigure:
-    """Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot."""
+    """
+    Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot.
+
+    `styled_as` is the controller's registry name.
+    """
 
     def draw(axes: Axes) -> str:
         time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
-        draw_step_response(axes, {name: (time, output)})
+        draw_step_response(axes, {name: (time, output)}, [controller_style(styled_as)])
         return (
             f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
             f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '

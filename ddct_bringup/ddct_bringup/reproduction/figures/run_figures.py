@@ -1,6 +1,7 @@
 """Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,15 +11,11 @@ from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
 from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
-from ddct_controllers.design.drawing.chart_style import BLACK, REFERENCE_LINE
+from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
 from ddct_plant.base.units import rpm_from_rad_s
 
 _FIRST_S = 0.5
 """Start of the time axis: "before 0.6 seconds" (Section 2.3)."""
-_STYLES = {
-    'PI': {'color': BLACK, 'linestyle': '-', 'linewidth': 1.0},
-    'reference': REFERENCE_LINE,
-}
 _LABELS = {'w_d': 'w_d, rpm', 'w_sr': 'w_sr, rpm', 'A_x': 'A_x, m/s²'}
 _SCORES = {
     'w_d': (
@@ -51,14 +48,26 @@ def thesis_label(controller: str) -> str:
 
 def _runs(group: RunGroup) -> dict[str, Trajectory]:
     """Return the runs by legend text."""
-    worn = len(group.wear_gains) > 1
     return {
-        thesis_label(name) + (f' (K_usura = {wear:g})' if worn else ''): thesis_run(
-            name, group.architecture, wear
-        )
+        _legend(name, wear, group): thesis_run(name, group.architecture, wear)
         for name in group.controllers
         for wear in group.wear_gains
     }
+
+
+def _styles(group: RunGroup) -> dict[str, dict[str, Any]]:
+    """Return how the lines are drawn by legend text."""
+    runs = {
+        _legend(name, wear, group): controller_style(name, repeat)
+        for name in group.controllers
+        for repeat, wear in enumerate(group.wear_gains)
+    }
+    return {**runs, 'reference': REFERENCE_LINE}
+
+
+def _legend(controller: str, wear_gain: float, group: RunGroup) -> str:
+    worn = len(group.wear_gains) > 1
+    return thesis_label(controller) + (f' (K_usura = {wear_gain:g})' if worn else '')
 
 
 def _draw(axes: Axes, group: RunGroup, quantity: str) -> str:
@@ -72,7 +81,7 @@ def _draw(axes: Axes, group: RunGroup, quantity: str) -> str:
         for name, (run, values) in signals.items()
     }
     end_s = max(time[-1] for time, _ in lines.values())
-    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _STYLES)
+    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _styles(group))
     return (
         f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)

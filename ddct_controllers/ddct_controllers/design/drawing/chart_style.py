@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from ddct_controllers.design.drawing.line_looks import LineLook, controller_look
 from ddct_plant.base.errors import DdctError
 
 BLACK = '#000000'
@@ -30,6 +31,8 @@ REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth'
 """How what should be followed is drawn."""
 BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
 """How what should not be exceeded is drawn."""
+_LINE_WIDTH = 1.5
+_MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """A symbol with its index and perhaps a power, such as W_s^-1."""
 _STYLE: dict[Any, Any] = {
@@ -46,7 +49,7 @@ _STYLE: dict[Any, Any] = {
     'axes.spines.right': False,
     'grid.color': '#d8d8d8',
     'grid.linewidth': 0.6,
-    'lines.linewidth': 1.5,
+    'lines.linewidth': _LINE_WIDTH,
     'legend.fontsize': 10.0,
     'legend.framealpha': 0.9,
     'svg.hashsalt': 'ddct',
@@ -70,6 +73,22 @@ def line_styles() -> Iterator[dict[str, Any]]:
     """Yield the keywords of one line after the other, without end."""
     pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
     return ({'color': colour, 'linestyle': dashes} for colour, dashes in pairs)
+
+
+def controller_style(name: str, repeat: int = 0) -> dict[str, Any]:
+    """Return the keywords of a controller's line, which follow from its name."""
+    return look_style(controller_look(name, repeat))
+
+
+def look_style(look: LineLook) -> dict[str, Any]:
+    """Return the keywords of a line with this look."""
+    style: dict[str, Any] = {'color': look.light, 'linestyle': '-'}
+    if look.dash:  # in widths of the line
+        style['linestyle'] = (0, tuple(length / _LINE_WIDTH for length in look.dash))
+    if look.mark:
+        style |= {'marker': _MARKERS[look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
+        style['markerfacecolor'] = look.light if look.filled else 'white'
+    return style
 
 
 def save_chart(figure: Figure, path: Path) -> None:

@@ -1,7 +1,7 @@
 """Charts of a design, drawn on axes that the caller gives: Nichols, Nyquist, step, magnitude."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,7 @@ def draw_nichols(
     curves: Mapping[str, NicholsCurve],
     specifications: TimeSpecifications | None = None,
     *,
+    styles: Iterable[dict[str, Any]] | None = None,
     phase_deg: tuple[float, float] = (-360.0, 0.0),
     magnitude_db: tuple[float, float] = (-40.0, 40.0),
 ) -> None:
@@ -43,7 +44,7 @@ def draw_nichols(
     Draw loops by name in a Nichols chart over the given range.
 
     With specifications it has their constant-|S| and constant-|T| curves, which L should not
-    enter.
+    enter. `styles` are the keywords of each line.
     """
     for level in _GRID_DB:
         grid = constant_m_curve(10.0 ** (level / 20.0))
@@ -55,7 +56,7 @@ def draw_nichols(
             (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
         ):
             _closed_curve(axes, curve, phase_deg, name, color=colour, linestyle='--')
-    for (name, curve), style in zip(curves.items(), line_styles(), strict=False):
+    for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
     critical = np.arange(-180.0, phase_deg[0] - 1.0, -_TURN_DEG)
     axes.plot(critical, 0.0 * critical, '+', color=BLACK, markersize=11, markeredgewidth=2)
@@ -66,9 +67,18 @@ def draw_nichols(
     axes.legend(loc='upper left')
 
 
-def draw_step_response(axes: Axes, responses: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> None:
-    """Draw (time, output) of unit steps by name, with rise time and overshoot in the legend."""
-    for (name, (time, output)), style in zip(responses.items(), line_styles(), strict=False):
+def draw_step_response(
+    axes: Axes,
+    responses: Mapping[str, tuple[np.ndarray, np.ndarray]],
+    styles: Iterable[dict[str, Any]] | None = None,
+) -> None:
+    """
+    Draw (time, output) of unit steps by name, with rise time and overshoot in the legend.
+
+    `styles` are the keywords of each line.
+    """
+    drawn = zip(responses.items(), styles or line_styles(), strict=False)
+    for (name, (time, output)), style in drawn:
         rise = rise_time_s(time, output)
         figures = f'overshoot {100.0 * overshoot(time, output):.1f} %'
         if rise is not None:
