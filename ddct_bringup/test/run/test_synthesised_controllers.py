@@ -13,7 +13,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis')
-PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'h_infinity.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'hinf_sampled.md'
 
 
 def metrics(controller: str, wear_gain: float = 1.0) -> Metrics:
@@ -47,7 +47,7 @@ def integrated(request):
 
 
 def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
-    """Those of h_infinity.md and Table 5.1, signals and formulas from another source."""
+    """Those of hinf_sampled.md and Table 5.1, signals and formulas from another source."""
     name, signals = integrated
     time = np.arange(len(signals['w_d'])) / 100.0
     after = time >= SCENARIO.control_start_s - 1e-9

@@ -43,7 +43,7 @@ DEMAND_WEIGHT = 0.14
 
 
 def thesis_settings(row: TableRow, *, preview: bool = False) -> MpcSettings:
-    """Return what the row means; docs/controllers/mpc.md gives the other readings of Q and R."""
+    """Return what the row means; docs/thesis/mpc_readings.md gives other readings of Q and R."""
     per_rad_s, final_per_rad_s = map(rpm_from_rad_s, (row.output_weight, row.final_weight))
     return MpcSettings(
         prediction_steps=row.prediction_steps,

@@ -129,7 +129,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert near[0] == np.argmax(from_scipy < 10.0)
     share, first_s = 1000.0 / from_scipy[0], near[0] / 100.0
     said = f'comes down to 10 rpm, {share:.0f} % of where it began, in {first_s:.2f} s'
-    assert said in (PAGE.parents[1] / 'controllers' / 'mpc4.md').read_text(encoding='utf-8')
+    assert said in (PAGE.parent / 'mpc4_readings.md').read_text(encoding='utf-8')
     np.testing.assert_array_equal(np.diff(near), 1)
     times = [metrics(name).engagement_time_s for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
     assert min(times) > 0.46
