@@ -76,7 +76,7 @@ def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> 
 
 
 def test_the_steps_from_a_program_to_the_model_are_there() -> None:
-    page = (ROOT / 'docs' / 'develop' / 'architecture.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'develop' / 'path_of_a_run.md').read_text(encoding='utf-8')
     section = page.partition('## From a program to the model')[2].partition('\n## ')[0]
     steps = re.findall(r'^\| \d+ \| `([\w/]+\.py)`(?:: (.*?))? \|', section, re.MULTILINE)
     assert len(steps) >= 18
