@@ -11,8 +11,17 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 
 OPTIONS = {
-    'proportional_gain': Option(REQUIRED, 'K_p', 'N m/rpm', at_least=0.0, at_most=1e3, live=True),
-    'integral_gain': Option(REQUIRED, 'K_i', 'N m/(rpm s)', at_least=0.0, at_most=1e3, live=True),
+    'proportional_gain': Option(
+        REQUIRED, 'K_p: torque per slip error', 'N m/rpm', at_least=0.0, at_most=1e3, live=True
+    ),
+    'integral_gain': Option(
+        REQUIRED,
+        'K_i: torque per slip error and second',
+        'N m/(rpm s)',
+        at_least=0.0,
+        at_most=1e3,
+        live=True,
+    ),
 }
 
 

@@ -25,10 +25,10 @@ class TableRow(OptionGroup):
     """T_p in periods."""
     control_steps: int
     """T_c in periods."""
-    output_weight: float = weight(0.26, 'Q, per rpm of the slip error')
-    final_weight: float = weight(0.0, 'P, per rpm of the slip error at the end of the horizon')
-    move_weight: float = weight(0.39, 'R, per N m of a move of the torque u')
-    torque_weight: float = weight(0.0, 's, per N m of u: R on u, as in the formula of Section 4.1')
+    output_weight: float = weight(0.26, 'Q: weight per rpm of the slip error')
+    final_weight: float = weight(0.0, 'P: weight per rpm of the slip error at the end')
+    move_weight: float = weight(0.39, 'R: weight per N m of a move of the torque u')
+    torque_weight: float = weight(0.0, 's: weight per N m of u: R on u, as Section 4.1 has it')
 
 
 TABLE_4_1 = {'mpc1': TableRow(12, 3), 'mpc2': TableRow(16, 6), 'mpc3': TableRow(22, 4)}
@@ -124,9 +124,9 @@ class TwoInputCost(OptionGroup):
 
     slip_acceleration_weight: float = weight(
         SLIP_ACCELERATION_WEIGHT,
-        'of dw_d/dt per rad/s², squared in the cost; that of w_d is 1 per rad/s',
+        'weight of dw_d/dt per rad/s², squared in the cost; w_d has 1 per rad/s',
     )
-    demand_weight: float = weight(DEMAND_WEIGHT, 'r, per N m that C_m is away from the demand')
+    demand_weight: float = weight(DEMAND_WEIGHT, 'r: weight per N m between C_m and the demand')
 
     def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
         """Return what the values of its options make of it."""

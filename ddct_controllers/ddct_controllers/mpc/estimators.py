@@ -118,7 +118,7 @@ class WearEstimate(OptionGroup):
 
     gain_drift: float = option(
         WearNoise.gain_drift,
-        'drift of K_usura per period; the bounds of the estimate are 1 apart',
+        'drift of K_usura per period; the bounds of its estimate are 0.5 and 1.5',
         at_least=0.0,
         at_most=1.0,
     )

@@ -22,27 +22,27 @@ def program_options(settings: MpcSettings) -> Options:
     return {
         'prediction_steps': Option(
             settings.prediction_steps,
-            'p, periods over which outputs are weighted',
+            'p: number of periods over which the outputs are weighted',
             at_least=1,
             at_most=MOST_STEPS,
         ),
         'control_steps': Option(
             settings.control_steps,
-            'm, periods after which the inputs stay constant',
+            'm: number of periods after which the inputs stay constant',
             at_least=1,
             at_most=MOST_STEPS,
         ),
         'preview': Option(
             settings.preview,
-            'true uses the coming reference, false holds its present value'
-            + (' or goes on along its tangent' if settings.along_tangent else ''),
+            'true uses the coming reference; false holds its present value'
+            + (' or continues along its tangent' if settings.along_tangent else ''),
         ),
         'highest_torque_n_m': Option(
             None, 'largest clutch torque request', 'N m', above=0.0, at_most=MOST
         ),
         'torque_rate_n_m_s': Option(
             None,
-            'largest rate of the clutch torque request; it goes before the level',
+            'largest rate of the clutch torque request; it wins over the level',
             'N m/s',
             above=0.0,
             at_most=MOST,
@@ -57,7 +57,7 @@ def program_options(settings: MpcSettings) -> Options:
         'backend': Option(settings.backend, 'QP solver', choices=BACKENDS),
         'iteration_limit': Option(
             None,
-            'of the QP solver, per step',
+            'largest number of iterations of the QP solver per step',
             otherwise='1000 (daqp), 20000 (osqp)',
             kind=int,
             at_least=1,

@@ -15,10 +15,10 @@ from ddct_plant.base.options import Option
 
 OPTIONS = {
     'engine_bandwidth_rad_s': Option(
-        0.5, 'of the loop of the engine speed', 'rad/s', at_least=0.1, at_most=1.0
+        0.5, 'bandwidth of the loop of the engine speed', 'rad/s', at_least=0.1, at_most=1.0
     ),
     'slip_bandwidth_rad_s': Option(
-        10.0, 'of the loop of the slip', 'rad/s', at_least=5.0, at_most=20.0
+        10.0, 'bandwidth of the loop of the slip', 'rad/s', at_least=5.0, at_most=20.0
     ),
 }
 """Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md says why."""

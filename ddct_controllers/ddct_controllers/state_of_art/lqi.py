@@ -20,7 +20,7 @@ NO_GAIN = f'{NAME}: no gain for this driveline (%s)'
 OPTIONS = {
     'natural_frequency_rad_s': Option(
         4.0,
-        'of the double pole that the weights give a rigid driveline without lag',
+        'frequency of the double pole on a rigid driveline without lag',
         'rad/s',
         at_least=1.0,
         at_most=8.0,

@@ -20,10 +20,12 @@ from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'pedal_mpc'
 OPTIONS = {
-    'slowest_engagement_s': Option(1.2, 't_f with the pedal at 0', 's', at_least=0.3, at_most=5.0),
+    'slowest_engagement_s': Option(
+        1.2, 'engagement time with the pedal at 0', 's', at_least=0.3, at_most=5.0
+    ),
     'fastest_engagement_s': Option(
         0.4,
-        't_f with the pedal at 1, at most slowest_engagement_s',
+        'engagement time with the pedal at 1, at most slowest_engagement_s',
         's',
         at_least=0.3,
         at_most=5.0,
