@@ -11,17 +11,17 @@ from markupsafe import Markup
 
 from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
-from ddct_bringup.report.loop_table import loop_rows, without_evidence
-from ddct_bringup.report.origin import run_origin, scenario_text
 from ddct_bringup.report.output import MARKER
 from ddct_bringup.report.page_parts import json_data, page_part, page_template
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_marks import common_conditions, run_labels
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.summary import comparable_rows, metric_cells
-from ddct_bringup.report.update_times import TICKS, update_times
-from ddct_bringup.report.verdict_table import NOT_JUDGED, verdict_rows
+from ddct_bringup.report.tables.loop_table import loop_rows, without_evidence
+from ddct_bringup.report.tables.origin import run_origin, scenario_text
+from ddct_bringup.report.tables.summary import comparable_rows, metric_cells
+from ddct_bringup.report.tables.update_times import TICKS, update_times
+from ddct_bringup.report.tables.verdict_table import NOT_JUDGED, verdict_rows
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits

@@ -6,10 +6,10 @@ import re
 import pytest
 
 from ddct_bringup.report.evidence import LoopEvidence
-from ddct_bringup.report.loop_table import NOT_LINEAR, loop_rows, without_evidence
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.summary import comparable_rows, metric_cells
-from ddct_bringup.report.update_times import TICKS, update_times
+from ddct_bringup.report.tables.loop_table import NOT_LINEAR, loop_rows, without_evidence
+from ddct_bringup.report.tables.summary import comparable_rows, metric_cells
+from ddct_bringup.report.tables.update_times import TICKS, update_times
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
