@@ -5,6 +5,7 @@ import hashlib
 import importlib.resources
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,52 @@ def scenario_names() -> list[str]:
     )
 
 
+@dataclass(frozen=True)
+class ScenarioFile:
+    """A scenario as its file describes it, of which scenarios with changes are made."""
+
+    name: str
+    """The name or path that it was asked for by."""
+    content: Mapping[str, Any]
+    lines: Mapping[str, int]
+    """Of the keys and items, by path."""
+
+    @classmethod
+    def read(cls, name_or_file: str) -> 'ScenarioFile':
+        """Read a scenario; raise the errors of `load_scenario`."""
+        text, default_name = _read(name_or_file)
+        try:
+            content, lines = parse_yaml_with_lines(text)
+        except ParameterError as error:
+            raise ParameterError(f'scenario {name_or_file}: {error}') from error
+        if not isinstance(content, dict):
+            raise DdctError(
+                f'scenario {name_or_file}: the file must be a mapping of keys to values'
+            )
+        content.setdefault('name', default_name)
+        return cls(name_or_file, content, lines)
+
+    def scenario(
+        self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
+    ) -> Scenario:
+        """Return the scenario with overrides, as `load_scenario` tells."""
+        content = _own(self.content)
+        start_before = content.get('control_start_s')
+        given = overrides.items() if isinstance(overrides, Mapping) else map(_parsed, overrides)
+        set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
+        try:
+            content = with_points(content, Path(self.name).parent, set_keys)
+            scenario = scenario_from_mapping(content)
+            origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
+            scenario = consistent(scenario, origins, _number(start_before))
+            require_driveline(scenario.driveline, clutch)
+            return scenario
+        except ParameterError as error:
+            line = line_of(str(error), _in_file(self.lines, set_keys))
+            where = f'scenario {self.name}: line {line}' if line else f'scenario {self.name}'
+            raise ParameterError(f'{where}: {error}') from error
+
+
 def load_scenario(
     name_or_file: str,
     overrides: Iterable[str] | Mapping[str, Any] = (),
@@ -49,28 +96,7 @@ def load_scenario(
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
     cannot be read.
     """
-    text, default_name = _read(name_or_file)
-    try:
-        content, lines = parse_yaml_with_lines(text)
-    except ParameterError as error:
-        raise ParameterError(f'scenario {name_or_file}: {error}') from error
-    if not isinstance(content, dict):
-        raise DdctError(f'scenario {name_or_file}: the file must be a mapping of keys to values')
-    content.setdefault('name', default_name)
-    start_before = content.get('control_start_s')
-    given = overrides.items() if isinstance(overrides, Mapping) else map(_parsed, overrides)
-    set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
-    try:
-        content = with_points(content, Path(name_or_file).parent, set_keys)
-        scenario = scenario_from_mapping(content)
-        origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
-        scenario = consistent(scenario, origins, _number(start_before))
-        require_driveline(scenario.driveline, clutch)
-        return scenario
-    except ParameterError as error:
-        line = line_of(str(error), _in_file(lines, set_keys))
-        where = f'scenario {name_or_file}: line {line}' if line else f'scenario {name_or_file}'
-        raise ParameterError(f'{where}: {error}') from error
+    return ScenarioFile.read(name_or_file).scenario(overrides, clutch)
 
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
@@ -128,6 +154,13 @@ def _parsed(override: str) -> tuple[str, Any]:
         return key, parse_yaml(text)
     except ParameterError as error:
         raise ParameterError(f'--set {override}: {error}') from error
+
+
+def _own(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the content with mappings of its own, which may be changed; lists stay as they are."""
+    return {
+        key: _own(value) if isinstance(value, Mapping) else value for key, value in content.items()
+    }
 
 
 def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
