@@ -12,13 +12,13 @@ from ddct_plant.base.units import RAD_S_PER_RPM, RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace
 
 LATE_SHARE = 0.05
-"""Of updates that may take longer than their period."""
+"""Share of updates that may take longer than their period."""
 AGAIN = 2
 """More runs of a controller that seems slow."""
 MOST_RATE_N_M_S = 3500.0
 """Ten times per second from no clutch torque to all of it, 350 N m."""
 HALF = 0.5
-"""Of a step: who follows less within a second is too slow for engagements of one or two."""
+"""Share of a step. A loop that follows less in a second is too slow for an engagement."""
 WELL = 0.8
 """Share of a step that a good loop follows within a second."""
 

@@ -15,7 +15,7 @@ from ddct_plant.base.timebase import PERIOD_S
 
 SPIKE_RAD_S = 200.0
 HARD_RAD_S = 300.0
-"""Of slip that stays for a second: no torque that a clutch has brings it down."""
+"""Slip that stays for a second: no torque of a clutch brings it down."""
 SETTLED_N_M = 1.0
 WITHIN_STEPS = 30
 """In which a controller must have reacted to slip."""

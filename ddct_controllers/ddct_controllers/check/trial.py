@@ -24,7 +24,7 @@ PROBE_RPM = 50.0
 PROBE_RAD_S = rad_s_from_rpm(PROBE_RPM)
 """Size of what is changed: 50 rpm of slip."""
 GROWTH = 1.05
-"""Of what is missing of a step from one half second to the next, above which it grows."""
+"""Factor from one half second to the next above which the error of a step grows."""
 TIMED = 20
 """Updates after which a controller that is slower than its period is stopped."""
 Change = Callable[[Measurement], Measurement]

@@ -16,7 +16,7 @@ import numpy as np
 from ddct_controllers.check.outcome import place_of_caller
 
 CLOCKS = ('time', 'monotonic', 'perf_counter')
-"""Of the module time; each has a twin in ns."""
+"""Clocks of the module time; each has a twin in ns."""
 SOURCES: tuple[tuple[ModuleType, tuple[str, ...]], ...] = (
     (time, (*CLOCKS, *(f'{name}_ns' for name in CLOCKS))),
     (random, ('random', 'uniform', 'gauss', 'normalvariate', 'randint', 'choice')),

@@ -33,7 +33,7 @@ class Verification:
     contours: tuple[Contour, ...]
     """At the curves of S_p and T_p."""
     stable_when_worn: tuple[bool, ...]
-    """For each of WEAR_GAINS."""
+    """Whether the loop is stable, for each of WEAR_GAINS."""
 
     @property
     def complaints(self) -> tuple[str, ...]:

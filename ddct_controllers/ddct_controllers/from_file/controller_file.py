@@ -14,7 +14,7 @@ from ddct_plant.files.input_file import read_file, read_text_file
 from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
-"""Of a library or an FMU that a controller file names."""
+"""Largest size of a library or an FMU that a controller file names."""
 SUFFIXES = ('.yaml', '.yml')
 FORMAT = 'ddct-linear-controller-1'
 """Value of the key `format`, where one is given."""
@@ -45,7 +45,7 @@ class ControllerFile:
     content: Any
     """As YAML has it; `keys` checks that it is a mapping."""
     lines: Mapping[str, int]
-    """By dotted path, as `parse_yaml_with_lines` gives them."""
+    """Line numbers by dotted path, as `parse_yaml_with_lines` gives them."""
     digests: dict[str, str]
     """SHA-256 of the file and of the one that it names, by their key on `run_info`."""
 

@@ -47,7 +47,7 @@ _UNITS = {
     '_m_s': ('m/s',),
     '_n_m': ('Nm',),
 }
-"""By the end of our name how a tool may write its unit, but for dots, stars, hats and spaces."""
+"""How a tool may write a unit, by the end of our name; dots, stars, hats, spaces are left out."""
 _KINDS: Mapping[str, type] = {
     'Real': float,
     'Float64': float,
@@ -58,7 +58,7 @@ _KINDS: Mapping[str, type] = {
     'Boolean': bool,
     'String': str,
 }
-"""By type of variables that may be given a start value; inputs and outputs are of a float."""
+"""Kinds of start values by type of variable. Inputs and outputs have the type of a float."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ KINDS: Mapping[str, Loader] = {
     'c_library': c_library_spec,
     'fmu': fmu_spec,
 }
-"""By the key that a file of the kind has."""
+"""The loaders, by the key that a file of the kind has."""
 
 
 def load_spec(file: str) -> ControllerSpec[Controller]:

@@ -19,9 +19,9 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 FACTORED = 'transfer_function'
 UNITS = {'input': 'rpm', 'output': 'N m'}
-"""Of the slip error and the clutch torque; nothing else is accepted."""
+"""Units of the slip error and the clutch torque. No others are accepted."""
 FREQUENCY = {'frequency': 'rad/s'}
-"""Of zeros and poles, which a file may state too."""
+"""Unit of zeros and poles. A file may state it too."""
 
 
 def linear_in(file: ControllerFile, kind: str) -> tuple[Given, str]:
@@ -167,6 +167,6 @@ FORMS: Mapping[str, Callable[[str, Any], Given]] = {
     'zeros_poles_gain': _zeros_poles_gain,
     'state_space': _state_space,
 }
-"""By the key in the file; each takes that key and what stands there."""
+"""Readers by the key in the file. Each takes the key and its value."""
 LINEAR = {kind: partial(_linear_spec, kind) for kind in FORMS}
 """The loaders of these kinds."""

@@ -37,9 +37,9 @@ BASIS = TABLE_4_1['mpc3']
 PREDICTION_STEPS = 7
 """T_p = 0.07 s of MPC4."""
 SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
-"""Of w_d per rad/s and of dw_d/dt per rad/s^2: roots, as (4.1) does not square Q = (1, 0.05)."""
+"""Weights of w_d per rad/s and dw_d/dt per rad/s^2: roots, as (4.1) does not square Q."""
 DEMAND_WEIGHT = 0.14
-"""Per N m that C_m is away from the demand; docs/controllers/mpc4.md has the argument."""
+"""Weight per N m between C_m and the demand; docs/controllers/mpc4.md has the argument."""
 
 
 def thesis_settings(row: TableRow, *, preview: bool = False) -> MpcSettings:

@@ -12,7 +12,7 @@ from ddct_plant.base.units import rad_s_from_rpm
 
 MOST_STEPS = 1000
 MOST = 1e6
-"""Of every other number, in its unit: far beyond all sense, and all products of it are finite."""
+"""Largest value of any other number, in its unit: far too large, but its products are finite."""
 _AS_THEY_ARE = ('prediction_steps', 'control_steps', 'preview', 'backend', 'iteration_limit')
 _CLUTCH_LIMITS = {'highest_torque_n_m': 'highest', 'torque_rate_n_m_s': 'rate_n_m_s'}
 

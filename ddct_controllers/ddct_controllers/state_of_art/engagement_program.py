@@ -18,9 +18,9 @@ from ddct_plant.base.timebase import PERIOD_S
 MOVES = 10
 """Spread evenly over the horizon, with a constant request between them."""
 SLIP_WEIGHT = 100.0
-"""Of the slip at the end, in N m per rad/s: 0.1 rad/s costs as much as a move of 10 N m."""
+"""Weight of the slip at the end, in N m per rad/s: 0.1 rad/s costs as much as 10 N m."""
 ACCELERATION_WEIGHT = 5.0
-"""Of the slip acceleration at the end, in N m per rad/s^2: 2 rad/s^2 cost as much as 10 N m."""
+"""Weight of dw_d/dt at the end, in N m per rad/s^2: 2 rad/s^2 cost as much as 10 N m."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,7 +30,7 @@ QUANTITIES = {
 }
 """What is taken to its extremes, with its direction in shares of the parameters' ranges."""
 _DECIMALS = (2, 2, 4, 2, 5, 5)
-"""Of the values in the files, in the order of PARAMETERS."""
+"""Decimals of the values in the files, in the order of PARAMETERS."""
 
 
 @cache

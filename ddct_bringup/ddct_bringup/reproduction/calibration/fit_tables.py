@@ -12,7 +12,7 @@ _FIGURE_LABELS = {
     'acceleration_std_m_s2': 'sigma A_x, m/s^2',
 }
 VALUE_HEADERS = ('C_m start', 'C_m end', 'rise end', 'slope', 'K_p', 'K_i')
-"""Of the fitted parameters, in the order of NAMES."""
+"""Headers of the fitted parameters, in the order of NAMES."""
 
 
 def residual_table(record: Record) -> Table:

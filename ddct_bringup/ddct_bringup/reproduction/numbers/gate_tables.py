@@ -93,7 +93,7 @@ def _chapter(row: GateRow) -> str:
 
 
 _Cells = Mapping[str, Callable[[GateRow], str]]
-"""By header what stands below it."""
+"""The cell of a row, by the header above it."""
 _VALUE_CELLS: _Cells = {
     'section': attrgetter('number.section'),
     'item': attrgetter('number.item'),

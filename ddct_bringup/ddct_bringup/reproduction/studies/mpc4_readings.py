@@ -38,7 +38,7 @@ WEAR_GAINS = (0.7, 1.0, 1.3)
 """At which growth is shown: the ends of the thesis's Table 5.2, and a new clutch."""
 GROWTH_HEADERS = tuple(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS)
 STIFFER_PULL = 0.05
-"""Of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
+"""r of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
 Model = Callable[[DrivelineParameters, float], TransmissionModel]
 """From the driveline and the wear gain."""
 

@@ -36,12 +36,12 @@ class Reading:
     """What one reading makes of a row of Table 4.1."""
 
     change: Change = lambda settings: settings
-    """Of what the row means by itself."""
+    """Change of what the row means by itself."""
     knowledge: Knowledge = AS_DRAWN
     model: TransmissionModel | None = None
     """In place of the one that is known of."""
     noise_rpm: float = 1.0
-    """Of the measured w_d."""
+    """Noise of the measured w_d."""
     beside: Callable[[MpcController], Controller] = lambda controller: controller
     """What becomes of C_fOL beside the controller."""
     architecture: str = 'detailed'

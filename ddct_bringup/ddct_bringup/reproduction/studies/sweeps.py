@@ -35,7 +35,7 @@ BESIDE = ('pi', 'hinf1', 'mpc3')
 WEAR_GAINS = (0.7, 1.0, 1.3)
 _FINE_GAINS = (0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3)
 TWO_INPUT_GAINS = {'mpc4': _FINE_GAINS, 'mpc4_wear': (0.4, 0.5, *_FINE_GAINS, 1.5, 1.6, 2.0)}
-"""Of `mpc4_wear` up to and beyond the bounds of its estimate, 0.5 and 1.5."""
+"""Wear gains. Those of `mpc4_wear` reach beyond the bounds of its estimate, 0.5 and 1.5."""
 AUTHORITIES = {
     'free': EngineAuthority(),
     **{

@@ -31,7 +31,7 @@ LOAD_STEP_N_M = 470.0
 """At the wheels: a slope of 10 % begins."""
 LOAD_STEP_S = 1.5
 LAST_S = 0.5
-"""Of the run, in which the largest slip is looked for."""
+"""Last part of the run, in which the largest slip is looked for."""
 SEED = 4
 CLOSE = 0.02
 """How near the true gain counts as known."""

@@ -35,7 +35,7 @@ NOT_REACHED = 'not reached'
 Figures = Mapping[str, float | None]
 """One figure by controller, None where it does not exist."""
 _EQUAL_MODELS_PERCENT = 1.0
-"""Of the peak of w_d: models that are nearer are equal."""
+"""Share of the peak of w_d. Models that are nearer to each other count as equal."""
 
 
 def closed_loop_values() -> dict[str, Value | None]:

@@ -82,7 +82,7 @@ class WorstCorner:
     sensitivity_peak: float | None
     """M_s there, None when a corner is unstable."""
     least_mode_damping: float | None
-    """Of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
+    """Least damping of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
 
 
 def worst_corner(controller: StateSpace, corners: PlantCorners) -> WorstCorner:

@@ -107,9 +107,9 @@ class EffortWeight:
     """W_c on the torque request: it costs 1 at `torque_n_m_per_rpm`, and more beyond a corner."""
 
     torque_n_m_per_rpm: float
-    """Per rpm of the reference."""
+    """Torque that costs 1, per rpm of the reference."""
     corner_rad_s: float
-    """Where the weight starts to rise, up to 100 times higher."""
+    """Frequency from which the weight rises, up to 100 times higher."""
 
     def __post_init__(self) -> None:
         """Check both; raise WeightError that names a bad one."""

@@ -38,7 +38,7 @@ class Contour:
     peak: float
     """M_s or M_t of the loop."""
     peak_rad_s: float
-    """Where it is."""
+    """Frequency of the peak."""
     inside_rad_s: tuple[tuple[float, float], ...]
     """First and last frequency of every stretch of L inside the curve, as far as L is known."""
 

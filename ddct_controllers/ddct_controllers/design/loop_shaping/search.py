@@ -41,7 +41,7 @@ _ZERO_RATIOS = np.geomspace(0.002, 0.5, 64)
 _CROSSOVERS_RAD_S = np.geomspace(0.05, 50.0, 150)
 """5 % apart, whatever is asked for, so that what one search can reach the next can too."""
 _FIRST_CROSSOVER = 0.7
-"""Where the search begins, over the crossover that the prototype asks for."""
+"""Start of the search, as a share of the crossover that the prototype asks for."""
 _SEARCH_TIME = 15.0
 """Length of a step response of the search over 1/w_c: past the highest overshoot."""
 _OMEGA = np.geomspace(1e-2, math.pi / PERIOD_S, 200)

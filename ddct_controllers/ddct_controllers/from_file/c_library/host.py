@@ -28,10 +28,10 @@ RESET, UPDATE, HOLD = b'ruh'
 ANSWER = struct.Struct('ddi')
 """Clutch torque, engine torque, and what the function returned."""
 MOST_BYTES = 1 << 16
-"""Of a message."""
+"""Largest size of a message."""
 MOST_PREVIEW_STEPS = 1000
 MOST_SECONDS = 10
-"""Of a call: the alarm then ends the process."""
+"""Longest duration of a call. After it an alarm ends the process."""
 _EXAMPLE = 'start from the template in docs/controllers/c_controller.md'
 
 

@@ -21,7 +21,7 @@ Per period. A random walk reaches it times the root of the number of periods: a 
 is wrong by 90 N m when C_f has risen to 300 N m, half a second after the start.
 """
 LOAD_DRIFT_N_M = 47.0
-"""Per period: within a second the load of a 10 % slope, 470 N m at the wheels of 1500 kg."""
+"""Drift per period: in a second it reaches the load of a 10 % slope, 470 N m for 1500 kg."""
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,15 @@ class NoiseLevels:
     """Standard deviations that set how far the filter trusts its model and the measurements."""
 
     speed_rad_s: float = 0.05
-    """Of each measured speed; about the resolution of a wheel-speed sensor."""
+    """Noise of each measured speed: about the resolution of a wheel-speed sensor."""
     engine_torque_n_m: float = 2.0
-    """Of C_m about its known value."""
+    """Deviation of C_m from its known value."""
     clutch_torque_n_m: float = 5.0
-    """Of C_f about what the actuator's model gives."""
+    """Deviation of C_f from what the actuator's model gives."""
     load_torque_n_m: float = 20.0
-    """Of C_load about its computed value."""
+    """Deviation of C_load from its computed value."""
     drift: tuple[float, ...] = ()
-    """Per period, of each estimated disturbance, in its unit."""
+    """Drift of each estimated disturbance per period, in its unit."""
 
 
 def offset_free_noise(

@@ -18,7 +18,7 @@ GAIN, CLUTCH_ERROR, LOAD_ERROR = range(DRIVELINE, DRIVELINE + 3)
 """Then K_usura, and the errors of C_f and C_load in N m."""
 SIZE = LOAD_ERROR + 1
 LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
-"""Of the estimate; beyond the 0.7 to 1.3 that a clutch is taken to reach."""
+"""Bounds of the estimate. We take a clutch to reach 0.7 to 1.3."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,13 @@ class WearNoise:
     """Standard deviations; all drifts are per period."""
 
     initial_gain: float = 0.2
-    """Of K_usura about 1 before the first measurement."""
+    """Deviation of K_usura from 1 before the first measurement."""
     gain_drift: float = 0.01
-    """Of K_usura; within a second, an engagement, 0.1: the fade of a hot clutch."""
+    """Drift of K_usura: 0.1 within a second, an engagement. This is the fade of a hot clutch."""
     clutch_drift_n_m: float = CLUTCH_DRIFT_N_M
-    """Of the error of C_f, while a bound holds K_usura; as in the offset-free controllers."""
+    """Drift of the error of C_f while a bound holds K_usura, as in the offset-free controllers."""
     load_drift_n_m: float = LOAD_DRIFT_N_M
-    """Of the error of C_load; as in the offset-free controllers."""
+    """Drift of the error of C_load, as in the offset-free controllers."""
 
 
 def process_noise(model: TransmissionModel, noise: NoiseLevels, wear: WearNoise) -> np.ndarray:

@@ -27,7 +27,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 
 LEAST_TORQUE_N_M = 5.0
-"""Of the actuator, below which K_usura does not drift; C_f may be wrong by as much anyway."""
+"""Torque of the actuator below which K_usura does not drift: C_f may be wrong by as much."""
 
 
 class WearObserver:

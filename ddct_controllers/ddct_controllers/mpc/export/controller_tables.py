@@ -26,7 +26,7 @@ class ControllerTables:
     """Macros and constant arrays of the exported C, by their names there."""
 
     public: dict[str, int | float]
-    """For the header; the prefix DDCT_MPC_ is left out."""
+    """Numbers for the header, by their names without the prefix DDCT_MPC_."""
     private: dict[str, int | float]
     arrays: dict[str, np.ndarray]
     """Vectors and matrices."""

@@ -13,9 +13,9 @@ class InputTerms:
     """Weights and limits of one input, a torque in N m."""
 
     move_weight: float = 0.0
-    """Of each change from one period to the next, per N m."""
+    """Weight of each change from one period to the next, per N m."""
     target_weight: float = 0.0
-    """Of the deviation from the input's target, per N m: C_fOL of the clutch, 0 of the engine."""
+    """Weight of the deviation from the target per N m: C_fOL for the clutch, 0 for the engine."""
     lowest: float = 0.0
     """Limit in N m; -inf for none."""
     highest: float = math.inf
@@ -43,9 +43,9 @@ class OutputTerms:
     output: int
     """Row of the model's outputs, such as SLIP_SPEED."""
     weight: float
-    """Of the deviation from the reference, per unit; 0 leaves the output free."""
+    """Weight of the deviation from the reference, per unit; 0 leaves the output free."""
     final_weight: float = 0.0
-    """Of the deviation at the end of the horizon, beside `weight`."""
+    """Weight of the deviation at the end of the horizon, beside `weight`."""
     lowest: float = -math.inf
     """Soft limit; -inf for none."""
     highest: float = math.inf
@@ -83,13 +83,13 @@ class MpcSettings:
     preview: bool = True
     """Whether the coming reference is used; otherwise its present value is held."""
     along_tangent: bool = False
-    """Whether without preview the slip reference goes on along its tangent instead."""
+    """Whether the slip reference continues along its tangent if there is no preview."""
     soft_limit_weight: float = 1e4
-    """Of the squared violation of an output's limit, in its unit, at each period ahead."""
+    """Weight of the squared violation of an output's limit, in its unit, at each period ahead."""
     backend: str = DEFAULT_BACKEND
     """Which QP solver."""
     iteration_limit: int | None = None
-    """Of the solver, per step, None for its ITERATION_LIMITS; one on time would differ by run."""
+    """Limit of the solver per step, None for its ITERATION_LIMITS; a time would differ by run."""
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one and what fits."""

@@ -11,7 +11,7 @@ from ddct_plant.base.errors import ParameterError
 QpStatus = Literal['solved', 'iteration limit', 'infeasible']
 
 WORST_CONDITION = 1e10
-"""Of the Hessian scaled to a unit diagonal; above, a solution has less than six digits."""
+"""Condition of the Hessian with a unit diagonal; above it, a solution has less than six digits."""
 _ASYMMETRY = 1e-9
 """Relative; condensing rounds far below this."""
 

@@ -43,9 +43,9 @@ class SlowClutch:
         self._initial_request = initial_state(context.settings).torque_request
         scenario = context.settings.scenario
         transmission = self.transmission = RigidTransmission(scenario.driveline)
-        """For which it plans and asks."""
+        """Transmission for which it plans and asks."""
         self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
-        """Of the engine speed."""
+        """Plan of the engine speed."""
         corner = 0.5 * transmission.rigid_below_rad_s
         # At low frequency the shaft's acceleration is so far behind the wanted one.
         lag_s = 2.0 / corner + ACTUATION_LAG_S
