@@ -157,7 +157,7 @@ def _parsed(override: str) -> tuple[str, Any]:
 
 
 def _own(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content with mappings of its own, which may be changed; lists stay as they are."""
+    """Return the content with mappings of its own, which may be changed; lists are shared."""
     return {
         key: _own(value) if isinstance(value, Mapping) else value for key, value in content.items()
     }
