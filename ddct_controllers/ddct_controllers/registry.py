@@ -54,13 +54,16 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
     Or if one of ours does not take them, though it may not run. Those of others are checked when
     they are asked for.
     """
-    unknown = sorted(scenario.controllers.keys() - {*controller_names(), *labels})
+    if not scenario.controllers:
+        return
+    own = _own_controllers()
+    foreign = scenario.controllers.keys() - {*own, *labels}
+    unknown = sorted(foreign - {*controller_names()}) if foreign else []
     if unknown:
         raise ParameterError(
             f'controllers.{unknown[0]}: there is no such controller: choose from '
             f'{", ".join(controller_names())}'
         )
-    own = _own_controllers()
     for name, given in scenario.controllers.items():
         if name in own:
             own[name].values(given)

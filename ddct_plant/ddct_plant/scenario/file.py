@@ -99,6 +99,11 @@ def load_scenario(
     return ScenarioFile.read(name_or_file).scenario(overrides, clutch)
 
 
+def is_packaged(name_or_file: str) -> bool:
+    """Say whether it is the name of a scenario that comes with the package, and no file."""
+    return '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml'))
+
+
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
     """Build a scenario from nested mappings, the form that YAML files have."""
     content = {'description': '', **content}
@@ -131,7 +136,7 @@ def _packaged() -> Traversable:
 def _read(name_or_file: str) -> tuple[str, str]:
     if not name_or_file:
         raise ParameterError('scenario is empty: give a name or a YAML file')
-    if '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml')):
+    if is_packaged(name_or_file):
         if name_or_file not in scenario_names():
             raise ParameterError(
                 f'unknown scenario {name_or_file!r}: choose from {", ".join(scenario_names())}, '
@@ -157,7 +162,7 @@ def _parsed(override: str) -> tuple[str, Any]:
 
 
 def _own(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content with mappings of its own, which may be changed; lists are shared."""
+    """Return the content with mappings of its own, which may be changed."""
     return {
         key: _own(value) if isinstance(value, Mapping) else value for key, value in content.items()
     }
