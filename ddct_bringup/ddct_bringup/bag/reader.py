@@ -53,10 +53,14 @@ class Recording:
     """What `/diagnostics` says; empty in lock-step."""
     absent: Mapping[str, str] = field(default_factory=dict)
     """Of a log of another tool: quantities that it does not have, NaN here, and why."""
+    simulated: RunSettings | None = None
+    """What was simulated here, and so need not be read."""
 
     @cached_property
     def settings(self) -> RunSettings | None:
         """What was simulated; None where the bag does not tell, or it cannot be built here."""
+        if self.simulated is not None:
+            return self.simulated
         facts = self.facts
         try:
             return RunSettings(

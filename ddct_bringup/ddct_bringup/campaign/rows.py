@@ -4,17 +4,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.run.description import custom_data
-from ddct_bringup.run.execution import simulate
-from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.description import facts_of
+from ddct_bringup.run.execution import in_memory
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.plan import require_headless
+from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_controllers.registry import Chosen, controller_label
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.options import options_of
+from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -59,16 +61,19 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
 
     It has no figures of wall-clock time: a row is the same each time it is computed.
     """
+    name, timing = controller_label(controller), RunTiming()
     try:
-        plan = RunPlan(settings, controller, 'headless')
-        recording, timing = simulate(plan)
+        require_headless(settings)
+        trajectory = run_headless(settings, controller, timing)
     except DdctError as error:
-        name = controller_label(controller)
-        data = custom_data(settings, name, settings.scenario.steps)
-        return entry_without_score(name, RunFacts.from_custom_data(data), str(error))
-    entry = score_run(recording, plan.name, limits, timing)
-    entry['metrics'] |= dict.fromkeys(WALL_CLOCK)
-    return entry
+        reason = str(error)
+    except FOREIGN_FAILURES as error:  # one of many runs must not take the others along
+        reason = printable(f'{type(error).__name__}: {error}')
+    else:
+        entry = score_run(in_memory(settings, name, trajectory), name, limits, timing)
+        entry['metrics'] |= dict.fromkeys(WALL_CLOCK)
+        return entry
+    return entry_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
 
 
 def result_row(entry: Entry, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:

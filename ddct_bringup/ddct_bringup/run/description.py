@@ -16,10 +16,10 @@ RunInfo = dict[str, tuple[tuple[str, str], ...]]
 """Per node name the (key, value) pairs that it latches on `run_info`."""
 
 
-def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
-    """Return the bag's custom data: the facts of the run, its whole scenario and our version."""
+def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
+    """Return what scoring needs to know of a run of so many steps."""
     scenario = settings.scenario
-    facts = RunFacts(
+    return RunFacts(
         controller=controller,
         architecture=settings.architecture,
         scenario=scenario.name,
@@ -31,8 +31,13 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
         score_window_s=scenario.score_window_s,
         duration_s=time_of_step(steps),
     )
+
+
+def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
+    """Return the bag's custom data: the facts of the run, its whole scenario and our version."""
+    scenario = settings.scenario
     return {
-        **facts.to_custom_data(),
+        **facts_of(settings, controller, steps).to_custom_data(),
         'scenario_yaml': scenario_to_yaml(scenario),
         'adjusted': '\n'.join(scenario.adjusted),
         'version': package_version(),

@@ -4,19 +4,20 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
 from ddct_bringup.processes.ros_domain import own_domain
-from ddct_bringup.run.description import custom_data, run_info_of
+from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_timing import RunTiming
@@ -24,6 +25,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.stop_signals import stop_signals
+from ddct_plant.scenario.settings import RunSettings
 
 WORK_FOLDER = 'work'
 """Scenario, parameters and logs of a run; of a run that ends well only logs with warnings stay."""
@@ -161,15 +163,24 @@ def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
     timing = RunTiming()
     trajectory = run_headless(plan.settings, controller, timing)
     run_info = run_info_of(plan.settings, plan.name, controller, plan.steps)
-    data = custom_data(plan.settings, plan.name, plan.steps)
-    recording = Recording(
+    recording = replace(
+        in_memory(plan.settings, plan.name, trajectory),
+        custom_data=custom_data(plan.settings, plan.name, plan.steps),
+        run_info={node: dict(pairs) for node, pairs in run_info.items()},
+    )
+    return recording, timing
+
+
+def in_memory(settings: RunSettings, controller: str, trajectory: Trajectory) -> Recording:
+    """Return the recording of a headless run with what scoring needs, and nothing for a bag."""
+    return Recording(
         path=Path(),
         trajectory=trajectory,
-        facts=RunFacts.from_custom_data(data),
-        custom_data=data,
-        run_info={node: dict(pairs) for node, pairs in run_info.items()},
+        facts=facts_of(settings, controller, settings.scenario.steps),
+        custom_data={},
+        run_info={},
         counts={},
         missed={},
         realtime=RealtimeFacts(),
+        simulated=settings,
     )
-    return recording, timing

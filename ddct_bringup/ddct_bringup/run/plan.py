@@ -27,10 +27,8 @@ class RunPlan:
     def __post_init__(self) -> None:
         """Refuse now what would fail in the graph; raise DdctError."""
         make_architecture(self.settings, make_controller(self.controller, self.settings))
-        if self.layout == 'headless' and not self.settings.lockstep:
-            raise ParameterError(
-                'mode realtime needs the graph, which --headless does without: drop one of them'
-            )
+        if self.layout == 'headless':
+            require_headless(self.settings)
         if self.layout != 'headless':
             if not isinstance(self.controller, str):
                 raise ParameterError(
@@ -85,3 +83,11 @@ class RunPlan:
         }
         path.write_text(dump_yaml(content), encoding='utf-8')
         return path
+
+
+def require_headless(settings: RunSettings) -> None:
+    """Raise ParameterError where a run needs the graph."""
+    if not settings.lockstep:
+        raise ParameterError(
+            'mode realtime needs the graph, which --headless does without: drop one of them'
+        )
