@@ -9,6 +9,7 @@ from setuptools import find_packages, setup
 PACKAGE = 'ddct_bringup'
 PROGRAMS = [
     'bringup = ddct_bringup.programs.bringup:main',
+    'campaign = ddct_bringup.programs.campaign:main',
     'compare = ddct_bringup.programs.compare:main',
     'live = ddct_bringup.programs.live:main',
     'recorder = ddct_bringup.record.recorder_node:main',
@@ -48,11 +49,17 @@ setup(
         'mcap',
         'mcap-ros2-support',
         'numpy',
+        'pyarrow',
         'rich',
         'scipy',
         'zstandard',
     ],
-    extras_require={'live': ['foxglove-sdk'], 'pandas': ['pandas'], 'test': ['pytest']},
+    extras_require={
+        'dask': ['distributed'],
+        'live': ['foxglove-sdk'],
+        'pandas': ['pandas'],
+        'test': ['pytest'],
+    },
     zip_safe=False,
     maintainer='DDCT team',
     maintainer_email='maintainers@ddct.invalid',

@@ -31,6 +31,13 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
     )
+    add_layout_options(parser)
+    parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
+    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
+
+
+def add_layout_options(parser: argparse.ArgumentParser) -> None:
+    """Add whether a run takes place in a graph, as `layout`."""
     layout = parser.add_mutually_exclusive_group()
     layout.add_argument(
         '--single-process',
@@ -43,8 +50,6 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     layout.add_argument(
         '--headless', action='store_const', const='headless', dest='layout', help='no ROS graph'
     )
-    parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
-    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
 
 
 def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:

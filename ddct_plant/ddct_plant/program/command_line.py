@@ -73,8 +73,8 @@ def run_program(
     except DdctError as error:
         complain(name, error)
         return 1
-    except KeyboardInterrupt:
-        complain(name, 'interrupted')
+    except KeyboardInterrupt as error:
+        complain(name, str(error) or 'interrupted')
         return INTERRUPTED
     except BrokenPipeError:
         _drop_output()

@@ -1,0 +1,126 @@
+"""The columns of `results.parquet`, and how rows become the bytes of a Parquet file."""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from ddct_bringup.campaign.rows import CRITERION
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_plant.base.errors import DdctError
+
+SCHEMA_VERSION = 1
+"""Of the columns."""
+INDEX, CONTROLLER, PATH = 'index', 'controller', 'path'
+METRICS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
+"""Those of `scores.json` that are the same each time a run is computed."""
+CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
+_COMPRESSION = 'zstd'
+_ROW_GROUP = 50_000
+"""Rows at least, but in the last group."""
+_VERDICT = (
+    ('valid', pa.bool_()),
+    ('reason', pa.string()),
+    ('verdict_state', pa.string()),
+    ('verdict_limits', pa.string()),
+)
+COMPARED = (*METRICS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
+"""What a run that is made again must have as its row has it."""
+
+
+def schema_of(spec: CampaignSpec) -> pa.Schema:
+    """Return the columns of a campaign; what varies has one by its dotted key."""
+    varied = [(key, _type(spec, key)) for key in spec.keys]
+    fields = [
+        (INDEX, pa.int64()),
+        (CONTROLLER, pa.string()),
+        (PATH, pa.string()),
+        *varied,
+        *((name, pa.float64()) for name in METRICS),
+        *_VERDICT,
+        *((name, pa.float64()) for name in CRITERION_COLUMNS),
+    ]
+    return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
+
+
+def shard_bytes(schema: pa.Schema, rows: Iterable[Mapping[str, Any]]) -> bytes:
+    """Return rows as a Parquet file, the same bytes for the same rows."""
+    cells = [{name: _cell(row[name]) for name in schema.names} for row in rows]
+    sink = pa.BufferOutputStream()
+    table = pa.Table.from_pylist(cells, schema)
+    parquet.write_table(table, sink, compression=_COMPRESSION)
+    return sink.getvalue().to_pybytes()
+
+
+def holds_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
+    """Say whether a file is whole and holds the rows `first` to `last`, the latter excluded."""
+    try:
+        table = parquet.read_table(path)
+    except (OSError, pa.ArrowException):
+        return False
+    return table.schema.equals(schema) and table[INDEX].to_pylist() == list(range(first, last))
+
+
+def merge(shards: Sequence[Path], schema: pa.Schema, target: Path, advice: str) -> None:
+    """
+    Write the rows of all shards, in their order, into one file, whole or not at all.
+
+    Raise DdctError, with an advice, when that fails.
+    """
+    partial = target.with_name(f'.{target.name}.partial')
+    try:
+        with (
+            partial.open('wb') as file,
+            parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
+        ):
+            for tables in _row_groups(shards):
+                writer.write_table(pa.concat_tables(tables))
+        partial.replace(target)
+    except (OSError, pa.ArrowException) as error:
+        partial.unlink(missing_ok=True)
+        why = getattr(error, 'strerror', None) or error
+        raise DdctError(f'{target}: cannot be written ({why}); {advice}') from error
+
+
+def _row_groups(shards: Sequence[Path]) -> Iterator[list[pa.Table]]:
+    """Yield the tables of shards that make a row group together: each costs a reader memory."""
+    tables: list[pa.Table] = []
+    for shard in shards:
+        tables.append(parquet.read_table(shard))
+        if sum(len(table) for table in tables) >= _ROW_GROUP:
+            yield tables
+            tables = []
+    if tables:
+        yield tables
+
+
+def read_row(results: Path, index: int) -> dict[str, Any]:
+    """Return one row by column name; raise DdctError for a file or a row that is not there."""
+    try:
+        rows = parquet.read_table(results, filters=[(INDEX, '=', index)]).to_pylist()
+    except (OSError, pa.ArrowException) as error:
+        raise DdctError(f'{results}: cannot be read ({error}): finish the campaign') from error
+    if not rows:
+        raise DdctError(f'{results}: it has no row {index}')
+    return rows[0]
+
+
+def _cell(value: Any) -> Any:
+    """Return a value as a cell holds it: a list, or a group of keys, as text."""
+    return json.dumps(value) if isinstance(value, (list, tuple, Mapping)) else value
+
+
+def _type(spec: CampaignSpec, key: str) -> pa.DataType:
+    values = spec.values_of(key)
+    if any(isinstance(value, (str, list, tuple, Mapping)) for value in values):
+        return pa.string()
+    if values and all(isinstance(value, bool) for value in values):
+        return pa.bool_()
+    if values and all(isinstance(value, int) for value in values):
+        return pa.int64()
+    return pa.float64()

@@ -1,0 +1,190 @@
+"""Carry out a campaign: the shards that are missing, each written whole, then all in one file."""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
+from ddct_bringup.campaign.executors import Workers, workers_of
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.progress import Progress
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.shards import ShardJob, compute_shard, shard_ranges
+from ddct_bringup.run.folder_lock import held
+from ddct_bringup.run.output_folder import MARKER, mark_folder, require_ours_or_empty
+from ddct_bringup.verdict.limits import Limits
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_bytes
+
+RESULTS = 'results.parquet'
+SHARDS = 'shards'
+RESUME = 'what is done stays: go on with --resume'
+_AHEAD = 2
+"""Shards that each worker has at hand, so that none waits for the next."""
+_MOST_DEATHS = 3
+"""Of workers, one after the other, without a shard done in between."""
+_LOOK_S = 0.2
+"""Between two looks at signals and workers."""
+
+
+@dataclass(frozen=True)
+class Shard:
+    """One shard in its place."""
+
+    job: ShardJob
+    file: Path
+
+
+def carry_out(
+    campaign: Campaign,
+    limits: Limits,
+    out: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    resume: bool = False,
+    stopped: Callable[[], bool] = lambda: False,
+) -> Path:
+    """
+    Carry out a campaign in the folder `out` and return its results file.
+
+    Raise DdctError for what cannot be used or does not end well, KeyboardInterrupt when
+    `stopped()` becomes true: the shards that are done stay, and `resume` goes on with them.
+    """
+    manifest = Manifest.of(campaign, limits)
+    with held(out):
+        manifest = _begin(manifest, out, campaign, resume=resume, stopped=stopped)
+        schema = schema_of(campaign.spec)
+        shards = _shards(campaign, limits, manifest, out)
+        missing = [
+            each
+            for each in shards
+            if not holds_rows(each.file, schema, each.job.first, each.job.last)
+        ]
+        if missing:
+            with workers_of(workers, scheduler) as ready:
+                done = manifest.runs - sum(each.job.last - each.job.first for each in missing)
+                progress = Progress('runs', manifest.runs, done=done)
+                _Conduct(ready, progress, stopped).compute(missing, done)
+        merge([each.file for each in shards], schema, out / RESULTS, RESUME)
+    return out / RESULTS
+
+
+def _begin(
+    manifest: Manifest,
+    out: Path,
+    campaign: Campaign,
+    *,
+    resume: bool,
+    stopped: Callable[[], bool],
+) -> Manifest:
+    """Return the manifest in the folder, which is written first unless the campaign goes on."""
+    require_ours_or_empty(out)
+    if (out / MANIFEST).exists():
+        known = Manifest.read(out)
+        if not resume:
+            raise DdctError(
+                f'{out} holds a campaign: go on with --resume, or choose another --out'
+            )
+        known.require_same(manifest, out)
+        return known
+    if resume:
+        raise DdctError(f'{out}: there is nothing to go on with: leave --resume out')
+    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
+        raise DdctError(f'{out} holds other results: choose another --out')
+    _require_buildable(campaign, stopped)
+    mark_folder(out)
+    (out / SHARDS).mkdir(exist_ok=True)
+    manifest.write(out)
+    return manifest
+
+
+def _require_buildable(campaign: Campaign, stopped: Callable[[], bool]) -> None:
+    progress = Progress('planned', campaign.cases)
+
+    def tell(done: int) -> None:
+        require_going_on(stopped)
+        progress.tell(done)
+
+    campaign.require_buildable(tell)
+    progress.end()
+
+
+def _shards(campaign: Campaign, limits: Limits, manifest: Manifest, out: Path) -> list[Shard]:
+    return [
+        Shard(
+            ShardJob(campaign.spec, limits, manifest.code_digest, first, last),
+            out / SHARDS / f'{first:08d}.parquet',
+        )
+        for first, last in shard_ranges(manifest.runs, manifest.shard_size)
+    ]
+
+
+class _Conduct:
+    """Keeps workers at work until every shard is on the disk."""
+
+    def __init__(self, workers: Workers, progress: Progress, stopped: Callable[[], bool]) -> None:
+        self._workers = workers
+        self._progress = progress
+        self._stopped = stopped
+
+    def compute(self, shards: Sequence[Shard], done: int) -> None:
+        """Compute shards and write each; `done` runs were so before."""
+        missing = list(shards)
+        deaths = 0
+        while missing:
+            try:
+                for shard in self._written(missing):
+                    missing.remove(shard)
+                    done += shard.job.last - shard.job.first
+                    deaths = 0
+                    self._progress.tell(done)
+            except (BrokenExecutor, CancelledError) as error:
+                self._workers.require_alive()
+                deaths += 1
+                if deaths == _MOST_DEATHS:
+                    raise DdctError(
+                        f'workers died {deaths} times one after the other: free some memory or '
+                        f'take fewer of them; {RESUME}'
+                    ) from error
+        self._progress.end()
+
+    def _written(self, shards: Sequence[Shard]) -> Iterator[Shard]:
+        """Yield each shard once it is written; raise what breaks an executor."""
+        executor = self._workers.executor()
+        waiting = iter(tuple(shards))
+        running: dict[Future[bytes], Shard] = {}
+        while True:
+            free = _AHEAD * self._workers.count - len(running)
+            for shard in islice(waiting, max(free, 0)):
+                running[executor.submit(compute_shard, shard.job)] = shard
+            if not running:
+                return
+            finished = wait(running, _LOOK_S, FIRST_COMPLETED).done
+            require_going_on(self._stopped)
+            if not finished:
+                self._workers.require_alive()
+            for future in finished:
+                shard = running.pop(future)
+                write_bytes(str(shard.file), _result(future, shard.job), RESUME)
+                yield shard
+
+
+def require_going_on(stopped: Callable[[], bool]) -> None:
+    """Raise KeyboardInterrupt where the user wants an end."""
+    if stopped():
+        raise KeyboardInterrupt(f'interrupted; {RESUME}')
+
+
+def _result(future: Future[bytes], job: ShardJob) -> bytes:
+    try:
+        return future.result()
+    except (BrokenExecutor, CancelledError):
+        raise
+    except Exception as error:
+        what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
+        raise DdctError(
+            f'runs {job.first} to {job.last - 1} could not be computed ({what}); {RESUME}'
+        ) from error

@@ -1,0 +1,206 @@
+"""The distributions that a campaign draws from, by name, each by its quantile function."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from ddct_plant.base.checks import require_choice, require_number
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option, close_name
+
+KIND, LOW, HIGH, CHOICE = 'distribution', 'low', 'high', 'choice'
+Numbers = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """One quantity that varies at random."""
+
+    kind: str
+    """A name of `KINDS`, or `CHOICE`."""
+    numbers: Numbers
+    """Its parameters by name; of a choice none."""
+    values: tuple[Any, ...] = ()
+    """Of a choice."""
+    weights: tuple[float, ...] = ()
+    """Of a choice: how often each value, summing to 1."""
+
+    def value(self, uniform: float) -> Any:
+        """Return the quantile of a number between 0 and 1, both excluded."""
+        if self.kind == CHOICE:
+            place = int(np.searchsorted(np.cumsum(self.weights), uniform, side='right'))
+            return self.values[min(place, len(self.values) - 1)]
+        value = float(KINDS[self.kind].quantile(self.numbers, uniform))
+        low, high = self.ends
+        return min(max(value, low), high)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value, infinite where there is no bound."""
+        low = KINDS[self.kind].least
+        return self.numbers.get(LOW, low), self.numbers.get(HIGH, math.inf)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One named distribution of numbers."""
+
+    quantile: Callable[[Numbers, float], float]
+    required: Sequence[str]
+    above_zero: Sequence[str] = ()
+    """Parameters that must be above zero."""
+    optional: Sequence[str] = ()
+    least: float = -math.inf
+    """Below which it has nothing, without bounds."""
+
+
+def _uniform(p: Numbers, uniform: float) -> float:
+    return p[LOW] + uniform * (p[HIGH] - p[LOW])
+
+
+def _loguniform(p: Numbers, uniform: float) -> float:
+    return p[LOW] * (p[HIGH] / p[LOW]) ** uniform
+
+
+def _triangular(p: Numbers, uniform: float) -> float:
+    low, mode, high = p[LOW], p['mode'], p[HIGH]
+    if uniform * (high - low) < mode - low:
+        return low + math.sqrt(uniform * (high - low) * (mode - low))
+    return high - math.sqrt((1.0 - uniform) * (high - low) * (high - mode))
+
+
+def _normal(p: Numbers, uniform: float) -> float:
+    ends = [(p.get(each, end) - p['mean']) / p['std'] for each, end in _OPEN]
+    return p['mean'] + p['std'] * _standard_normal(uniform, *ends)
+
+
+def _lognormal(p: Numbers, uniform: float) -> float:
+    ends = [
+        (math.log(p[each] / p['median']) if each in p else end) / p['sigma'] for each, end in _OPEN
+    ]
+    return p['median'] * math.exp(p['sigma'] * _standard_normal(uniform, *ends))
+
+
+def _standard_normal(uniform: float, low: float, high: float) -> float:
+    """Return the quantile of the standard normal distribution between two ends."""
+    if low > 0.0:  # above it the distribution function is 1 to rounding
+        return -_standard_normal(1.0 - uniform, -high, -low)
+    least, most = ndtr(low), ndtr(high)
+    return float(ndtri(least + uniform * (most - least)))
+
+
+_OPEN = ((LOW, -math.inf), (HIGH, math.inf))
+KINDS: Mapping[str, Kind] = {
+    'uniform': Kind(_uniform, (LOW, HIGH)),
+    'loguniform': Kind(_loguniform, (LOW, HIGH), above_zero=(LOW,)),
+    'triangular': Kind(_triangular, (LOW, 'mode', HIGH)),
+    'normal': Kind(_normal, ('mean', 'std'), ('std',), (LOW, HIGH)),
+    'lognormal': Kind(
+        _lognormal, ('median', 'sigma'), ('median', 'sigma', LOW), (LOW, HIGH), least=0.0
+    ),
+}
+
+
+def distribution_of(where: str, content: Any, option: Option | None) -> Distribution:
+    """
+    Return the distribution that a specification describes at the key `where`.
+
+    `option` says what the varied key takes, None where nobody knows. Raise ParameterError for an
+    unknown name or parameter, and where the key has a bound that the distribution does not keep.
+    """
+    if not isinstance(content, Mapping):
+        raise ParameterError(
+            f'{where} is {content!r}: give {{{KIND}: uniform, {LOW}: ..., {HIGH}: ...}}'
+        )
+    kind = content.get(KIND)
+    if not isinstance(kind, str):
+        raise ParameterError(f'{where}.{KIND} is missing: choose from {", ".join(_NAMES)}')
+    require_choice(f'{where}.{KIND}', kind, _NAMES)
+    if kind == CHOICE:
+        return _choice(where, content, option)
+    distribution = Distribution(kind, _numbers(where, content, KINDS[kind]))
+    _require_order(where, distribution)
+    if option:
+        _require_within(where, distribution, option)
+    return distribution
+
+
+_NAMES = (*KINDS, CHOICE)
+
+
+def _numbers(where: str, content: Mapping[str, Any], kind: Kind) -> dict[str, float]:
+    known = (*kind.required, *kind.optional)
+    _require_known(where, content, known)
+    missing = [name for name in kind.required if name not in content]
+    if missing:
+        raise ParameterError(f'{where}.{missing[0]} is missing: {content[KIND]} needs it')
+    return {
+        name: require_number(
+            f'{where}.{name}', content[name], above=0.0 if name in kind.above_zero else None
+        )
+        for name in known
+        if name in content
+    }
+
+
+def _require_known(where: str, content: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in content:
+        if name not in (KIND, *known):
+            raise ParameterError(f'unknown key {where}.{name}: {close_name(name, known)}')
+
+
+def _require_order(where: str, distribution: Distribution) -> None:
+    """Refuse bounds that hold nothing."""
+    low, high = distribution.ends
+    mode = distribution.numbers.get('mode', low)
+    if not low < high or not low <= mode <= high:
+        raise ParameterError(f'{where}: {LOW}, mode and {HIGH} must be in this order: mend them')
+    value = distribution.value(0.5)
+    if not (math.isfinite(value) and distribution.value(0.25) < distribution.value(0.75)):
+        raise ParameterError(
+            f'{where}: nothing of the distribution is between {low:g} and {high:g}: give others'
+        )
+
+
+def _require_within(where: str, distribution: Distribution, option: Option) -> None:
+    """Refuse a distribution that can give what the key does not take."""
+    key = where.rpartition('vary.')[2]
+    if option.many or option.choices or option.kind is not float or option.whole_periods:
+        raise ParameterError(
+            f'{where}: {key} does not take any number: use {{{KIND}: {CHOICE}, values: [...]}}'
+        )
+    low, high = distribution.ends
+    bounds = (
+        (LOW, low, option.at_least if option.above is None else option.above),
+        (HIGH, high, option.at_most),
+    )
+    for name, end, bound in bounds:
+        if math.isfinite(end):
+            if end != bound or name in distribution.numbers:
+                option.checked(f'{where}.{name}', end)
+        elif bound is not None:
+            raise ParameterError(
+                f'{where}.{name} is missing: {key} must be {option.range_text}, and '
+                f'{distribution.kind} has no bound there'
+            )
+
+
+def _choice(where: str, content: Mapping[str, Any], option: Option | None) -> Distribution:
+    _require_known(where, content, ('values', 'weights'))
+    values = content.get('values')
+    if not isinstance(values, list) or not values:
+        raise ParameterError(f'{where}.values: give a list, [...], that is not empty')
+    weights = content.get('weights', [1.0] * len(values))
+    if not isinstance(weights, list) or len(weights) != len(values):
+        raise ParameterError(f'{where}.weights: give a number for each of the values')
+    parts = [require_number(f'{where}.weights', each, at_least=0.0) for each in weights]
+    if not sum(parts):
+        raise ParameterError(f'{where}.weights are all zero: give one above zero')
+    if option:
+        for value in values:
+            option.checked(f'{where}.values', value)
+    return Distribution(CHOICE, {}, tuple(values), tuple(each / sum(parts) for each in parts))

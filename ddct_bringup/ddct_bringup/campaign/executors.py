@@ -1,0 +1,141 @@
+"""Who computes shards: processes of this machine, or a Dask cluster."""
+
+import ctypes
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from typing import Protocol
+
+from ddct_plant.base.errors import DdctError
+
+CONNECT_S = 10.0
+"""How long a scheduler may take to answer."""
+LOST_S = 30.0
+"""How long a cluster may be without any worker."""
+_SET_PARENT_DEATH_SIGNAL = 1
+_ONE_THREAD = dict.fromkeys(('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
+"""So that sums are taken in one order, and workers do not wait for one another."""
+
+
+class Workers(Protocol):
+    """Executors of shards, and what to know of them."""
+
+    @property
+    def count(self) -> int:
+        """How many shards can be computed at once."""
+
+    def executor(self) -> Executor:
+        """Return the executor; a new one after that of before has broken."""
+
+    def require_alive(self) -> None:
+        """Raise DdctError when nobody is left who could go on."""
+
+    def close(self) -> None:
+        """End all of it at once; what is being computed is lost."""
+
+
+class LocalWorkers:
+    """Processes of this machine, each with one thread for its numerics."""
+
+    def __init__(self, count: int | None = None) -> None:
+        """Take as many as there are cores, unless told."""
+        self.count = count or len(os.sched_getaffinity(0))
+        self._pool: ProcessPoolExecutor | None = None
+
+    def executor(self) -> Executor:
+        """Return a new pool."""
+        self.close()
+        # A new interpreter: a copy of this process would keep its threads' locks and its BLAS.
+        context = multiprocessing.get_context('spawn')
+        self._pool = ProcessPoolExecutor(self.count, context, _begin)
+        return self._pool
+
+    def require_alive(self) -> None:
+        """Say nothing: a pool whose processes die is broken by itself."""
+
+    def close(self) -> None:
+        """Kill the processes."""
+        if self._pool is None:
+            return
+        processes = list((self._pool._processes or {}).values())
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.kill()
+        for process in processes:
+            process.join()
+        self._pool = None
+
+
+class DaskWorkers:
+    """The workers of a Dask cluster."""
+
+    def __init__(self, address: str) -> None:
+        """Connect; raise DdctError for an address where no scheduler is."""
+        try:
+            from distributed import Client
+        except ImportError as error:
+            raise DdctError(
+                f'--scheduler needs Dask ({error}): pip install distributed'
+            ) from error
+        try:
+            self._client = Client(address, timeout=CONNECT_S, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise DdctError(
+                f'--scheduler {address}: no scheduler answers there ({error}): start one, or '
+                'leave the option out'
+            ) from error
+        self._address = address
+        self._lost_since: float | None = None
+
+    @property
+    def count(self) -> int:
+        """The threads of all workers."""
+        workers = self._client.scheduler_info(n_workers=-1)['workers'].values()
+        return sum(worker['nthreads'] for worker in workers) or 1
+
+    def executor(self) -> Executor:
+        """Return an executor of the cluster; a task whose worker dies goes to another."""
+        return self._client.get_executor(pure=False)
+
+    def require_alive(self) -> None:
+        """Raise DdctError when the scheduler is gone, or has had no worker for a while."""
+        if self._client.status != 'running':
+            raise DdctError(f'--scheduler {self._address}: the scheduler has gone')
+        if self._client.scheduler_info(n_workers=-1)['workers']:
+            self._lost_since = None
+            return
+        now = time.monotonic()
+        self._lost_since = now if self._lost_since is None else self._lost_since
+        if now - self._lost_since > LOST_S:
+            raise DdctError(f'--scheduler {self._address}: it has no worker: start one')
+
+    def close(self) -> None:
+        """Disconnect; the cluster drops what it has not begun."""
+        self._client.close(timeout=CONNECT_S)
+
+
+@contextmanager
+def workers_of(count: int | None, scheduler: str | None) -> Iterator[Workers]:
+    """Give the workers of an address, or local ones, and end them."""
+    workers = DaskWorkers(scheduler) if scheduler else LocalWorkers(count)
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
+    os.environ.update(_ONE_THREAD)
+    try:
+        yield workers
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name, None)
+            if value is not None:
+                os.environ[name] = value
+        workers.close()
+
+
+def _begin() -> None:
+    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)

@@ -1,0 +1,67 @@
+"""How far long work is: its rate and the time that remains, on standard error."""
+
+import sys
+import time
+from collections.abc import Callable
+from typing import TextIO
+
+QUIET_S = 2.0
+"""Work that ends earlier says nothing."""
+_EVERY_S = {True: 0.5, False: 10.0}
+"""Between two lines, on a terminal and elsewhere."""
+
+
+class Progress:
+    """Tells of work that is done in steps."""
+
+    def __init__(
+        self,
+        what: str,
+        total: int,
+        *,
+        done: int = 0,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Begin; `done` of `total` were so before, and do not count in the rate."""
+        self._what = what
+        self._total = total
+        self._before = done
+        self._stream = stream or sys.stderr
+        self._clock = clock
+        self._started = clock()
+        self._terminal = self._stream.isatty()
+        self._next = self._started + QUIET_S
+
+    def tell(self, done: int) -> None:
+        """Say how far it is, if it is time to."""
+        now = self._clock()
+        if now < self._next:
+            return
+        self._next = now + _EVERY_S[self._terminal]
+        start, end = ('\r\x1b[K', '') if self._terminal else ('', '\n')
+        self._stream.write(f'{start}{self.line(done)}{end}')
+        self._stream.flush()
+
+    def line(self, done: int) -> str:
+        """Return the line: how many of how many, the rate, the time that remains."""
+        elapsed = self._clock() - self._started
+        rate = (done - self._before) / elapsed if elapsed else 0.0
+        text = f'{self._what}: {done} of {self._total}'
+        if not rate:
+            return text
+        return f'{text}, {rate:.3g} a second, {_duration((self._total - done) / rate)} left'
+
+    def end(self) -> None:
+        """Clear the line on a terminal."""
+        if self._terminal and self._next > self._started + QUIET_S:
+            self._stream.write('\r\x1b[K')
+            self._stream.flush()
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f'{hours} h {minutes} min'
+    return f'{minutes} min {rest} s' if minutes else f'{rest} s'

@@ -1,0 +1,181 @@
+"""The runs of a campaign, by index: what each of them is, and that all can be built."""
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from math import prod
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.campaign.draws import run_seed, uniform
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, FILE_KEY, SCENARIO, run_options
+from ddct_bringup.campaign.spec import MOST_RUNS, CampaignSpec
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.registry import (
+    controller_spec,
+    make_controller,
+    require_known_controllers,
+)
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.models.clutch import LINEAR
+from ddct_plant.scenario.file import ScenarioFile, is_packaged
+from ddct_plant.scenario.settings import RunSettings
+
+_CSV = 'csv'
+
+
+@dataclass(frozen=True)
+class CampaignRun:
+    """One run, which becomes one row."""
+
+    index: int
+    controller: ControllerSpec[Controller]
+    varied: Mapping[str, Any]
+    """Values by key, as the specification gives them."""
+    settings: RunSettings
+
+
+class Campaign:
+    """
+    The runs that a specification describes.
+
+    A case is a point of the grid with one sample. All controllers meet the same cases, noise
+    included: first those of the first controller have their index, then those of the next.
+    """
+
+    def __init__(self, spec: CampaignSpec) -> None:
+        """Read what the specification names; raise DdctError for what is not there."""
+        self.spec = spec
+        points = prod(len(values) for values in spec.grid.values())
+        self.cases = points * spec.samples
+        """How many runs each controller has."""
+        self._names = [self._controller(each) for each in spec.controllers]
+        self.controllers = [controller_spec(each) for each in self._names]
+        self.labels = [each.name for each in self.controllers]
+        """What the controllers are called."""
+        self._require_distinct()
+        if self.runs > MOST_RUNS:
+            raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}')
+        varied = SCENARIO in spec.keys
+        scenarios = spec.values_of(SCENARIO) if varied else (spec.common[SCENARIO],)
+        self._files = {name: ScenarioFile.read(self._scenario(name)) for name in scenarios}
+
+    @property
+    def runs(self) -> int:
+        """How many runs there are."""
+        return self.cases * len(self.controllers)
+
+    def run(self, index: int) -> CampaignRun:
+        """Return a run; raise ParameterError that names it where its scenario refuses it."""
+        number, case = divmod(index, self.cases)
+        varied = self.varied(case)
+        try:
+            settings = self._settings(case, varied)
+        except ParameterError as error:
+            raise ParameterError(f'run {index} ({_named(varied)}): {error}') from error
+        return CampaignRun(index, self.controllers[number], varied, settings)
+
+    def chosen(self, index: int) -> str:
+        """Return the name of a run's controller, or the path of its file."""
+        return self._names[index // self.cases]
+
+    def varied(self, case: int) -> dict[str, Any]:
+        """Return the values of a case by key; the last key of the grid changes fastest."""
+        point, _ = divmod(case, self.spec.samples)
+        values = {}
+        for key, choices in reversed(list(self.spec.grid.items())):
+            point, place = divmod(point, len(choices))
+            values[key] = choices[place]
+        drawn = {
+            key: distribution.value(uniform(self.spec.root, key, case))
+            for key, distribution in self.spec.vary.items()
+        }
+        return {key: values[key] for key in self.spec.grid} | drawn
+
+    def require_buildable(self, tell: Callable[[int], None] = lambda done: None) -> None:
+        """
+        Build what every run needs, and each controller in the first run of each kind.
+
+        `tell` gets the number of cases that are done. Raise ParameterError that names the first
+        run that is refused.
+        """
+        known: set[tuple[str, ...]] = set()
+        for case in range(self.cases):
+            kind = tuple(self.run(case).varied.get(key, '') for key in COMMON)
+            if kind not in known:
+                known.add(kind)
+                self._require_controllers(case)
+            tell(case + 1)
+
+    def digest(self) -> str:
+        """Return a hash of the specification and of the files that it names."""
+        digest = hashlib.sha256(self.spec.text().encode())
+        for path in self._named_files():
+            try:
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
+            except OSError as error:
+                raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+        for controller in self.controllers:
+            digest.update(repr(sorted(controller.digests.items())).encode())
+        return digest.hexdigest()
+
+    def _named_files(self) -> Iterator[Path]:
+        """Yield the scenarios and profiles that are files of the user's."""
+        for file in self._files.values():
+            if not is_packaged(file.name):
+                yield Path(file.name)
+            for section in file.content.values():
+                if isinstance(section, Mapping) and _CSV in section:
+                    yield Path(file.name).parent / section[_CSV]
+        for key in self.spec.keys:
+            for value in self.spec.values_of(key):
+                placed = self._placed(key, value)
+                if key.endswith(FILE_KEY):
+                    yield Path(placed)
+                elif isinstance(placed, Mapping) and _CSV in placed:
+                    yield Path(placed[_CSV])
+
+    def _settings(self, case: int, varied: Mapping[str, Any]) -> RunSettings:
+        given = {**self.spec.common, **varied}
+        file = self._files[given.pop(SCENARIO)]
+        own = {key: given.pop(key) for key in run_options() if key in given}
+        changes = {key: self._placed(key, value) for key, value in given.items()}
+        scenario = file.scenario(changes, own.get('clutch', LINEAR))
+        require_known_controllers(scenario, self.labels)
+        return RunSettings(scenario, **{'seed': run_seed(self.spec.root, case), **own})
+
+    def _placed(self, key: str, value: Any) -> Any:
+        """Return a value with the file that it names, if any, placed in the folder."""
+        if key.endswith(FILE_KEY) and isinstance(value, str):
+            return str(self.spec.folder / value)
+        if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):
+            return {**value, _CSV: str(self.spec.folder / value[_CSV])}
+        return value
+
+    def _require_controllers(self, case: int) -> None:
+        """Refuse a controller that its user has to mend; one that fails by itself has its rows."""
+        for number, controller in enumerate(self.controllers):
+            run = self.run(number * self.cases + case)
+            try:
+                make_architecture(run.settings, make_controller(controller, run.settings))
+            except ParameterError as error:
+                raise ParameterError(f'run {run.index} ({_named(run.varied)}): {error}') from error
+            except DdctError:
+                continue
+
+    def _require_distinct(self) -> None:
+        for place, label in enumerate(self.labels):
+            if label in self.labels[:place]:
+                raise ParameterError(f'{CONTROLLERS}: two are called {label}: rename one')
+
+    def _controller(self, name: str) -> str:
+        return str(self.spec.folder / name) if is_controller_file(name) else name
+
+    def _scenario(self, name: str) -> str:
+        return name if is_packaged(name) else str(self.spec.folder / name)
+
+
+def _named(varied: Mapping[str, Any]) -> str:
+    return ', '.join(f'{key} {value}' for key, value in varied.items())

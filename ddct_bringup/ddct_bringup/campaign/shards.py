@@ -1,0 +1,54 @@
+"""The unit of work: the runs of a fixed range of indices, which become one file."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ddct_bringup.campaign.code import require_code
+from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
+from ddct_bringup.campaign.rows import result_row, scored_headless
+from ddct_bringup.campaign.runs import Campaign, CampaignRun
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.verdict.limits import Limits
+
+_MOST_RUNS = 2000
+_LEAST_SHARDS = 50
+"""Of a campaign with so many runs: enough that all workers end together."""
+
+
+@dataclass(frozen=True)
+class ShardJob:
+    """What a worker is sent; it needs nothing else but the files that the specification names."""
+
+    spec: CampaignSpec
+    limits: Limits
+    code: str
+    """Digest of the sources that the campaign is computed with."""
+    first: int
+    last: int
+    """One beyond the last index."""
+
+
+def shard_size(runs: int) -> int:
+    """Return how many runs a shard has: it depends on nothing but their number."""
+    return min(_MOST_RUNS, -(-runs // _LEAST_SHARDS))
+
+
+def shard_ranges(runs: int, size: int) -> list[tuple[int, int]]:
+    """Return (first, one beyond the last) index of every shard."""
+    return [(first, min(first + size, runs)) for first in range(0, runs, size)]
+
+
+def compute_shard(job: ShardJob) -> bytes:
+    """Return the file of a shard; raise DdctError where this machine cannot compute it."""
+    require_code(job.code)
+    campaign = Campaign(job.spec)
+    runs = [campaign.run(index) for index in range(job.first, job.last)]
+    return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
+
+
+def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> Iterable[dict[str, Any]]:
+    """Yield a row for every run, in their order; one that fails has a row with its reason."""
+    for run in runs:
+        entry = scored_headless(run.settings, run.controller, limits)
+        yield {INDEX: run.index, **result_row(entry, run.varied)}

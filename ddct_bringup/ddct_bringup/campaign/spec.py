@@ -1,0 +1,194 @@
+"""SPEC.yaml: what a campaign varies, checked; every mistake is named with its line."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.campaign.distributions import Distribution, distribution_of
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import Option, close_name
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
+from ddct_plant.files.schema_version import require_schema_version
+from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
+
+SCHEMA_VERSION = 1
+"""Of a specification."""
+MOST_RUNS = 10_000_000
+"""Of one campaign."""
+_GRID, _RANDOM, _VARY, _SAMPLES, _SEED = 'grid', 'random', 'vary', 'samples', 'seed'
+_KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, _SEED, _GRID, _RANDOM)
+_ROOT = Option(0, 'root of all random numbers', at_least=0, at_most=2**31 - 1)
+_NUMBER_OF_SAMPLES = Option(1, 'samples at each point of the grid', at_least=1, at_most=MOST_RUNS)
+
+
+@dataclass(frozen=True)
+class CampaignSpec:
+    """A specification that is known to make sense."""
+
+    content: Mapping[str, Any]
+    """As given."""
+    folder: Path
+    """What files are relative to."""
+    controllers: tuple[str, ...]
+    common: Mapping[str, str]
+    """`scenario`, and `architecture` and `clutch` where they are given, for all runs."""
+    root: int
+    grid: Mapping[str, tuple[Any, ...]]
+    """Values by key."""
+    samples: int
+    vary: Mapping[str, Distribution]
+    """What is drawn in each sample, by key."""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """What varies, in the order of the columns."""
+        return (*self.grid, *self.vary)
+
+    def values_of(self, key: str) -> tuple[Any, ...]:
+        """Return the values that a key can take, of numbers from a distribution none."""
+        return self.grid[key] if key in self.grid else self.vary[key].values
+
+    def text(self) -> str:
+        """Return what was given as one text, the same however it was written."""
+        return json.dumps(self.content)
+
+
+def read_spec(file: str | Path) -> CampaignSpec:
+    """Read a specification; raise DdctError that names file, line and key."""
+    path = Path(file)
+    try:
+        content, lines = parse_yaml_with_lines(read_text_file(path))
+    except OSError as error:
+        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+    except ParameterError as error:
+        raise ParameterError(f'{path}: {error}') from error
+    try:
+        return spec_of(content, path.absolute().parent)
+    except ParameterError as error:
+        line = line_of(str(error), lines)
+        where = f'{path}: line {line}' if line else str(path)
+        raise ParameterError(f'{where}: {error}') from error
+
+
+def spec_of(content: Any, folder: Path) -> CampaignSpec:
+    """
+    Return the specification that nested mappings hold; files in it are relative to `folder`.
+
+    Raise ParameterError that names the key.
+    """
+    content = _mapping('the specification', content, _KEYS)
+    require_schema_version(content, SCHEMA_VERSION)
+    grid = _grid(content)
+    samples, vary = _random(content)
+    if not grid and not vary:
+        raise ParameterError(f'nothing is varied: give {_GRID}, {_RANDOM} or both')
+    _require_apart(content, (*grid, *vary))
+    spec = CampaignSpec(
+        content=content,
+        folder=folder,
+        controllers=_controllers(content),
+        common=_common(content),
+        root=int(_ROOT.checked(_SEED, content.get(_SEED, _ROOT.default))),
+        grid=grid,
+        samples=samples,
+        vary=vary,
+    )
+    _require_serialisable(spec)
+    return spec
+
+
+def _mapping(what: str, content: Any, known: tuple[str, ...], prefix: str = '') -> dict[str, Any]:
+    if not isinstance(content, Mapping):
+        raise ParameterError(f'{what} is {content!r}: give keys and values')
+    for key in content:
+        if key not in known:
+            raise ParameterError(f'unknown key {prefix}{key}: {close_name(key, known, prefix)}')
+    return dict(content)
+
+
+def _controllers(content: Mapping[str, Any]) -> tuple[str, ...]:
+    given = content.get(CONTROLLERS)
+    if not isinstance(given, list) or not given:
+        raise ParameterError(f'{CONTROLLERS}: give a list of names or files, such as [pi, mpc3]')
+    return _distinct(CONTROLLERS, [_text(CONTROLLERS, each) for each in given])
+
+
+def _common(content: Mapping[str, Any]) -> dict[str, str]:
+    given = {key: _text(key, content[key]) for key in COMMON if key in content}
+    for key, value in given.items():
+        if key != SCENARIO:
+            run_options()[key].checked(key, value)
+    return {SCENARIO: 'thesis', **given}
+
+
+def _text(key: str, value: Any) -> str:
+    if not isinstance(value, str) or not value:
+        raise ParameterError(f'{key} is {value!r}: give text')
+    return value
+
+
+def _grid(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
+    if _GRID not in content:
+        return {}
+    given = _not_empty(_GRID, content[_GRID])
+    grid = {}
+    for key, values in given.items():
+        where = f'{_GRID}.{key}'
+        option = option_of(where, key)
+        if not isinstance(values, list) or not values:
+            raise ParameterError(f'{where} is {values!r}: give a list of values, not empty')
+        for value in values:
+            if option:
+                option.checked(where, value)
+        grid[key] = _distinct(where, values)
+    return grid
+
+
+def _not_empty(where: str, content: Any) -> Mapping[str, Any]:
+    if not isinstance(content, Mapping) or not content:
+        raise ParameterError(f'{where} is empty: give keys and what they are, or leave it out')
+    return content
+
+
+def _random(content: Mapping[str, Any]) -> tuple[int, dict[str, Distribution]]:
+    if _RANDOM not in content:
+        return 1, {}
+    given = _mapping(_RANDOM, content[_RANDOM], (_SAMPLES, _VARY), f'{_RANDOM}.')
+    where = f'{_RANDOM}.{_SAMPLES}'
+    if _SAMPLES not in given:
+        raise ParameterError(f'{where} is missing: say how many samples to draw')
+    samples = int(_NUMBER_OF_SAMPLES.checked(where, given[_SAMPLES]))
+    vary = {}
+    for key, described in _not_empty(f'{_RANDOM}.{_VARY}', given.get(_VARY)).items():
+        where = f'{_RANDOM}.{_VARY}.{key}'
+        vary[key] = distribution_of(where, described, option_of(where, key))
+    return samples, vary
+
+
+def _require_apart(content: Mapping[str, Any], keys: tuple[str, ...]) -> None:
+    """Refuse a key that is given twice, or that is within another."""
+    for place, key in enumerate(keys):
+        if key in content:
+            raise ParameterError(f'{key} is given for all runs and varied: give it once')
+        for other in keys[:place]:
+            if key == other or key.startswith(f'{other}.') or other.startswith(f'{key}.'):
+                raise ParameterError(f'{key} varies beside {other}: give one of them')
+
+
+def _distinct(where: str, values: list[Any]) -> tuple[Any, ...]:
+    for place, value in enumerate(values):
+        if value in values[:place]:
+            raise ParameterError(f'{where} has {value!r} twice: give each once')
+    return tuple(values)
+
+
+def _require_serialisable(spec: CampaignSpec) -> None:
+    """Refuse what no file can hold, as Python may give it."""
+    try:
+        spec.text()
+    except (TypeError, ValueError) as error:
+        raise ParameterError(f'the specification holds what YAML does not: {error}') from error

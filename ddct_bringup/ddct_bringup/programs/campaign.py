@@ -1,0 +1,81 @@
+"""Program `campaign`: compute how controllers fare over many plants, and make any run again."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.spec import read_spec
+from ddct_bringup.programs import campaign_replay
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
+from ddct_plant.program.stop_signals import stop_signals
+
+PROGRAM = 'ddct campaign'
+_COMMANDS = {'replay': campaign_replay}
+"""By name what else can be done with a campaign's folder."""
+
+_EPILOG = """\
+examples:
+  ddct campaign wear.yaml --out campaigns/wear             on all cores
+  ddct campaign wear.yaml --out campaigns/wear --resume    go on with what is missing
+  ddct campaign wear.yaml --out campaigns/wear --scheduler tcp://10.0.0.5:8786
+  ddct campaign replay campaigns/wear --index 17 --out runs/again
+
+Writes DIR/results.parquet, a row per run, and DIR/manifest.json. Shards of it are written while
+it runs; after an interruption --resume computes what is missing, with the same result. SPEC.yaml
+is described in docs/use/campaigns.md.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    given = sys.argv[1:] if argv is None else argv
+    if given and given[0] in _COMMANDS:
+        parser = ProgramParser(prog=PROGRAM, description='What else can be done with a campaign.')
+        return run_subcommands(parser, tuple(_COMMANDS.values()), given, metavar='WHAT')
+    return run_program(PROGRAM, _campaign, given)
+
+
+def _campaign(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.workers is not None and options.workers < 1:
+        raise ParameterError(f'--workers is {options.workers}: give 1 or more')
+    campaign = Campaign(read_spec(options.spec))
+    with stop_signals() as stops:
+        results = carry_out(
+            campaign,
+            load_limits(options.limits),
+            options.out,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            resume=options.resume,
+            stopped=lambda: bool(stops),
+        )
+    print(results, flush=True)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        usage='%(prog)s SPEC.yaml --out DIR [options]\n       %(prog)s replay DIR ...',
+        description='Run controllers over a grid and random samples of plants, headless.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument('spec', metavar='SPEC.yaml', type=Path, help='what varies')
+    parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
+    parser.add_argument('--resume', action='store_true', help='go on with the campaign in DIR')
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
+    )
+    where.add_argument('--scheduler', metavar='ADDRESS', help='compute on this Dask cluster')
+    add_limits_option(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())
