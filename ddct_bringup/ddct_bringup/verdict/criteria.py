@@ -89,6 +89,8 @@ class Criterion(Figure):
 
     value: Callable[[JudgedRun], Values | None] = field(kw_only=True)
     """None, or a number that is not finite, where it is not defined."""
+    metric: str = field(default='', kw_only=True)
+    """The metric of `scores.json` that it is too, empty for none."""
 
 
 def _daily_dose(run: JudgedRun) -> Values | None:
@@ -111,8 +113,10 @@ def _criterion(
     value: Callable[[JudgedRun], Values | None],
     meaning: str,
     undefined: str,
+    metric: str = '',
 ) -> Criterion:
-    return Criterion(name, name.replace('_', ' '), unit, '.4g', meaning, undefined, value=value)
+    symbol = name.replace('_', ' ')
+    return Criterion(name, symbol, unit, '.4g', meaning, undefined, value=value, metric=metric)
 
 
 def _metric(name: str, key: str) -> Criterion:
@@ -124,6 +128,7 @@ def _metric(name: str, key: str) -> Criterion:
         lambda run: run.metrics[key],
         metric.meaning,
         metric.undefined,
+        key,
     )
 
 

@@ -1,0 +1,83 @@
+"""How often engagement fails: counts by the verdict's states, and their interval."""
+
+import numpy as np
+import pytest
+from made_results import made_results
+from scipy.stats import binomtest
+
+from ddct_bringup.campaign_report.outcome import FailedShare, failed_share, outcomes_of
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES
+
+
+def test_every_state_but_engaged_and_invalid_is_a_failed_engagement():
+    outcomes = outcomes_of(np.ones(len(STATES), dtype=bool), np.array(STATES))
+    wanted = [state if state in (ENGAGED, INVALID) else 'failed' for state in STATES]
+    assert outcomes.tolist() == wanted
+
+
+def test_a_run_that_does_not_count_is_invalid_whatever_state_it_has():
+    assert outcomes_of(np.array([False]), np.array([ENGAGED])).tolist() == [INVALID]
+
+
+@pytest.mark.parametrize(
+    ('failed', 'runs'), [(0, 1), (1, 1), (0, 50), (3, 50), (49, 50), (50, 50), (7, 100000)]
+)
+def test_the_interval_is_that_of_scipy(failed, runs):
+    exact = binomtest(failed, runs).proportion_ci(confidence_level=0.95, method='exact')
+    found = FailedShare(runs, runs - failed, failed, 0).interval()
+    assert found == pytest.approx((exact.low, exact.high), abs=4e-12)  # scipy searches: xtol 2e-12
+
+
+def test_none_of_n_failed_leaves_up_to_the_closed_form():
+    upper = FailedShare(60, 60, 0, 0).interval()[1]
+    assert upper == pytest.approx(1.0 - 0.025 ** (1 / 60), rel=1e-12)
+
+
+def test_invalid_runs_are_in_no_share_and_widen_the_interval_to_both_sides():
+    counts = failed_share(np.array([ENGAGED] * 6 + ['failed'] * 2 + [INVALID] * 2))
+    assert (counts.runs, counts.engaged, counts.failed, counts.invalid) == (10, 6, 2, 2)
+    assert counts.share == 2 / 8
+    lowest = binomtest(2, 10).proportion_ci(method='exact').low
+    highest = binomtest(4, 10).proportion_ci(method='exact').high
+    assert counts.interval() == pytest.approx((lowest, highest), rel=1e-12)
+
+
+def test_of_invalid_runs_alone_there_is_no_share():
+    counts = failed_share(np.array([INVALID] * 3))
+    assert counts.share is None
+    assert counts.interval() == (0.0, 1.0)
+
+
+def test_runs_on_a_grid_have_a_share_but_no_interval_and_it_is_said_why():
+    found = summary_of(made_results([ENGAGED, 'runaway'], {'wear_gain': [1.0, 1.2]}))
+    failed = found['groups'][0]['failed']
+    assert (failed['share'], failed['interval']) == (0.5, None)
+    assert 'no random sample' in failed['no_interval']
+
+
+def test_random_runs_at_one_point_of_a_grid_have_an_interval_and_at_two_have_none():
+    varied = {'gear': [1.0] * 4, 'wear_gain': [0.7, 0.8, 0.9, 1.0]}
+    states = ['stalled', ENGAGED, ENGAGED, ENGAGED]
+    one = summary_of(made_results(states, varied, random=['wear_gain']))
+    assert one['groups'][0]['failed']['interval'] is not None
+    varied['gear'] = [1.0, 1.0, 2.0, 2.0]
+    two = summary_of(made_results(states, varied, random=['wear_gain']))
+    assert two['groups'][0]['failed']['interval'] is None
+
+
+def test_a_varied_word_makes_groups_of_its_own():
+    results = made_results(
+        [ENGAGED, 'stalled', 'runaway', ENGAGED],
+        {'clutch': ['linear', 'stick_slip'] * 2, 'wear_gain': [1.0] * 4},
+        controllers=['pi', 'pi', 'ls8', 'ls8'],
+    )
+    groups = summary_of(results)['groups']
+    assert [(each['controller'], each['varied']['clutch']) for each in groups] == [
+        ('pi', 'linear'),
+        ('pi', 'stick_slip'),
+        ('ls8', 'linear'),
+        ('ls8', 'stick_slip'),
+    ]
+    assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
+    assert groups[1]['failed']['states'] == {'stalled': 1}
