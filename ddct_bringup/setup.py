@@ -16,6 +16,7 @@ PROGRAMS = [
     'reproduce = ddct_bringup.programs.reproduce:main',
     'report = ddct_bringup.programs.report:main',
     'score = ddct_bringup.programs.score:main',
+    'sweep = ddct_bringup.programs.sweep:main',
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)

@@ -10,6 +10,7 @@ Arguments are called as the options of `ddct bringup`. What cannot be used raise
 
 from ddct_bringup.api.figures import figure
 from ddct_bringup.api.runs import Run, compare, load, run, table
+from ddct_bringup.api.sweeps import sweep
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -31,5 +32,6 @@ __all__ = [
     'load',
     'run',
     'scenario_names',
+    'sweep',
     'table',
 ]

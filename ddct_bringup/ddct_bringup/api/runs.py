@@ -14,9 +14,9 @@ import numpy as np
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
+from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.folder_lock import run_folder
-from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
@@ -33,8 +33,6 @@ from ddct_controllers.registry import (
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name, options_of
-from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
@@ -109,7 +107,7 @@ class Run:
 
     def dataframe(self) -> Any:
         """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
-        return _pandas().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
+        return pandas_module().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
 
     def frequency(self) -> Evidence:
         """
@@ -171,7 +169,14 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
         described = {key: options[key] for key in options if key not in _OF_THE_RECORD}
         tell = partial(warnings.warn, stacklevel=3)
         controllers = working_controllers(_ready(controller_names(), **described), tell)
-    elif isinstance(controllers, str):
+    chosen = controllers_from(controllers)
+    labels = [controller_label(each) for each in chosen]
+    return [run(each, beside=labels, **options) for each in chosen]
+
+
+def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> list[Chosen]:
+    """Return what several controllers are, given as for `compare`; ParameterError for none."""
+    if isinstance(controllers, str):
         controllers = [name.strip() for name in controllers.split(',') if name.strip()]
     if isinstance(controllers, Mapping):
         chosen = [chosen_from(each, name) for name, each in controllers.items()]
@@ -179,8 +184,7 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
         chosen = [chosen_from(each) for each in controllers]
     if not chosen:
         raise ParameterError('controllers is empty: name at least one')
-    labels = [controller_label(each) for each in chosen]
-    return [run(each, beside=labels, **options) for each in chosen]
+    return chosen
 
 
 def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
@@ -192,7 +196,7 @@ def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
 
 def table(runs: Run | Iterable[Run]) -> Any:
     """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
-    return _pandas().DataFrame([score_row(each.entry) for each in as_runs(runs)])
+    return pandas_module().DataFrame([score_row(each.entry) for each in as_runs(runs)])
 
 
 def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
@@ -200,30 +204,39 @@ def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
     return [runs] if isinstance(runs, Run) else list(runs)
 
 
-def _ready(
-    labels: list[str],
+def _ready(labels: list[str], *options: Any, **given: Any) -> RunSettings:
+    """Return the settings of a run, or of runs, with the controllers called `labels`."""
+    settings = base_from(labels, *options, **given).at({})
+    for line in settings.scenario.adjusted:
+        warnings.warn(f'scenario {settings.scenario.name}: {line}', stacklevel=3)
+    return settings
+
+
+def base_from(
+    labels: Iterable[str],
     scenario: str | Path = 'thesis',
     set: Mapping[str, Any] | None = None,
     duration: float | None = None,
     **given: Any,
-) -> RunSettings:
-    """Return the settings of a run, or of runs, with the controllers called `labels`."""
+) -> RunBase:
+    """Return what runs with the controllers called `labels` have in common."""
     if not isinstance(set, Mapping | None):
         raise ParameterError(
             f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}"
         )
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
-    plain = {key: _plain(changes[key]) for key in changes}
-    described = load_scenario(str(scenario), plain, given.get('clutch', LINEAR))
-    for line in described.adjusted:
-        warnings.warn(f'scenario {described.name}: {line}', stacklevel=3)
     known = options_of(RunSettings)
     if unknown := sorted(given.keys() - known.keys()):
         raise ParameterError(f'unknown option {unknown[0]}: {close_name(unknown[0], known)}')
-    return run_settings(described, labels, {key: _plain(given[key]) for key in given})
+    return RunBase(
+        str(scenario),
+        {key: plain(changes[key]) for key in changes},
+        {key: plain(given[key]) for key in given},
+        tuple(labels),
+    )
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Return a number or list of numpy as Python's, which bags say in the same words."""
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
@@ -254,7 +267,8 @@ def _read(bag: Path, name: str, limits: Limits, chosen: Chosen = '') -> Run:
     return Run(recording, entry, timing, chosen or recording.facts.controller)
 
 
-def _pandas() -> Any:
+def pandas_module() -> Any:
+    """Return pandas, which is an extra; raise DdctError without it."""
     try:
         import pandas
     except ImportError as error:

@@ -8,11 +8,18 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError
 
 _SET_PARENT_DEATH_SIGNAL = 1
+_SET_THREADS = (
+    'openblas_set_num_threads',
+    'scipy_openblas_set_num_threads',
+    'scipy_openblas_set_num_threads64_',
+)
+"""By how the library was built."""
 _LARGEST_CHUNK = 16
 """Results that a worker sends at once."""
 _CHUNKS_EACH = 8
@@ -64,6 +71,21 @@ def _begin(work: Callable[[int], Any]) -> None:
     _work = work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    one_numeric_thread()
+
+
+def one_numeric_thread() -> None:
+    """
+    Let the OpenBLAS libraries of numpy and scipy use one thread, as `ddct` does by its variable.
+
+    Matrices are small: further threads wait for one another, and may round in another order.
+    """
+    loaded = Path('/proc/self/maps').read_text(encoding='utf-8').split()
+    for name in {word for word in loaded if '/' in word and 'openblas' in Path(word).name}:
+        library = ctypes.CDLL(name)
+        for function in _SET_THREADS:
+            if hasattr(library, function):
+                getattr(library, function)(1)
 
 
 def _at(index: int) -> Any:

@@ -1,12 +1,14 @@
 """A run among many: its settings by what is varied, its scores without a bag, and its row."""
 
-from collections.abc import Mapping
+import argparse
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
@@ -18,7 +20,7 @@ from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.options import options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import load_scenario, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
 SERIAL = 'serial'
@@ -39,6 +41,8 @@ class RunBase:
     """Values by dotted scenario key, as `--set` gives them."""
     settings: Mapping[str, Any] = field(default_factory=dict)
     """Those of `RunSettings` by name, such as `clutch`."""
+    labels: tuple[str, ...] = ()
+    """What the controllers are called: `changes` may hold options of theirs."""
 
     def at(self, varied: Mapping[str, Any]) -> RunSettings:
         """
@@ -52,7 +56,16 @@ class RunBase:
         ours = {key: value for key, value in self.changes.items() if key not in varied}
         changes = ours | {key: varied[key] for key in varied if key not in own}
         scenario = load_scenario(self.scenario, changes, settings.get('clutch', LINEAR))
-        return RunSettings(scenario, **settings)
+        return run_settings(scenario, self.labels, settings)
+
+
+def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
+    """Return what the options of `add_settings_options` say of all runs of these controllers."""
+    changes = dict(map(parsed_override, options.overrides))
+    if options.duration is not None:
+        changes['duration_s'] = options.duration
+    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
+    return RunBase(options.scenario, changes, settings, tuple(labels))
 
 
 def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> Entry:

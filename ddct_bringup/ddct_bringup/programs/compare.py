@@ -14,7 +14,10 @@ from ddct_bringup.run.execution import run_with_progress, tell_of_logs
 from ddct_bringup.run.failed_run import note_failure
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import (
+    ALL,
+    add_controllers_option,
     add_run_options,
+    controllers_of,
     print_choices,
     print_computed_from,
     settings_of,
@@ -25,11 +28,7 @@ from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
-from ddct_controllers.registry import (
-    controller_label,
-    controller_names,
-    working_controllers,
-)
+from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.printable import printable
@@ -39,7 +38,6 @@ from ddct_plant.scenario.settings import RunSettings
 
 PROGRAM = 'ddct compare'
 SCORES_FILE = 'scores.json'
-_ALL = 'all'
 
 _EPILOG = """\
 examples:
@@ -70,9 +68,9 @@ def _compare(argv: list[str]) -> int:
     if options.json:
         require_place('--json', options.json)
     limits = load_limits(options.limits)
-    names = _controllers(options.controllers)
+    names = controllers_of(options.controllers)
     settings = settings_of(options, [controller_label(name) for name in names])
-    if options.controllers == _ALL:
+    if options.controllers == ALL:
         names = working_controllers(settings, partial(complain, PROGRAM))
     plans = [RunPlan(settings, name, options.layout) for name in names]
     with held(options.out):
@@ -154,31 +152,13 @@ def _report(
     print_computed_from([plan.controller for plan in plans], stream)
 
 
-def _controllers(text: str) -> list[str]:
-    if text == _ALL:
-        return controller_names()
-    names = [name.strip() for name in text.split(',') if name.strip()]
-    if not names:
-        raise ParameterError('--controllers is empty: name at least one, or all')
-    labels = [controller_label(name) for name in names]
-    for label in labels:
-        if labels.count(label) > 1:
-            raise ParameterError(f'--controllers names {label} twice: name each once')
-    return names
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = ProgramParser(
         prog=PROGRAM,
         description='Run controllers in the same closed loop and compare their scores.',
         epilog=_EPILOG,
     )
-    parser.add_argument(
-        '--controllers',
-        default=_ALL,
-        metavar='A,B,...|all',
-        help='names of --list, or controller files; default: %(default)s',
-    )
+    add_controllers_option(parser)
     parser.add_argument('--out', type=Path, metavar='DIR', help='folder for all of it')
     parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
     add_limits_option(parser)

@@ -1,4 +1,4 @@
-"""Command-line options that `bringup` and `compare` share."""
+"""Command-line options that the programs that run controllers share."""
 
 import argparse
 import sys
@@ -8,11 +8,12 @@ from typing import Any, TextIO
 from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import (
     Chosen,
+    controller_label,
     controller_names,
     controller_spec,
     require_known_controllers,
 )
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import CLUTCHES
@@ -22,18 +23,26 @@ from ddct_plant.scenario.options import add_option, add_scenario_options, scenar
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
+ALL = 'all'
+"""Stands for every controller."""
 
-def add_run_options(parser: argparse.ArgumentParser) -> None:
-    """Add what describes a run, and how it is carried out, to a program's options."""
+
+def add_settings_options(parser: argparse.ArgumentParser) -> None:
+    """Add what describes a run to a program's options."""
     add_scenario_options(parser)
     for name, described in options_of(RunSettings).items():
         add_option(parser, name, described)
     parser.add_argument(
         '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
     )
+    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """Add what describes a run, and how it is carried out, to a program's options."""
+    add_settings_options(parser)
     add_layout_options(parser)
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
-    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
 
 
 def add_layout_options(parser: argparse.ArgumentParser) -> None:
@@ -50,6 +59,30 @@ def add_layout_options(parser: argparse.ArgumentParser) -> None:
     layout.add_argument(
         '--headless', action='store_const', const='headless', dest='layout', help='no ROS graph'
     )
+
+
+def add_controllers_option(parser: argparse.ArgumentParser) -> None:
+    """Add --controllers to a program's options; `controllers_of` takes it."""
+    parser.add_argument(
+        '--controllers',
+        default=ALL,
+        metavar='A,B,...|all',
+        help='names of --list, or controller files; default: %(default)s',
+    )
+
+
+def controllers_of(text: str) -> list[str]:
+    """Return the controllers that --controllers names; raise ParameterError for none or two."""
+    if text == ALL:
+        return controller_names()
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    if not names:
+        raise ParameterError('--controllers is empty: name at least one, or all')
+    labels = [controller_label(name) for name in names]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ParameterError(f'--controllers names {label} twice: name each once')
+    return names
 
 
 def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:

@@ -58,8 +58,9 @@ COLUMNS = (
 )
 """What every table of runs shows, after the columns that tell the runs apart."""
 
+STATE: RunColumn = Column('state', '', lambda run: run['verdict']['state'], number=False)
 VERDICT_COLUMNS: tuple[RunColumn, ...] = (
-    Column('state', '', lambda run: run['verdict']['state'], number=False),
+    STATE,
     Column('limits', '', lambda run: run['verdict']['limits'], number=False),
 )
 """Before the last column where the terminal is wide enough; otherwise in lines below."""
@@ -82,6 +83,12 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
 """What a table also shows when one of its runs was in real time."""
 
 
+def table_console(stream: TextIO) -> Console:
+    """Return where tables of runs are printed: as wide as the terminal, or as any of them."""
+    width = None if stream.isatty() else _PIPED_WIDTH
+    return Console(file=stream, width=width, highlight=False)
+
+
 def print_runs(
     runs: Sequence[Entry], columns: Sequence[RunColumn], stream: TextIO, title: str | None = None
 ) -> None:
@@ -96,9 +103,7 @@ def print_runs(
         (title,) = scenarios
     if any(run['mode'] == 'realtime' for run in runs):
         columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
-    console = Console(
-        file=stream, width=None if stream.isatty() else _PIPED_WIDTH, highlight=False
-    )
+    console = table_console(stream)
     wide = [*columns[:-1], *VERDICT_COLUMNS, columns[-1]]
     table = drawn_by_rich(table_of(title or '', wide, runs), ruled=True)
     unbounded = console.options.update(max_width=10 * _PIPED_WIDTH)

@@ -66,7 +66,11 @@ class ScenarioFile:
         """Return the scenario with overrides, as `load_scenario` tells."""
         content = _own(self.content)
         start_before = content.get('control_start_s')
-        given = overrides.items() if isinstance(overrides, Mapping) else map(_parsed, overrides)
+        given = (
+            overrides.items()
+            if isinstance(overrides, Mapping)
+            else map(parsed_override, overrides)
+        )
         set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
         try:
             content = with_points(content, Path(self.name).parent, set_keys)
@@ -129,6 +133,17 @@ def scenario_digest(scenario: Scenario) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def parsed_override(override: str) -> tuple[str, Any]:
+    """Return the dotted key and the value of `KEY=VALUE`; raise ParameterError for other text."""
+    key, equals, text = override.partition('=')
+    if not equals or not key:
+        raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
+    try:
+        return key, parse_yaml(text)
+    except ParameterError as error:
+        raise ParameterError(f'--set {override}: {error}') from error
+
+
 def _packaged() -> Traversable:
     return importlib.resources.files('ddct_plant.scenario') / 'packaged'
 
@@ -149,16 +164,6 @@ def _read(name_or_file: str) -> tuple[str, str]:
         return read_text_file(path), path.stem
     except OSError as error:
         raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
-
-
-def _parsed(override: str) -> tuple[str, Any]:
-    key, equals, text = override.partition('=')
-    if not equals or not key:
-        raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
-    try:
-        return key, parse_yaml(text)
-    except ParameterError as error:
-        raise ParameterError(f'--set {override}: {error}') from error
 
 
 def _own(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -222,12 +227,15 @@ def _build(group: type[Group], content: Any) -> Group:
 
 
 def _value(field: dataclasses.Field[Any], value: Any) -> Any:
-    """Return what the dataclass takes for what YAML has: a group of options, or a tuple."""
+    """Return what the dataclass takes for what YAML has: a group, a tuple, a whole number."""
     group = group_of(field)
     if group and (value is not None or field.default is not None):
         return _build(group, value)
     described = field.metadata.get('option')
-    return tuple(value) if described and described.many and isinstance(value, list) else value
+    if described and described.many and isinstance(value, list):
+        return tuple(value)
+    whole = described and described.kind is int and isinstance(value, float)
+    return int(value) if whole and value.is_integer() else value
 
 
 def _gains(content: Any) -> dict[str, dict[str, Any]]:

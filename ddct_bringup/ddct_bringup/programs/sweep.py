@@ -1,0 +1,176 @@
+"""Program `sweep`: run controllers over the values of a key; print a table, draw a figure."""
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TextIO
+
+from rich.console import Console
+from rich.progress import track
+from rich.text import Text
+
+from ddct_bringup.campaign.rows import base_of
+from ddct_bringup.run.options import (
+    ALL,
+    add_controllers_option,
+    add_settings_options,
+    controllers_of,
+    print_choices,
+)
+from ddct_bringup.scores.tables import table_console
+from ddct_bringup.sweep.axis import axis_of
+from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep_document import sweep_document
+from ddct_bringup.sweep.sweep_table import sweep_notes, sweep_table
+from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
+from ddct_controllers.registry import controller_label, working_controllers
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import close_name
+from ddct_plant.base.printable import printable
+from ddct_plant.files.output_file import STDOUT, require_place, write_json
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.table import Figure, drawn_by_rich
+
+PROGRAM = 'ddct sweep'
+_PICTURES = ('.png', '.svg')
+_MOST_DRAWN = 2
+_EPILOG = """\
+examples:
+  ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi,ls8,mpc3 --figure wear.png
+  ddct sweep --over vehicle.mass_kg=1200:2400:7 --controllers ls8,mine --clutch stick_slip
+  ddct sweep --over controllers.pi.proportional_gain=0.05,0.1,0.2 --controllers pi --json -
+  ddct sweep --over wear_gain=0.6:1.4:9 --over load.slope_rad=0:0.1:5 --controllers pi,ls8
+
+Runs are headless, on all cores, and judged as by `ddct score`. What belongs to a key moves with
+it, as by --set. A run that fails is a row with its reason; the exit code is then 1.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _sweep, argv)
+
+
+def _sweep(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    if options.list:
+        print_choices()
+        return 0
+    if not options.over:
+        raise ParameterError('--over is missing: give KEY=START:STOP:COUNT')
+    metrics = _metrics(options.metrics)
+    if options.json:
+        require_place('--json', options.json)
+    if options.figure:
+        _require_picture(options.figure, len(options.over))
+    sweep = _planned(options)
+    runs = _carried_out(sweep)
+    stream = sys.stderr if options.json == STDOUT else sys.stdout
+    if options.json:
+        write_json(options.json, sweep_document(sweep, runs))
+    _print(sweep, runs, metrics, stream)
+    if options.figure:
+        # Only here: matplotlib takes long to import.
+        from ddct_bringup.sweep.sweep_figure import write_sweep_figure
+
+        write_sweep_figure(sweep, runs, metrics, Path(options.figure))
+    failed = sum(not run.entry['valid'] for run in runs)
+    if failed:
+        complain(PROGRAM, f'{failed} of {len(runs)} runs are not valid: the lines above say why')
+    return 1 if failed else 0
+
+
+def _planned(options: argparse.Namespace) -> Sweep:
+    """Return the sweep that the options describe; say on standard error what moves with it."""
+    names = controllers_of(options.controllers)
+    base = base_of(options, [controller_label(name) for name in names])
+    axes = [axis_of(text) for text in options.over]
+    if options.controllers == ALL:
+        first = base.at({axis.key: axis.values[0] for axis in axes})
+        names = working_controllers(first, partial(complain, PROGRAM))
+    sweep = Sweep(base, axes, names, load_limits(options.limits))
+    for line in sweep.settings[0].scenario.adjusted:
+        complain(PROGRAM, f'at the first point {line}')
+    return sweep
+
+
+def _carried_out(sweep: Sweep) -> list[SweptRun]:
+    started = time.monotonic()
+    console = Console(file=sys.stderr)
+    with sweep.runs() as runs:
+        shown = track(
+            runs,
+            f'{len(sweep)} runs',
+            len(sweep),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        done = list(shown)
+    complain(PROGRAM, f'{len(done)} runs in {time.monotonic() - started:.1f} s')
+    return done
+
+
+def _print(
+    sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Figure], stream: TextIO
+) -> None:
+    console = table_console(stream)
+    console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
+    for text in sweep_notes(runs, metrics):
+        console.print(Text(printable(text)), soft_wrap=True)
+
+
+def _metrics(text: str) -> list[Figure]:
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    for name in names:
+        if name not in METRICS:
+            raise ParameterError(f'--metrics: unknown metric {name}: {close_name(name, METRICS)}')
+    if not names:
+        raise ParameterError('--metrics is empty: name at least one')
+    return [METRICS[name] for name in dict.fromkeys(names)]
+
+
+def _require_picture(target: str, keys: int) -> None:
+    if keys > _MOST_DRAWN:
+        raise ParameterError(
+            f'--figure draws over one or two keys, not {keys}: leave it out, or an --over'
+        )
+    if Path(target).suffix not in _PICTURES:
+        raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
+    require_place('--figure', target)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Run controllers over the values of a key and compare their scores.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        '--over',
+        action='append',
+        default=[],
+        metavar='KEY=START:STOP:COUNT',
+        help='what is varied: wear_gain, or a dotted scenario key; also KEY=A,B,C; may be '
+        'repeated, for every combination',
+    )
+    add_controllers_option(parser)
+    parser.add_argument(
+        '--metrics',
+        default=','.join(figure.key for figure in TABLE_5_1),
+        metavar='A,B,...',
+        help='of table and figure, by their names in scores.json; default: %(default)s',
+    )
+    parser.add_argument('--json', metavar='FILE', help="also write the rows; '-' is stdout")
+    parser.add_argument('--figure', metavar='FILE', help='also draw them: a .png or .svg file')
+    add_limits_option(parser)
+    add_settings_options(parser)
+    return parser
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

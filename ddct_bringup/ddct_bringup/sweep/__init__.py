@@ -1,0 +1,1 @@
+"""Runs over one value or two: `sweep`, the short form of a campaign."""

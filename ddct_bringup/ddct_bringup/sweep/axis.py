@@ -1,0 +1,143 @@
+"""What `--over` says: a key, and the values that it takes one after the other."""
+
+import dataclasses
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ddct_controllers.registry import controller_names, controller_spec
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option, close_name, group_of, options_of
+from ddct_plant.base.printable import printable
+from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+MOST = 10_000
+"""Values of one key, and points of a sweep; a campaign is made for more."""
+_HOW = 'write KEY=START:STOP:COUNT, such as wear_gain=0.5:1.5:11, or KEY=A,B,C'
+_WHOLE = re.compile(r'[+-]?\d+')
+_DIGITS = 12
+"""Of a value between START and STOP, so that what is printed is what ran."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A key and its values."""
+
+    key: str
+    """A setting of a run, such as `wear_gain`, or a dotted scenario key."""
+    values: tuple[Any, ...]
+    unit: str = ''
+
+    def __post_init__(self) -> None:
+        """Refuse a key that nothing has, and values that are none, too many or equal."""
+        if (problem := self._problem()) is not None:
+            raise ParameterError(f'--over {printable(self.key)}: {problem}')
+
+    def _problem(self) -> str | None:
+        first = self.key.partition('.')[0]
+        known = [*options_of(RunSettings), *(field.name for field in dataclasses.fields(Scenario))]
+        if first not in known:
+            return f'there is no such key: {close_name(first, known)}'
+        if not 1 <= len(self.values) <= MOST:
+            return f'{len(self.values)} values: give 1 to {MOST}'
+        for value in self.values:
+            if isinstance(value, (list, tuple, dict)) or value is None:
+                return f'{value!r} is no single value: {_HOW}'
+            if self.values.count(value) > 1:
+                return f'{value} is there twice: give each value once'
+        return None
+
+    @property
+    def heading(self) -> str:
+        """The key with its unit."""
+        return f'{self.key}, {self.unit}' if self.unit else self.key
+
+    @property
+    def numeric(self) -> bool:
+        """Whether every value is a number."""
+        return all(type(value) in (int, float) for value in self.values)
+
+
+def axis_of(text: str) -> Axis:
+    """Return what `KEY=START:STOP:COUNT` or `KEY=A,B,C` says; raise ParameterError if nothing."""
+    key, _, given = text.partition('=')
+    if not key or not given:
+        raise ParameterError(f'--over {printable(text)}: {_HOW}')
+    parts = [part.strip() for part in given.split(':')]
+    values = [_value(part, key) for part in given.split(',')] if len(parts) == 1 else None
+    return axis(key, _range(text, parts) if values is None else values)
+
+
+def axis(key: str, values: Any) -> Axis:
+    """Return the axis of a key; whole numbers become what the key takes."""
+    described = _described(key)
+    if described is not None and described.kind is float:
+        values = [float(value) if type(value) is int else value for value in values]
+    return Axis(key, tuple(values), described.unit if described else '')
+
+
+def value_text(value: Any) -> str:
+    """Return a value as tables and messages show it."""
+    return f'{value:.{_DIGITS}g}' if type(value) in (int, float) else printable(value)
+
+
+def _range(text: str, parts: list[str]) -> list[float | int]:
+    try:
+        start, stop, count = (*map(float, parts[:2]), int(parts[2]))
+        if len(parts) != 3 or not math.isfinite(start) or not math.isfinite(stop):
+            raise ValueError
+    except (ValueError, IndexError) as error:
+        raise ParameterError(f'--over {printable(text)}: {_HOW}') from error
+    if not 1 <= count <= MOST:
+        raise ParameterError(f'--over {printable(text)}: COUNT is {count}: give 1 to {MOST}')
+    if start == stop and count > 1:
+        raise ParameterError(
+            f'--over {printable(text)}: START and STOP are the same: give two values, or COUNT 1'
+        )
+    values = [float(f'{value:.{_DIGITS}g}') for value in np.linspace(start, stop, count)]
+    if all(map(_WHOLE.fullmatch, parts[:2])) and all(value.is_integer() for value in values):
+        return [int(value) for value in values]
+    return values
+
+
+def _value(text: str, key: str) -> Any:
+    text = text.strip()
+    if _WHOLE.fullmatch(text):
+        return int(text)
+    try:
+        number = float(text)
+    except ValueError:
+        try:
+            return parse_yaml(text)
+        except ParameterError as error:
+            raise ParameterError(f'--over {printable(key)}: {error}') from error
+    if not math.isfinite(number):
+        raise ParameterError(f'--over {printable(key)}: {text} is not finite: give a number')
+    return number
+
+
+def _described(key: str) -> Option | None:
+    """Return what a key of the settings, a scenario or a controller is, None if not known."""
+    *folders, leaf = key.split('.')
+    if not folders and leaf in options_of(RunSettings):
+        return options_of(RunSettings)[leaf]
+    if folders[:1] == ['controllers'] and len(folders) == 2:
+        named = folders[1]
+        return (
+            (controller_spec(named).options or {}).get(leaf)
+            if named in controller_names()
+            else None
+        )
+    group: type = Scenario
+    for folder in folders:
+        fields = {field.name: field for field in dataclasses.fields(group)}
+        inner = group_of(fields[folder]) if folder in fields else None
+        if inner is None:
+            return None
+        group = inner
+    return options_of(group).get(leaf)

@@ -1,0 +1,80 @@
+"""States of runs as coloured cells over values, each state a colour of its own."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from ddct_bringup.sweep.axis import Axis, value_text
+from ddct_bringup.verdict.state import (
+    ENGAGED,
+    INVALID,
+    NOT_ENGAGED,
+    OSCILLATING,
+    RUNAWAY,
+    STATES,
+)
+from ddct_controllers.design.drawing.chart_style import BLACK, ORANGE, PURPLE, VERMILLION
+from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
+
+STATE_COLOURS: Mapping[str, str] = {
+    ENGAGED: '#d3e8f5',
+    NOT_ENGAGED: ORANGE,
+    OSCILLATING: PURPLE,
+    RUNAWAY: VERMILLION,
+    STALLED: '#5c3a21',
+    OVER_REVVED: '#7a0019',
+    INVALID: BLACK,
+}
+"""Pale where the clutch engaged, the darker the worse."""
+_MOST_TICKS = 8
+
+
+def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequence[str]]) -> None:
+    """Draw (m, n) states as cells between n + 1 edges across and m + 1 edges up."""
+    numbers = np.array([[STATES.index(state) for state in row] for row in states])
+    axes.pcolormesh(
+        edges[0],
+        edges[1],
+        numbers,
+        cmap=ListedColormap([STATE_COLOURS[state] for state in STATES]),
+        vmin=-0.5,
+        vmax=len(STATES) - 0.5,
+        edgecolors='white',
+        linewidth=0.4,
+    )
+    axes.grid(visible=False)
+
+
+def state_legend(figure: Figure, states: set[str]) -> None:
+    """Say below the figure which colour is which of the states that it has."""
+    handles = [
+        Patch(facecolor=STATE_COLOURS[state], edgecolor='#7f7f7f', label=state.replace('_', ' '))
+        for state in STATES
+        if state in states
+    ]
+    figure.legend(handles=handles, loc='outside lower center', ncols=len(handles))
+
+
+def places_of(axis: Axis) -> np.ndarray:
+    """Return (n,) where the values of an axis are drawn: numbers at themselves."""
+    return np.array(axis.values, float) if axis.numeric else np.arange(len(axis.values))
+
+
+def edges_of(places: np.ndarray) -> np.ndarray:
+    """Return (n + 1,) edges of the cells around (n,) places: in the middle between two."""
+    if len(places) == 1:
+        return places[0] + np.array([-0.5, 0.5])
+    middle = (places[1:] + places[:-1]) / 2.0
+    return np.array([2.0 * places[0] - middle[0], *middle, 2.0 * places[-1] - middle[-1]])
+
+
+def label_values(axis: Axis, which: Any) -> None:
+    """Label matplotlib's x or y axis with an axis of a sweep; few values are ticks themselves."""
+    which.set_label_text(axis.heading)
+    if not axis.numeric or len(axis.values) <= _MOST_TICKS:
+        which.set_ticks(places_of(axis), [value_text(value) for value in axis.values])

@@ -1,0 +1,98 @@
+"""A sweep: every controller at every point of its axes, headless, scored and judged."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+from ddct_bringup.campaign.processes import in_processes
+from ddct_bringup.campaign.rows import RunBase, scored_headless
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.sweep.axis import MOST, Axis, value_text
+from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.registry import Chosen
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True)
+class SweptRun:
+    """One run of a sweep."""
+
+    varied: Mapping[str, Any]
+    """Values by the keys of the axes."""
+    entry: Entry
+    """As in `scores.json`."""
+
+    @property
+    def state(self) -> str:
+        """The verdict's word."""
+        return self.entry['verdict']['state']
+
+    @property
+    def place(self) -> str:
+        """The point, such as `wear_gain=0.7`."""
+        return ', '.join(f'{key}={value_text(value)}' for key, value in self.varied.items())
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is run; what cannot be is refused when it is built."""
+
+    base: RunBase
+    axes: Sequence[Axis]
+    controllers: Sequence[Chosen]
+    limits: Limits
+
+    def __post_init__(self) -> None:
+        """Build the settings of every point, and every controller at the first; DdctError."""
+        keys = [axis.key for axis in self.axes]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise ParameterError(f'--over names {key} twice: name each key once')
+        if len(self.points) > MOST:
+            raise ParameterError(
+                f'--over gives {len(self.points)} points: at most {MOST}, `ddct campaign` is '
+                'made for more'
+            )
+        for settings in self.settings:
+            if not settings.lockstep:
+                raise ParameterError(
+                    f'mode is {settings.mode}, but a sweep needs no graph: leave the mode out'
+                )
+        for controller in self.controllers:
+            try:
+                RunPlan(self.settings[0], controller, 'headless')
+            except ParameterError:
+                raise
+            except DdctError:
+                continue  # what cannot be computed at one point is a row that says so
+
+    @cached_property
+    def points(self) -> list[dict[str, Any]]:
+        """Every combination of the axes' values, the last axis fastest."""
+        keys = [axis.key for axis in self.axes]
+        values = product(*(axis.values for axis in self.axes))
+        return [dict(zip(keys, point, strict=True)) for point in values]
+
+    @cached_property
+    def settings(self) -> list[RunSettings]:
+        """Those of the points."""
+        return [self.base.at(point) for point in self.points]
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return len(self.controllers) * len(self.points)
+
+    def run(self, index: int) -> SweptRun:
+        """Carry out one run: those of the first controller come first."""
+        controller, point = divmod(index, len(self.points))
+        entry = scored_headless(self.settings[point], self.controllers[controller], self.limits)
+        return SweptRun(self.points[point], entry)
+
+    def runs(self) -> AbstractContextManager[Iterator[SweptRun]]:
+        """Carry out all runs on all cores, as they are taken; as `in_processes`."""
+        return in_processes(self.run, len(self))

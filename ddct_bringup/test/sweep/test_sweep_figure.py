@@ -1,0 +1,90 @@
+"""No failed run looks like a good one: lines join engaged runs alone, crosses mark the others."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from ddct_bringup.campaign.rows import RunBase
+from ddct_bringup.sweep.axis import axis_of
+from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
+from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep_figure import sweep_figure
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
+from ddct_controllers.design.drawing.chart_style import controller_style
+
+TIME = TABLE_5_1[:1]
+
+
+def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float | None]]) -> Any:
+    """Return the figure of runs with these states and engagement times."""
+    sweep = Sweep(RunBase(), [axis_of(text) for text in over], controllers, packaged_limits())
+    entries = [
+        {'verdict': {'state': state}, 'metrics': {'engagement_time_s': value}}
+        for state, value in runs
+    ]
+    places = sweep.points * len(controllers)
+    swept = [SweptRun(place, entry) for place, entry in zip(places, entries, strict=True)]
+    return sweep_figure(sweep, swept, TIME)
+
+
+@pytest.fixture(scope='module')
+def panel():
+    """Return the panel of the first metric: one controller, of five runs two are engaged."""
+    runs = [(RUNAWAY, 900.0), (ENGAGED, 1.0), (ENGAGED, 2.0), (NOT_ENGAGED, 2.5), (INVALID, None)]
+    return drawn(['wear_gain=0.6:1.4:5'], ['pi'], runs).axes[0]
+
+
+def by_marker(axes: Any, marker: str) -> Any:
+    (line,) = [
+        each for each in axes.lines if each.get_marker() == marker and len(each.get_xdata())
+    ]
+    return line
+
+
+def test_a_line_joins_engaged_runs_alone(panel):
+    line = by_marker(panel, 'o')
+    np.testing.assert_array_equal(line.get_ydata(), [np.nan, 1.0, 2.0, np.nan, np.nan])
+    assert line.get_color() == controller_style('pi')['color']
+
+
+def test_each_other_run_has_a_cross_within_the_panel(panel):
+    crosses = by_marker(panel, 'x')
+    low, high = panel.get_ylim()
+    np.testing.assert_allclose(crosses.get_xdata(), [0.6, 1.2, 1.4])
+    np.testing.assert_allclose(crosses.get_ydata(), [high, 2.5, low])
+    assert high < 4.0
+
+
+def cells(axes: Any) -> list[list[str]]:
+    (mesh,) = axes.collections
+    colours = [to_hex(colour) for colour in mesh.to_rgba(mesh.get_array().ravel())]
+    names = {colour: state for state, colour in STATE_COLOURS.items()}
+    shape = mesh.get_array().shape
+    return np.array([names[colour] for colour in colours]).reshape(shape).tolist()
+
+
+def test_the_lanes_show_every_state_in_its_own_colour():
+    states = [*STATES, *reversed(STATES)]
+    figure = drawn(['wear_gain=0.6:1.2:7'], ['pi', 'ls8'], [(state, 1.0) for state in states])
+    assert cells(figure.axes[-1]) == [list(STATES), list(reversed(STATES))]
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert legend == [state.replace('_', ' ') for state in STATES]
+
+
+def test_a_map_has_the_first_key_across_and_the_second_up():
+    states = [ENGAGED, RUNAWAY, NOT_ENGAGED, ENGAGED, INVALID, ENGAGED]
+    figure = drawn(
+        ['wear_gain=0.8,1,1.2', 'gear=1,2'], ['pi'], [(state, None) for state in states]
+    )
+    (axes,) = figure.axes
+    assert cells(axes) == [[ENGAGED, NOT_ENGAGED, INVALID], [RUNAWAY, ENGAGED, ENGAGED]]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ('wear_gain', 'gear')
+
+
+def test_cells_meet_in_the_middle_between_values():
+    np.testing.assert_allclose(edges_of(np.array([0.0, 1.0, 4.0])), [-0.5, 0.5, 2.5, 5.5])
+    np.testing.assert_allclose(edges_of(np.array([3.0])), [2.5, 3.5])

@@ -1,0 +1,147 @@
+"""`sweep` prints, writes and draws what the same runs alone would say."""
+
+import json
+
+import pytest
+
+from ddct_bringup import api
+from ddct_bringup.programs.sweep import main
+from ddct_controllers.from_python import chosen_from
+
+SHORT_S = 1.0
+SHORT = ['--duration', str(SHORT_S)]
+UNSTABLE = """\
+name: unstable
+units: {input: rpm, output: N m}
+polynomial: {num: [-1.0], den: [1, -900]}
+"""
+
+
+@pytest.fixture(scope='module')
+def swept(tmp_path_factory):
+    """Return what a sweep of two controllers over mass prints, its exit code and its JSON."""
+    file = tmp_path_factory.mktemp('sweep') / 'rows.json'
+    over = ['--over', 'vehicle.mass_kg=1200,1800', '--controllers', 'pi,ls8']
+    code = main([*over, *SHORT, '--wear-gain', '0.9', '--json', str(file)])
+    return code, json.loads(file.read_text())
+
+
+def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
+    code, document = swept
+    assert code == 0
+    rows = document['rows']
+    assert [(row['controller'], row['over']['vehicle.mass_kg']) for row in rows] == [
+        ('pi', 1200.0),
+        ('pi', 1800.0),
+        ('ls8', 1200.0),
+        ('ls8', 1800.0),
+    ]
+    row = rows[3]
+    with pytest.warns(match='vehicle_inertia moved'):
+        alone = api.run('ls8', duration=SHORT_S, wear_gain=0.9, set={'vehicle.mass_kg': 1800.0})
+    assert row['verdict'] == alone.verdict
+    assert row['metrics']['slip_final_rpm'] == alone.metrics['slip_final_rpm']
+    assert row['scenario_changes'] == alone.entry['scenario_changes']
+    assert any(
+        change.startswith('driveline.vehicle_inertia')
+        for change in alone.entry['scenario_changes']
+    )
+    assert rows[2]['metrics']['slip_final_rpm'] != row['metrics']['slip_final_rpm']
+
+
+def test_the_document_says_what_was_varied(swept):
+    document = swept[1]
+    assert document['over'] == [
+        {'key': 'vehicle.mass_kg', 'unit': 'kg', 'values': [1200.0, 1800.0]}
+    ]
+    assert (document['schema_version'], document['controllers']) == (1, ['pi', 'ls8'])
+    assert document['limits']['name'] == 'packaged'
+
+
+def test_the_table_has_a_row_per_run_and_fits_a_terminal(capsys):
+    over = ['--over', 'load.slope_rad=0:0.1:2', '--over', 'wear_gain=0.8,1']
+    assert main([*over, '--controllers', 'ls8', *SHORT]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    rows = [line.split() for line in lines if line.startswith(' ls8')]
+    assert [row[1:3] for row in rows] == [['0', '0.8'], ['0', '1'], ['0.1', '0.8'], ['0.1', '1']]
+    assert {row[-1] for row in rows} <= {'engaged', 'not_engaged'}
+    table = [line.rstrip() for line in lines if "'-':" not in line]
+    assert max(map(len, table)) <= 80
+
+
+def test_a_run_that_fails_is_a_row_with_its_reason_and_the_exit_code_is_1(tmp_path, capsys):
+    file = tmp_path / 'unstable.yaml'
+    file.write_text(UNSTABLE)
+    picture = tmp_path / 'sweep.svg'
+    over = ['--over', 'wear_gain=0.9,1', '--controllers', f'pi,{file}']
+    assert main([*over, '--figure', str(picture), '--json', '-']) == 1
+    printed = capsys.readouterr()
+    rows = json.loads(printed.out)['rows']
+    assert [row['valid'] for row in rows] == [True, True, False, False]
+    assert rows[2]['verdict']['state'] == 'invalid'
+    assert rows[2]['metrics']['engagement_time_s'] is None
+    (note,) = [line for line in printed.err.splitlines() if 'is not valid' in line]
+    assert rows[2]['reason'] in note
+    assert note.endswith('(at wear_gain=0.9; wear_gain=1)')
+    assert 'ddct sweep: 2 of 4 runs are not valid' in printed.err
+    assert 'invalid' in picture.read_text()
+
+
+BAD = {
+    'no over': ([], '--over is missing'),
+    'refused by the scenario': (['--over', 'vehicle.mass_kg=1000,-1'], 'vehicle.mass_kg is -1'),
+    'unknown deep key': (['--over', 'vehicle.mass=1:2:2'], 'did you mean vehicle.mass_kg'),
+    'out of range': (['--over', 'wear_gain=1:4:3'], 'wear_gain is 4: it must be at most 3'),
+    'no whole gear': (['--over', 'gear=1:2:3'], 'gear is 1.5: give a whole number'),
+    'a key of the graph': (['--over', 'wear_gain=1,2', '--mode', 'realtime'], 'mode is realtime'),
+    'mode varied': (['--over', 'mode=lockstep,realtime'], 'mode is realtime'),
+    'a key twice': (['--over', 'gear=1,2', '--over', 'gear=3'], 'names gear twice'),
+    'too many points': (
+        ['--over', 'wear_gain=1:2:999', '--over', 'load.slope_rad=0:0.1:11'],
+        '10989 points: at most 10000',
+    ),
+    'unknown controller': (['--over', 'gear=1', '--controllers', 'nope'], "'nope'"),
+    'refused option': (['--over', 'controllers.pi.integral_gain=x,1'], 'integral_gain'),
+    'unknown metric': (['--over', 'gear=1', '--metrics', 'steps,spets'], 'did you mean steps'),
+    'no metric': (['--over', 'gear=1', '--metrics', ','], '--metrics is empty'),
+    'no picture': (['--over', 'gear=1', '--figure', 'wear.pdf'], '.png or .svg'),
+    'no folder': (['--over', 'gear=1', '--figure', 'no/such/wear.png'], 'no folder'),
+    'no folder for rows': (['--over', 'gear=1', '--json', 'no/such/x'], 'no folder'),
+    'three keys in a figure': (
+        ['--over', 'gear=1', '--over', 'wear_gain=1', '--over', 'seed=1', '--figure', 'x.png'],
+        'one or two keys, not 3',
+    ),
+}
+
+
+@pytest.mark.parametrize(('options', 'words'), BAD.values(), ids=BAD)
+def test_a_mistake_is_one_line_before_anything_runs(options, words, capsys):
+    given = options if '--controllers' in options else [*options, '--controllers', 'pi']
+    assert main(given) == 1
+    printed = capsys.readouterr()
+    (line,) = printed.err.splitlines()
+    assert line.startswith('ddct sweep: ')
+    assert words in line
+    assert not printed.out
+
+
+class Diverging(api.Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return api.Command(float('nan'))
+
+
+def test_a_sweep_from_python_is_a_table_that_takes_objects_and_keeps_failures():
+    rows = api.sweep(
+        ['pi', chosen_from(Diverging, 'mine')], {'wear_gain': [0.8, 1.0]}, duration=SHORT_S
+    )
+    assert rows['controller'].tolist() == ['pi', 'pi', 'mine', 'mine']
+    assert rows['wear_gain'].tolist() == [0.8, 1.0, 0.8, 1.0]
+    assert rows['valid'].tolist() == [True, True, False, False]
+    assert rows['verdict_state'].tolist()[2:] == ['invalid', 'invalid']
+    alone = api.run('pi', wear_gain=0.8, duration=SHORT_S)
+    assert rows['slip_final_rpm'][0] == alone.metrics['slip_final_rpm']
+    with pytest.raises(api.ParameterError, match='did you mean wear_gain'):
+        api.sweep('pi', {'wear_gian': '1:2:3'})
