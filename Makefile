@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo fmu test test-fast mutants lint bench lock clean
+.PHONY: help setup demo docs fmu test test-fast mutants lint bench lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -29,7 +29,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | bench | clean   (see docs/use/setup.md)'
+	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | docs | bench | clean   (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -96,6 +96,10 @@ test-fast: setup
 # MUTANTS='--claim TEXT' or files of tests/mutants try only those.
 mutants: fmu
 	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
+
+# Tables, charts and diagrams of the pages, minutes; KINDS='options plant' writes only those.
+docs: setup
+	@$(SOURCED) $(BIN)/python docs/generate.py $(KINDS)
 
 lint: $(VENV_MADE)
 	@status=0; \

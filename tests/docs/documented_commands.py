@@ -27,9 +27,6 @@ NOT_RUN_HERE = {
         'waits for a viewer; tests/live gives it one'
     ),
     'ddct live': 'serves until Ctrl-C; tests/live stops it',
-    'ddct reproduce studies --write-doc docs/use/engagements.md': (
-        'takes a minute; test_engagements_page.py makes a sample of its rows'
-    ),
     'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""

@@ -1,18 +1,14 @@
-"""Rows of docs/use/engagements.md are what the runs give; the page has all rows and all charts."""
-
-import re
-from pathlib import Path
+"""Rows of the pages of engagements are what the runs give; they have all rows and all charts."""
 
 import pytest
+from generator.pages import DOCS, shown_tables
 
 from ddct_bringup.reproduction.studies import engagements
-from ddct_bringup.reproduction.studies.command import PAGE_MARK
 from ddct_bringup.reproduction.studies.table_5_2 import rows_of
 from ddct_controllers.registry import controller_names
 
-DOCS = Path(__file__).resolve().parents[2] / 'docs'
-PAGE = (DOCS / 'use' / 'engagements.md').read_text(encoding='utf-8')
-MAKE = 'run: reproduce studies --write-doc docs/use/engagements.md --charts docs/images'
+SHOWN = shown_tables('studies')
+MAKE = 'run: make docs KINDS=studies'
 SAMPLE = {
     'engagements_thesis_linear': ('thesis', 'linear', 1.3, 'ls8'),
     'engagements_thesis_stick_slip': ('thesis', 'stick_slip', 0.7, 'mpc3'),
@@ -26,9 +22,7 @@ LARGEST_CHART_BYTES = 150_000
 
 
 def rows_on_page(study: str) -> list[tuple[str, ...]]:
-    block = re.search(rf'<!-- {PAGE_MARK}: {study} -->\n(.*?)<!-- end -->', PAGE, re.DOTALL)
-    assert block is not None
-    return [tuple(line[2:-2].split(' | ')) for line in block[1].splitlines()[2:]]
+    return [tuple(line[2:-2].split(' | ')) for line in SHOWN[study].splitlines()[2:]]
 
 
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
@@ -54,5 +48,7 @@ def test_rows_of_table_5_2_are_what_the_runs_give(clutch):
 
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
 def test_a_small_chart_stands_beside_each_table(study):
-    assert f'](../images/{study}.png)' in PAGE
+    texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]
+    (text,) = [text for text in texts if f'<!-- studies: {study} -->' in text]
+    assert f'](../images/{study}.png)' in text
     assert (DOCS / 'images' / f'{study}.png').stat().st_size < LARGEST_CHART_BYTES

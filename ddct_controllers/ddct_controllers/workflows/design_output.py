@@ -23,7 +23,6 @@ def add_design_options(parser: argparse.ArgumentParser) -> None:
     add('--out', type=Path, metavar='DIR', help='write the controller and its charts')
     add('--overwrite', action='store_true', default=None, help='replace an earlier design')
     add('--json', metavar='FILE', help='write all figures; - is standard output')
-    add('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
 
 
 def free_name(options: argparse.Namespace) -> str:

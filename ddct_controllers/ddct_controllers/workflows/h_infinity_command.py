@@ -6,7 +6,6 @@ from typing import Any
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.h_infinity.design import METHODS, design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import (
-    PRINTED_WEIGHTS,
     RECIPES,
     THESIS_SPECIFICATIONS,
     make_weights,
@@ -14,16 +13,13 @@ from ddct_controllers.design.h_infinity.recipes import (
 from ddct_controllers.design.h_infinity.report import (
     design_record,
     lacks,
-    printed_record,
     provenance,
     uncertainty_record,
 )
-from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
+from ddct_controllers.design.h_infinity.tables import design_tables
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.linear import BILINEAR, HOLD
-from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_controllers.workflows.design_output import (
     add_design_options,
     free_name,
@@ -31,9 +27,7 @@ from ddct_controllers.workflows.design_output import (
     write_design,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import complain
-from ddct_plant.program.page_tables import fill_tables, read_page
 
 _DESCRIPTION = """\
 Chapter 3 of the thesis: specifications to weights, synthesis, cleaning, discretisation, and
@@ -76,10 +70,6 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write the files, and return the exit code."""
-    if options.write_doc:
-        page = read_page(options.write_doc)
-        write_text(options.write_doc, fill_tables(page, 'h-infinity', page_tables()))
-        return 0
     name = free_name(options)
     specifications = TimeSpecifications(
         _DEFAULTS.rise_time_s if options.rise_time is None else options.rise_time,
@@ -119,17 +109,3 @@ def _tell(options: argparse.Namespace, name: str, missing: str) -> None:
             '--write-anyway'
         )
     complain('ddct design', f'{name}: {missing}')
-
-
-def page_tables() -> dict[str, Any]:
-    """Return the tables of docs/controllers/h_infinity.md: our designs beside the printed ones."""
-    corners = PlantCorners()
-    records = [
-        design_record(name, recipe, _DEFAULTS, synthesised_design(name), corners)
-        for name, recipe in SYNTHESISED.items()
-    ]
-    printed = {
-        name: printed_record(controller, PRINTED_WEIGHTS, _DEFAULTS)
-        for name, controller in H_INFINITY_CONTROLLERS.items()
-    }
-    return design_tables(records, uncertainty_record()) | {'printed': loop_table(printed)}

@@ -22,10 +22,8 @@ from ddct_controllers.workflows.design_output import (
     write_design,
 )
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.output_file import write_text
 from ddct_plant.models.driveline_model import engine_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.program.page_tables import fill_tables, read_page
 
 _DESCRIPTION = """\
 Without specifications, the thesis's Chapter 2: its specifications translated, the way from
@@ -78,20 +76,14 @@ def _thesis(options: argparse.Namespace) -> None:
     for name in _NEEDS_SPECIFICATIONS:
         if getattr(options, name) is not None:
             raise ParameterError(f'--{name} needs specifications: add --rise-time and --overshoot')
-    page = read_page(options.write_doc) if options.write_doc else ''
     record = thesis_record()
-    tables = thesis_tables(record)
-    show(options, tables.values(), record)
-    if options.write_doc:
-        write_text(options.write_doc, fill_tables(page, 'loop-shaping', tables))
+    show(options, thesis_tables(record).values(), record)
 
 
 def _design(options: argparse.Namespace) -> None:
     if options.rise_time is None or options.overshoot is None:
         missing = '--rise-time' if options.rise_time is None else '--overshoot'
         raise ParameterError(f'{missing} is missing: a design needs --rise-time and --overshoot')
-    if options.write_doc:
-        raise ParameterError('--write-doc is for the thesis: leave out the specifications')
     specifications = TimeSpecifications(options.rise_time, options.overshoot / 100.0)
     name = free_name(options)
     parameters = DrivelineParameters()

@@ -15,7 +15,6 @@ from ddct_controllers.workflows.plant_on_paper import (
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import STDOUT, require_place, write_bytes, write_json, write_text
-from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 
@@ -48,7 +47,6 @@ def add_parser(subparsers: Any) -> None:
         help=f'write it; the name ends in one of {", ".join(_FORMATS)}; may be repeated',
     )
     parser.add_argument('--json', metavar='FILE', help='write the JSON; - is standard output')
-    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
     parser.set_defaults(run=run)
 
 
@@ -60,16 +58,12 @@ def run(options: argparse.Namespace) -> int:
                 f'--export {file}: the name must end in one of {", ".join(_FORMATS)}'
             )
         require_place('--export', file)
-    page = read_page(options.write_doc) if options.write_doc else ''
     paper = plant_on_paper(scenario_of(options, options.overrides))
-    tables = _tables(paper)
     if options.json != STDOUT:
-        for table in tables.values():
+        for table in paper_tables(paper).values():
             print_table(table)
     if options.json:
         write_json(options.json, paper)
-    if options.write_doc:
-        write_text(options.write_doc, fill_tables(page, 'plant', tables))
     for file in options.export:
         _export(file, paper)
     return 0
@@ -89,7 +83,8 @@ def _export(file: str, paper: dict[str, Any]) -> None:
         write_bytes(file, content.getvalue())
 
 
-def _tables(paper: dict[str, Any]) -> dict[str, Table]:
+def paper_tables(paper: dict[str, Any]) -> dict[str, Table]:
+    """Return the tables of a plant on paper by name."""
     space = paper['state_space']
     columns = (*STATES, *INPUTS)
     dynamics = [

@@ -133,7 +133,6 @@ def test_the_lmi_method_gives_nearly_the_same_level(capsys):
         (['--back-off', '0.5'], 'back-off from the optimum is 0.5'),
         (['--method', 'lmi', '--back-off', '1.1'], '--back-off is for --method riccati'),
         (['--name', 'hinf_sampled'], '--name hinf_sampled is taken'),
-        (['--write-doc', '/no/such/page.md'], '--write-doc /no/such/page.md: cannot be read'),
     ],
 )
 def test_a_users_mistake_is_one_line(capsys, options, complaint):

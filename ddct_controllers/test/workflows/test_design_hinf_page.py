@@ -1,15 +1,14 @@
 """The page docs/controllers/h_infinity.md says what the program computes."""
 
-import re
 from pathlib import Path
 
 import pytest
+from generator.pages import as_markdown, shown_tables
+from generator.tables import h_infinity_tables
 
 from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_controllers.workflows.h_infinity_command import page_tables
 from ddct_plant.linear.lti import discretise_zoh
-from ddct_plant.program.page_tables import fill_tables
 
 pytestmark = pytest.mark.slow
 
@@ -17,17 +16,12 @@ PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'h_infinity.md'
 HINF_SAMPLED = PAGE.with_name('hinf_sampled.md')
 NOT_TO_THE_DIGIT = {'cleaning', 'controllers'}
 """Where the fast pole at the optimum is, and how double roots split, is up to rounding."""
-BLOCK = re.compile(r'<!-- h-infinity: (\w+) -->\n.*?<!-- end -->', re.DOTALL)
-
-
-def blocks(page: str) -> dict[str, str]:
-    return {match[1]: match[0] for match in BLOCK.finditer(page)}
 
 
 def test_its_tables_are_those_of_the_program():
-    """After a change: design h-infinity --write-doc docs/controllers/h_infinity.md."""
-    page = PAGE.read_text(encoding='utf-8')
-    written, computed = blocks(page), blocks(fill_tables(page, 'h-infinity', page_tables()))
+    """After a change: make docs KINDS=h-infinity."""
+    written, computed = shown_tables('h-infinity'), as_markdown(h_infinity_tables())
+    assert written.keys() == computed.keys()
     for name in written.keys() - NOT_TO_THE_DIGIT:
         assert written[name] == computed[name]
     for name in NOT_TO_THE_DIGIT:

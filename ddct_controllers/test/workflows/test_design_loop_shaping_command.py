@@ -86,8 +86,6 @@ def test_overwrite_does_not_touch_what_is_no_controller(tmp_path, capsys):
         (['--rise-time', '0.05', '--overshoot', '14'], 'allow 24.5 rad/s'),
         ([*OWN[1:], '--name', 'ls8'], '--name ls8 is taken'),
         ([*OWN[1:], '--name', 'No Name'], "controller name 'No Name'"),
-        ([*OWN[1:], '--write-doc', 'x.md'], '--write-doc is for the thesis'),
-        (['--write-doc', 'none.md'], '--write-doc none.md: cannot be read'),
     ],
 )
 def test_a_users_mistake_is_one_line(options, complaint, capsys):

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 import yaml
+from generator.pages import as_markdown, shown_tables
 
 from ddct_controllers.design.loop_shaping.report import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS
-from ddct_plant.program.page_tables import fill_tables
 
 PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'loop_shaping.md'
 
@@ -19,9 +19,9 @@ def page() -> str:
     return PAGE.read_text(encoding='utf-8')
 
 
-def test_its_tables_are_those_of_the_program(page):
-    """After a change: design loop-shaping --write-doc docs/controllers/loop_shaping.md."""
-    assert fill_tables(page, 'loop-shaping', thesis_tables(thesis_record())) == page
+def test_its_tables_are_those_of_the_program():
+    """After a change: make docs KINDS=loop-shaping."""
+    assert shown_tables('loop-shaping') == as_markdown(thesis_tables(thesis_record()))
 
 
 def test_its_example_of_a_file_is_ls7(page, tmp_path):

@@ -19,7 +19,6 @@ from ddct_bringup.reproduction.calibration.tables import all_tables, check_table
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import load_scenario
 
@@ -52,7 +51,6 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument('--quick', action='store_true', help='check the frozen scenario only')
     parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")
     parser.add_argument('--write', metavar='FILE', help="write the scenario; '-' is stdout")
-    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
     ensemble = parser.add_mutually_exclusive_group()
     ensemble.add_argument(
         '--ensemble',
@@ -69,18 +67,17 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Fit, print and write what is asked for; raise DdctError when no scenario fits."""
     parser = options.parser
-    if options.quick and (options.write or options.write_doc):
-        parser.error('--quick finds nothing to write: leave out --write and --write-doc')
+    if options.quick and options.write:
+        parser.error('--quick finds nothing to write: leave out --write')
     if options.ensemble is not None or options.predict is not None:
-        if options.quick or options.json or options.write or options.write_doc:
+        if options.quick or options.json or options.write:
             parser.error('--ensemble and --predict take no other option: leave it out')
         _make_ensemble(options)
         return 0
     if options.json == options.write == STDOUT:
         parser.error('--json - and --write - both want standard output: give one a file')
-    for output in (options.json, options.write, options.write_doc):
+    for output in (options.json, options.write):
         _require_writable(output)
-    page = read_page(options.write_doc) if options.write_doc else ''
     quiet = STDOUT in (options.json, options.write)
     if options.quick:
         record = check_frozen(load_scenario('thesis'), _progress)
@@ -95,8 +92,6 @@ def run(options: argparse.Namespace) -> int:
         _require_optimum(record)
     if options.write:
         write_text(options.write, scenario_text(record))
-    if options.write_doc:
-        write_text(options.write_doc, fill_tables(page, 'calibration', all_tables(record)))
     return 0
 
 

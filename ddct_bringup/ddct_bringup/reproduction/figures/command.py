@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,6 @@ from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.output_file import write_text
-from ddct_plant.program.page_tables import fill_tables, read_page
-from ddct_plant.program.table import Table
 
 FIGURES = (
     *LOOP_SHAPING_FIGURES,
@@ -44,8 +41,7 @@ those."""
 _EXAMPLES = """\
 examples:
   ddct reproduce figures --out figures
-  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite
-  ddct reproduce figures --out figures --overwrite --write-doc docs/thesis/figures.md"""
+  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite"""
 _PAGE = 'index.html'
 
 
@@ -62,15 +58,11 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         '--overwrite', action='store_true', help='replace earlier figures in the folder'
     )
-    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Draw into the folder and return the exit code."""
-    if options.write_doc and options.only:
-        raise ParameterError('--write-doc is for all figures: leave out --only')
-    page = read_page(options.write_doc) if options.write_doc else ''
     figures = collect_figures()
     numbers = {figure.number for figure in figures}
     not_drawn = figures_not_drawn()
@@ -89,9 +81,6 @@ def run(options: argparse.Namespace) -> int:
             chart, drawn[figure] = figure.draw()
             save_chart(chart, picture)
     write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
-    if options.write_doc:
-        tables = page_tables(drawn, not_drawn)
-        write_text(options.write_doc, fill_tables(page, 'figures', tables))
     print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
     return 0
 
@@ -104,22 +93,6 @@ def collect_figures() -> list[ThesisFigure]:
 def figures_not_drawn() -> dict[str, str]:
     """Return, for every figure that cannot be drawn, the reason by its number, in order."""
     return {number: _NOT_DRAWN[number] for number in sorted(_NOT_DRAWN, key=figure_order)}
-
-
-def page_tables(
-    drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]
-) -> dict[str, Table]:
-    """Return the tables of docs/thesis/figures.md by name; `drawn` has a remark by figure."""
-    shared: dict[str, list[str]] = {}
-    for number, reason in not_drawn.items():
-        shared.setdefault(reason, []).append(number)
-    rows = [(figure.number, figure.title, remark) for figure, remark in drawn.items()]
-    headers = ('figure', 'shows', 'what agrees, what does not')
-    reasons = [(', '.join(numbers), reason) for reason, numbers in shared.items()]
-    return {
-        'drawn': Table('Figures that are drawn', headers, rows),
-        'not_drawn': Table('Figures that are not drawn', ('figures', 'reason'), reasons),
-    }
 
 
 def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:

@@ -18,8 +18,7 @@ from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.page_tables import fill_tables, read_page
+from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.table import print_table
 
 Source = Callable[[], Mapping[str, Value | None]]
@@ -42,7 +41,6 @@ examples:
   ddct reproduce numbers
   ddct reproduce numbers --json numbers.json
   ddct reproduce numbers --json -                  as JSON on standard output, alone
-  ddct reproduce numbers --write-doc docs/thesis/thesis_gate.md
 
 The exit code is 0 when every claim holds: what is called reproduced is within its
 tolerance, what is called calibrated is too or is listed as a miss, and every erratum
@@ -60,21 +58,17 @@ def add_parser(subparsers: Any) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument('--json', metavar='FILE', help='write all numbers; - is standard output')
-    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
-    page = read_page(options.write_doc) if options.write_doc else ''
     rows = judge(thesis_numbers(), compute(SOURCES, _progress))
     if options.json != STDOUT:
         _print(rows)
     if options.json:
         write_json(options.json, {'numbers': [row.as_dict() for row in rows]})
     _require_all(rows)
-    if options.write_doc:
-        write_text(options.write_doc, fill_tables(page, 'numbers', page_tables(rows)))
     return 0
 
 

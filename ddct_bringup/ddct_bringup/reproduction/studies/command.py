@@ -22,8 +22,7 @@ from ddct_bringup.reproduction.studies.study import Study, StudyFunction
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_plant.base.checks import require_choice
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.page_tables import fill_tables, marked_tables, read_page
+from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.table import print_table
 
 STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
@@ -49,7 +48,6 @@ STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
     )
 }
 """Every study by its name."""
-PAGE_MARK = 'studies'
 _DESCRIPTION = """\
 Chapter 4 and what it leaves to future work: closed-loop studies of the predictive
 controllers in the frozen thesis scenario, each a table. Then every controller in
@@ -59,8 +57,7 @@ examples:
   ddct reproduce studies                                every study
   ddct reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
   ddct reproduce studies --study wear --json wear.json
-  ddct reproduce studies --write-doc docs/controllers/mpc.md   fill in its tables
-  ddct reproduce studies --write-doc docs/use/engagements.md --charts docs/images"""
+  ddct reproduce studies --study engagements_launch --charts ."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -73,7 +70,6 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
-    parser.add_argument('--write-doc', metavar='FILE', help='fill in the tables of the page FILE')
     parser.add_argument(
         '--charts', metavar='DIR', help='draw the charts of studies that have one: STUDY.png'
     )
@@ -82,8 +78,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Make the tables, print them or write them where asked for, and return the exit code."""
-    page = read_page(options.write_doc) if options.write_doc else ''
-    names = options.study or marked_tables(page, PAGE_MARK) or list(STUDIES)
+    names = options.study or list(STUDIES)
     for name in names:
         require_choice('study', name, list(STUDIES))
     if options.charts and not Path(options.charts).is_dir():
@@ -98,8 +93,6 @@ def run(options: argparse.Namespace) -> int:
             _draw(studies[name], Path(options.charts) / f'{name}.png')
     if options.json:
         write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
-    if options.write_doc:
-        write_text(options.write_doc, fill_tables(page, PAGE_MARK, studies))
     return 0
 
 

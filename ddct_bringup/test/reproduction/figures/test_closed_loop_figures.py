@@ -1,10 +1,11 @@
 """Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from generator.pages import DOCS, as_markdown, shown_tables
+from generator.tables import figure_tables
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from tight_tolerance import tight_tolerance_run
@@ -12,7 +13,6 @@ from tight_tolerance import tight_tolerance_run
 from ddct_bringup.reproduction.figures.command import (
     collect_figures,
     figures_not_drawn,
-    page_tables,
 )
 from ddct_bringup.reproduction.figures.thesis_figure import figure_order
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
@@ -20,14 +20,12 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.page_tables import fill_tables, read_page
 from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
 FIGURES = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
-PAGE = Path(__file__).parents[4] / 'docs' / 'thesis' / 'figures.md'
 
 
 def drawing(number: str) -> tuple[Figure, str]:
@@ -129,7 +127,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert near[0] == np.argmax(from_scipy < 10.0)
     share, first_s = 1000.0 / from_scipy[0], near[0] / 100.0
     said = f'comes down to 10 rpm, {share:.0f} % of where it began, in {first_s:.2f} s'
-    assert said in (PAGE.parent / 'mpc4_readings.md').read_text(encoding='utf-8')
+    assert said in (DOCS / 'thesis' / 'mpc4_readings.md').read_text(encoding='utf-8')
     np.testing.assert_array_equal(np.diff(near), 1)
     times = [metrics(name).engagement_time_s for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
     assert min(times) > 0.46
@@ -175,8 +173,9 @@ def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
 
 def test_page_of_the_documentation_is_what_the_command_writes():
     drawn = {figure: drawing(number)[1] for number, figure in FIGURES.items()}
-    page = read_page(str(PAGE))
-    written = fill_tables(page, 'figures', page_tables(drawn, figures_not_drawn()))
+    shown, computed = shown_tables('figures'), as_markdown(figure_tables(drawn))
+    assert shown.keys() == computed.keys()
+    page, written = (''.join(each[name] for name in computed) for each in (shown, computed))
     number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')
     assert number.sub('#', page) == number.sub('#', written)
     kept, new = (np.array(number.findall(text), dtype=float) for text in (page, written))

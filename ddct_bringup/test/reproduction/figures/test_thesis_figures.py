@@ -234,12 +234,6 @@ def test_command_refuses_a_folder_that_is_a_file(tmp_path, refusal):
     assert 'file: cannot be written' in complaint
 
 
-def test_page_of_the_documentation_is_for_all_figures(tmp_path, refusal):
-    page = tmp_path / 'page.md'
-    complaint = refusal('--out', tmp_path, '--only', '2.2', '--write-doc', page)
-    assert 'leave out --only' in complaint
-
-
 def test_figures_are_collected_once_and_in_order():
     numbers = [figure.number for figure in collect_figures()]
     assert len(numbers) == len(set(numbers))

@@ -1,8 +1,7 @@
 """The tables of docs/thesis/predictions.md are those of the studies and bear out its text."""
 
-from pathlib import Path
-
 import pytest
+from generator.pages import as_markdown, shown_tables
 
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
     admissible_scenarios,
@@ -11,11 +10,8 @@ from ddct_bringup.reproduction.studies.admissible_scenarios import (
 )
 from ddct_bringup.reproduction.studies.score_windows import score_windows
 from ddct_bringup.reproduction.studies.study import Study
-from ddct_plant.program.page_tables import fill_tables
 
 pytestmark = pytest.mark.slow
-
-PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'predictions.md'
 
 
 @pytest.fixture(scope='module')
@@ -30,9 +26,9 @@ def figures(cell: str) -> list[float | None]:
 
 
 def test_page_has_the_tables_of_the_studies(studies):
-    """After a change: reproduce studies --write-doc docs/thesis/predictions.md."""
-    page = PAGE.read_text(encoding='utf-8')
-    assert fill_tables(page, 'studies', studies) == page
+    """After a change: make docs KINDS=studies."""
+    shown = shown_tables('studies')
+    assert {name: shown[name] for name in studies} == as_markdown(studies)
 
 
 def test_no_scenario_has_a_whole_predicted_row(studies):

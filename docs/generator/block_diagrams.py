@@ -1,14 +1,6 @@
-"""
-The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 in our names.
+"""The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 in our names."""
 
-`python docs/block_diagrams.py` draws them.
-"""
-
-from pathlib import Path
-
-from diagrams import Place, Signal, box, branch, end, sum_at, svg
-
-IMAGES = Path(__file__).parent / 'images'
+from generator.diagrams import Place, Signal, box, branch, end, sum_at, svg
 
 Diagram = tuple[str, dict[str, Place], list[Signal]]
 
@@ -205,8 +197,3 @@ DIAGRAMS: dict[str, Diagram] = {
 def drawings() -> dict[str, str]:
     """Return the SVG of each diagram by its file's name."""
     return {f'{name}.svg': svg(*diagram) for name, diagram in DIAGRAMS.items()}
-
-
-if __name__ == '__main__':
-    for file, drawing in drawings().items():
-        (IMAGES / file).write_text(drawing, encoding='utf-8')

@@ -1,30 +1,16 @@
-"""
-The tables of options in the documentation, made from what the code declares.
-
-`python tests/support/option_tables.py` writes them into the pages.
-"""
+"""The tables of options in the pages, made from what the code declares."""
 
 import dataclasses
 from collections.abc import Sequence
-from pathlib import Path
 
 from ddct_bringup.bag.measured_run import MeasuredRun
 from ddct_controllers.mpc.costs import BASIS, thesis_settings
 from ddct_controllers.mpc.options import program_options
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.options import OPTION_HEADERS, Options, group_of, option_rows, options_of
-from ddct_plant.program.page_tables import fill_tables, marked_tables
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-
-DOCS = Path(__file__).resolve().parents[2] / 'docs'
-MARK = 'options'
-
-
-def filled(page: str) -> str:
-    """Return a page with every table of options that it marks."""
-    return fill_tables(page, MARK, {name: TABLES[name] for name in marked_tables(page, MARK)})
 
 
 def _scenario() -> Table:
@@ -84,14 +70,3 @@ TABLES = {
     'lqi': _controllers('lqi'),
 }
 """By the names that the pages mark."""
-
-
-def main() -> None:
-    """Write the tables into the pages."""
-    for path in DOCS.glob('*/*.md'):
-        page = path.read_text(encoding='utf-8')
-        path.write_text(filled(page), encoding='utf-8')
-
-
-if __name__ == '__main__':
-    main()

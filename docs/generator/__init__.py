@@ -1,0 +1,1 @@
+"""What is generated in the pages: tables and diagrams; `make docs` writes it."""

@@ -1,0 +1,72 @@
+"""
+Tables between marks of the pages: those that stand there, and their filling in.
+
+A table stands between the lines `<!-- KIND: NAME -->` and `<!-- end -->`, on whichever page.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.program.table import Table
+
+DOCS = Path(__file__).resolve().parents[1]
+
+
+def as_markdown(tables: Mapping[str, Table]) -> dict[str, str]:
+    """Return the text of each table by its name, with the end of its last line."""
+    return {name: _markdown(table) for name, table in tables.items()}
+
+
+def shown_tables(kind: str, docs: Path = DOCS) -> dict[str, str]:
+    """Return the text that stands in the pages between the marks of a kind, by name."""
+    shown: dict[str, str] = {}
+    for page in _pages(docs):
+        for match in _block(kind).finditer(page.read_text(encoding='utf-8')):
+            if match[2] in shown:
+                raise DdctError(f'{page}: the table {match[2]} of {kind} stands twice in the docs')
+            shown[match[2]] = match[3]
+    return shown
+
+
+def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> list[Path]:
+    """
+    Write every table of a kind in its place and return the pages that have changed.
+
+    Raise DdctError, before anything is written, unless the pages together have each table once
+    and no other of this kind.
+    """
+    names = shown_tables(kind, docs)
+    if sorted(names) != sorted(tables):
+        raise DdctError(
+            f'{docs}: the pages must have these tables of {kind}, each once: '
+            f'{", ".join(tables)}; they have: {", ".join(names) or "none"}'
+        )
+    texts = as_markdown(tables)
+    changed = []
+    for page in _pages(docs):
+        old = page.read_text(encoding='utf-8')
+        new = _block(kind).sub(lambda match: f'{match[1]}{texts[match[2]]}{match[4]}', old)
+        if new != old:
+            page.write_text(new, encoding='utf-8')
+            changed.append(page)
+    return changed
+
+
+def _pages(docs: Path) -> list[Path]:
+    return sorted(docs.rglob('*.md'))
+
+
+def _block(kind: str) -> re.Pattern[str]:
+    return re.compile(rf'(<!-- {re.escape(kind)}: (\w+) -->\n)(.*?)(<!-- end -->)', re.DOTALL)
+
+
+def _markdown(table: Table) -> str:
+    separator = ['---'] * len(table.headers)
+    return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))
+
+
+def _line(cells: Sequence[str]) -> str:
+    escaped = (cell.replace('|', r'\|') for cell in cells)
+    return f'| {" | ".join(escaped)} |'

@@ -1,0 +1,101 @@
+"""The tables of the pages by the kinds of their marks, computed."""
+
+import json
+from collections.abc import Callable, Mapping
+
+from ddct_bringup.reproduction.calibration.tables import all_tables
+from ddct_bringup.reproduction.figures.command import collect_figures, figures_not_drawn
+from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
+from ddct_bringup.reproduction.numbers.command import SOURCES, compute
+from ddct_bringup.reproduction.numbers.gate import judge
+from ddct_bringup.reproduction.numbers.gate_tables import page_tables
+from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
+from ddct_bringup.reproduction.studies.command import STUDIES
+from ddct_controllers.design.analysis.worst_corner import PlantCorners
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.report import (
+    design_record,
+    printed_record,
+    uncertainty_record,
+)
+from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
+from ddct_controllers.design.loop_shaping.report import thesis_record
+from ddct_controllers.design.loop_shaping.tables import thesis_tables
+from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
+from ddct_controllers.workflows.plant_command import paper_tables
+from ddct_controllers.workflows.plant_on_paper import plant_on_paper
+from ddct_plant.program.table import Table
+from ddct_plant.scenario.file import load_scenario
+from generator.launch_table import launch_table
+from generator.option_tables import TABLES as OPTION_TABLES
+from generator.pages import DOCS
+
+
+def calibration_tables() -> Mapping[str, Table]:
+    """Return the tables of the record that `ddct reproduce calibration --json` has written."""
+    record = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
+    return all_tables(record)
+
+
+def figure_tables(drawn: Mapping[ThesisFigure, str]) -> Mapping[str, Table]:
+    """Return what agrees, of each figure that is drawn, and why the others are not."""
+    shared: dict[str, list[str]] = {}
+    for number, reason in figures_not_drawn().items():
+        shared.setdefault(reason, []).append(number)
+    rows = [(figure.number, figure.title, remark) for figure, remark in drawn.items()]
+    headers = ('figure', 'shows', 'what agrees, what does not')
+    reasons = [(', '.join(numbers), reason) for reason, numbers in shared.items()]
+    return {
+        'drawn': Table('Figures that are drawn', headers, rows),
+        'not_drawn': Table('Figures that are not drawn', ('figures', 'reason'), reasons),
+    }
+
+
+def h_infinity_tables() -> Mapping[str, Table]:
+    """Return our designs beside the printed controllers."""
+    corners = PlantCorners()
+    records = [
+        design_record(name, recipe, THESIS_SPECIFICATIONS, synthesised_design(name), corners)
+        for name, recipe in SYNTHESISED.items()
+    ]
+    printed = {
+        name: printed_record(controller, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS)
+        for name, controller in H_INFINITY_CONTROLLERS.items()
+    }
+    return design_tables(records, uncertainty_record()) | {'printed': loop_table(printed)}
+
+
+def plant_tables() -> Mapping[str, Table]:
+    """Return the plant of the scenario `thesis`."""
+    return paper_tables(plant_on_paper(load_scenario('thesis')))
+
+
+def studies_and_charts() -> Mapping[str, Table]:
+    """Return every study, and draw the charts of those that have one into `images`."""
+    studies = {name: study() for name, study in STUDIES.items()}
+    for name, study in studies.items():
+        if study.draw is not None:
+            with chart_style():
+                save_chart(study.draw(), DOCS / 'images' / f'{name}.png')
+    return studies
+
+
+def _drawn() -> dict[ThesisFigure, str]:
+    with chart_style():
+        return {figure: figure.draw()[1] for figure in collect_figures()}
+
+
+TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
+    'options': lambda: OPTION_TABLES,
+    'plant': plant_tables,
+    'loop-shaping': lambda: thesis_tables(thesis_record()),
+    'h-infinity': h_infinity_tables,
+    'calibration': calibration_tables,
+    'launches': lambda: {'new_clutch': launch_table()},
+    'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
+    'figures': lambda: figure_tables(_drawn()),
+    'studies': studies_and_charts,
+}
+"""By kind, quick ones first; `studies` takes minutes, `numbers` and `figures` some ten seconds."""

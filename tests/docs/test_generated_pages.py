@@ -1,0 +1,75 @@
+"""What is generated in the pages is what the code gives; long tables have tests of their own."""
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+from generator.block_diagrams import drawings
+from generator.launch_table import launch_table
+from generator.option_tables import TABLES as OPTION_TABLES
+from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.program.table import Table
+
+TABLES = {
+    'first': Table('', ('a', 'b'), [('1', 'x|y')]),
+    'second': Table('', ('c',), [('2',)]),
+}
+MARKED = 'Text.\n<!-- trial: {} -->\nold\n<!-- end -->\nMore.\n'
+
+
+@pytest.fixture
+def docs(tmp_path: Path) -> Path:
+    """Return a folder with two pages, each with one table, and one page without."""
+    for place, text in (
+        ('one/first.md', MARKED.format('first')),
+        ('two/second.md', MARKED.format('second')),
+        ('none.md', 'Text.\n'),
+    ):
+        (tmp_path / place).parent.mkdir(exist_ok=True)
+        (tmp_path / place).write_text(text, encoding='utf-8')
+    return tmp_path
+
+
+def test_each_table_is_filled_in_where_it_stands_and_the_text_around_it_stays(docs: Path) -> None:
+    first, second = docs / 'one' / 'first.md', docs / 'two' / 'second.md'
+    assert fill_pages('trial', TABLES, docs) == [first, second]
+    table = '| a | b |\n| --- | --- |\n| 1 | x\\|y |\n'
+    filled = f'Text.\n<!-- trial: first -->\n{table}<!-- end -->\nMore.\n'
+    assert first.read_text(encoding='utf-8') == filled
+    assert shown_tables('trial', docs) == as_markdown(TABLES)
+    assert fill_pages('trial', TABLES, docs) == []
+
+
+def test_a_table_that_no_page_marks_or_none_computes_is_refused_before_anything_is_written(
+    docs: Path,
+) -> None:
+    for tables in ({'first': TABLES['first']}, TABLES | {'third': TABLES['second']}):
+        with pytest.raises(DdctError, match='must have these tables of trial, each once'):
+            fill_pages('trial', tables, docs)
+    assert 'old' in (docs / 'one' / 'first.md').read_text(encoding='utf-8')
+
+
+def test_a_table_that_stands_on_two_pages_is_refused(docs: Path) -> None:
+    (docs / 'none.md').write_text(MARKED.format('first'), encoding='utf-8')
+    with pytest.raises(DdctError, match='first of trial stands twice'):
+        fill_pages('trial', TABLES, docs)
+
+
+def test_the_tables_of_options_are_what_the_code_declares() -> None:
+    assert shown_tables('options') == as_markdown(OPTION_TABLES), 'run: make docs KINDS=options'
+
+
+def test_the_table_of_launches_is_what_the_scenarios_give() -> None:
+    computed = as_markdown({'new_clutch': launch_table()})
+    assert shown_tables('launches') == computed, 'run: make docs KINDS=launches'
+
+
+def test_the_diagrams_are_what_the_program_draws() -> None:
+    diagrams = drawings()
+    assert len(diagrams) == 5
+    for file, drawing in diagrams.items():
+        ElementTree.fromstring(drawing)
+        kept = (DOCS / 'images' / file).read_text(encoding='utf-8')
+        assert kept == drawing, 'run: make docs KINDS=diagrams'
