@@ -31,6 +31,7 @@ from ddct_plant.scenario.file import load_scenario
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
+from generator.score_tables import score_tables
 
 
 def calibration_tables() -> Mapping[str, Table]:
@@ -89,6 +90,7 @@ def _drawn() -> dict[ThesisFigure, str]:
 
 TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'options': lambda: OPTION_TABLES,
+    'scores': score_tables,
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,

@@ -8,6 +8,7 @@ from generator.block_diagrams import drawings
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
+from generator.score_tables import score_tables
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
@@ -59,6 +60,10 @@ def test_a_table_that_stands_on_two_pages_is_refused(docs: Path) -> None:
 
 def test_the_tables_of_options_are_what_the_code_declares() -> None:
     assert shown_tables('options') == as_markdown(OPTION_TABLES), 'run: make docs KINDS=options'
+
+
+def test_metrics_criteria_and_limits_are_as_the_programs_say_them() -> None:
+    assert shown_tables('scores') == as_markdown(score_tables()), 'run: make docs KINDS=scores'
 
 
 def test_the_table_of_launches_is_what_the_scenarios_give() -> None:

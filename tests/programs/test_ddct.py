@@ -39,8 +39,9 @@ def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixtur
         assert len(task.split()) >= 4 and 'cannot be read' not in task
 
 
-def test_the_readme_names_every_program() -> None:
-    page = (ROOT / 'README.md').read_text(encoding='utf-8').partition('| program |')[2]
+def test_the_page_of_programs_names_every_program() -> None:
+    text = (ROOT / 'docs' / 'use' / 'programs.md').read_text(encoding='utf-8')
+    page = text.partition('| program |')[2]
     rows = page.partition('\n\n')[0].splitlines()[2:]
     named = {name for row in rows for name in re.findall(r'`([a-z-]+)`', row.split('|')[1])}
     assert named == set(ddct.programs())

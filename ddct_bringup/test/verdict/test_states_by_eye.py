@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from labelled_runs import labelled_runs
 
-PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict.md'
+PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict_by_eye.md'
 AGREED = {
     'development': (45, 47),
     'first_check': (186, 195),

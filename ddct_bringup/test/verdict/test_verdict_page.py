@@ -3,7 +3,6 @@
 import re
 from pathlib import Path
 
-from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_bringup.verdict.state import STATES
 
@@ -23,24 +22,6 @@ def test_every_state_is_on_the_page():
     assert [name for row in rows('States') for name in re.findall('`(.*?)`', row[0])] == list(
         STATES
     )
-
-
-def test_every_criterion_is_on_the_page_as_the_program_says_it():
-    printed = [[f'`{each.key}`', each.unit, each.meaning, each.undefined] for each in CRITERIA]
-    assert rows('Criteria') == printed
-
-
-def test_every_limit_is_on_the_page():
-    printed = [
-        [
-            f'`{limit.criterion}`',
-            f'{limit.value:g} {limit.unit}',
-            'all' if limit.applies_to is None else ', '.join(f'`{n}`' for n in limit.applies_to),
-            limit.source,
-        ]
-        for limit in packaged_limits().limits
-    ]
-    assert rows('Limits') == printed
 
 
 def test_the_thresholds_of_the_text_are_those_of_the_file():
