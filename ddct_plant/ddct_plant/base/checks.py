@@ -8,7 +8,7 @@ from numbers import Real
 from ddct_plant.base.errors import DdctError, ParameterError
 
 MOST_CHARACTERS = 64
-"""Of a name: file names are made of two names and an ending, and a file system takes 255 bytes."""
+"""Longest name: a file name has two names and an ending, and may have 255 bytes."""
 _NAME = re.compile(rf'[A-Za-z0-9_][A-Za-z0-9._-]{{0,{MOST_CHARACTERS - 1}}}')
 
 

@@ -23,7 +23,7 @@ ASSUMED = 'assumed'
 Options = Mapping[str, 'Option']
 """Described values by name."""
 OPTION_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
-"""Of the rows that `option_rows` returns."""
+"""Headers of the rows that `option_rows` returns."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Option:
     meaning: str
     unit: str = ''
     source: str = ''
-    """Of the default: a section of the thesis, a program that computes it, or ASSUMED."""
+    """Source of the default: a section of the thesis, a program, or ASSUMED."""
     otherwise: str = ''
     """What holds where nothing is given and there is no default to show."""
     kind: type = float

@@ -12,7 +12,7 @@ RAD_S_PER_RPM = math.pi / 30.0
 RPM_PER_RAD_S = 30.0 / math.pi
 
 _GRADE = '%'
-"""Of a road: 100 times the tangent of its slope angle."""
+"""Grade of a road: 100 times the tangent of its slope angle."""
 _IN_SI: Mapping[str, Mapping[str, float]] = {
     's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9},
     'rad': {'rad': 1.0, 'deg': math.pi / 180.0, _GRADE: math.nan},
@@ -21,7 +21,7 @@ _IN_SI: Mapping[str, Mapping[str, float]] = {
     'm/s': {'m/s': 1.0, 'km/h': 1.0 / 3.6},
     'm/s^2': {'m/s^2': 1.0, 'g': 9.80665},
 }
-"""By SI unit what a user's file may have instead, and how much of the SI unit that is."""
+"""Units that a user's file may have for an SI unit, and their size in it."""
 
 
 Speed = TypeVar('Speed', float, np.ndarray)

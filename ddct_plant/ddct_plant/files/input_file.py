@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_plant.base.errors import DdctError
 
 MOST_TEXT_BYTES = 1_000_000
-"""Of a scenario, a controller or a page: hundreds of times what they have."""
+"""Largest scenario, controller or page that is read: hundreds of times their usual size."""
 _KINDS = {
     stat.S_IFDIR: 'a folder',
     stat.S_IFIFO: 'a pipe',

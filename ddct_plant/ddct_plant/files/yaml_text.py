@@ -107,7 +107,7 @@ class _Document:
         self._events = events
         self._values = 0
         self.lines: dict[str, int] = {}
-        """Of what was read, from 1, by path."""
+        """Line numbers of what was read, from 1, by path."""
 
     def value(self) -> Any:
         """Return the value of the only document; None for empty text."""

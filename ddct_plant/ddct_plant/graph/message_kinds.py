@@ -178,7 +178,7 @@ class Points(MessageKind):
 
     joints: tuple[str, ...]
     fields: tuple[str, ...]
-    """Of 'velocities', 'accelerations' and 'effort'."""
+    """Some of 'velocities', 'accelerations' and 'effort'."""
     spacing_ns: int
     count: int | None = None
     """How many points; None leaves that to the first message of a writer."""

@@ -72,7 +72,7 @@ class Topic:
     """One topic."""
 
     name: str
-    """As nodes name it: relative, except `/clock` and `/diagnostics`."""
+    """Name that nodes use: relative, except `/clock` and `/diagnostics`."""
     kind: MessageKind
     publisher: str
     """Name of the node that publishes it."""

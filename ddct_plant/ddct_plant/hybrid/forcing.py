@@ -41,12 +41,12 @@ class Layout:
         self.pieces, self.inputs, self.width = pieces, ends[inputs], ends[-1]
         """P, and how many values the inputs have and all entries together."""
         self.columns = [slice(start, stop) for start, stop in zip(ends, ends[1:], strict=False)]
-        """By entry where its values are in [*u, *c]."""
+        """Where the values of each entry are in [*u, *c]."""
         self.capacities = [
             slice(column.start - self.inputs, column.stop - self.inputs)
             for column in self.columns[inputs:]
         ]
-        """By element where its values are in a list of capacities."""
+        """Where the values of each element are in a list of capacities."""
         node = np.arange(pieces + 1)[:, None]
         self.nodes = np.minimum(np.array(ends[:-1]) + node, np.array(ends[1:]) - 1)
         """(P + 1, m + N): where in [*u, *c] the value of each entry at a node is."""

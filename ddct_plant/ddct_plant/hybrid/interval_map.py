@@ -78,7 +78,7 @@ class IntervalMap:
         rows = [ends[-1], flow.force @ driven]
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
-        """By element that slips: its number, where its integrals are, where its capacity is."""
+        """For each element that slips: its number, its integrals, its capacity."""
         self._held_work: list[tuple[int, int, int]] = []
         """The same of those whose capacity is held."""
         first = self._friction.stop

@@ -106,7 +106,7 @@ class Course(NamedTuple):
 
     flow: ModeFlow
     y: np.ndarray
-    """At t = 0."""
+    """State at t = 0."""
     states: np.ndarray
     """(d+1, n) coefficients of t^k."""
     guards: np.ndarray

@@ -15,7 +15,7 @@ from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 from ddct_plant.hybrid.polynomials import first_negative, on_interval
 
 MOST_EVENTS = 1000
-"""In one piece; a motion with more is not one of dry friction between inertias."""
+"""Most events in one piece. Dry friction between inertias gives fewer."""
 
 
 class Motion:

@@ -30,7 +30,7 @@ SYMBOLS_AND_UNITS = {
     'total_ratio': ('tau', '1'),
     'vehicle_inertia': ('J_v', 'kg m^2'),
 }
-"""Of every parameter, for tables."""
+"""Symbol and unit of every parameter, for tables."""
 _STEP = 1e-5
 """Central-difference step in the logarithm of a parameter: relative error about 1e-10."""
 

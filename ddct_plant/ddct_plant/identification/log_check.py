@@ -20,11 +20,11 @@ class Prediction:
 
     signal: str
     rms_rad_s: float
-    """Of measured less predicted."""
+    """R.m.s. of measured less predicted."""
     nrmse: float | None
     """The same over the standard deviation of what was measured; None where it is constant."""
     whiteness_p: float | None
-    """Of the residuals behind the noise model of the fit, Ljung and Box; None of the slip."""
+    """p of Ljung and Box for the residuals behind the fit's noise model; None for the slip."""
 
     @property
     def white(self) -> bool | None:

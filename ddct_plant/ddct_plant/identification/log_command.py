@@ -32,7 +32,7 @@ USUAL = {
     'total_ratio': (2.0, 25.0),
     'vehicle_inertia': (40.0, 800.0),
 }
-"""Of cars, in SI units: what is far outside was probably measured in other units."""
+"""Ranges of cars, in SI units. A value far outside was probably measured in other units."""
 
 
 def add_log_options(parser: ProgramParser) -> None:

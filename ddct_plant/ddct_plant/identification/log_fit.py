@@ -41,7 +41,7 @@ class LogFit:
     """What a log says of the driveline."""
 
     values: dict[str, float]
-    """Of every parameter: fitted ones, and those held. A fitted damping may be below 0."""
+    """Values of all parameters, fitted or held. A fitted damping may be below 0."""
     std: dict[str, float]
     """Standard deviation of each fitted one: of the value of a damping, else relative."""
     undetermined: tuple[str, ...]

@@ -11,7 +11,7 @@ MOST_LAGS = 10
 WHITE_LAGS = 10
 """Over which the autocorrelations of what should be white are summed."""
 _LEAST_VARIANCE = 1e-10
-"""Of a speed, over that of all; noise without any could not be whitened."""
+"""Least variance of a speed, over that of all. Noise without any could not be whitened."""
 
 
 @dataclass(frozen=True, eq=False)

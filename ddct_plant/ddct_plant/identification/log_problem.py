@@ -11,12 +11,12 @@ from ddct_plant.identification.log_noise import NoiseModel, fit_noise
 from ddct_plant.models.parameters import DrivelineParameters
 
 DAMPINGS = ('engine_damping', 'shaft_damping')
-"""May be zero, so their sizes are fitted; of all other parameters the logarithms."""
+"""These may be zero, so their values are fitted; of all others the logarithms are."""
 _PRIOR_STD = float(np.log(10.0))
-"""Of a logarithm around its start, so that what the log does not show stays where it was."""
+"""Deviation of a logarithm from its start: what the log does not show stays where it was."""
 _BOUND = float(np.log(1000.0))
 _LEAST_SPREAD = 1e-9
-"""In rad/s, of a speed that does not change."""
+"""Spread in rad/s of a speed that does not change."""
 _MOST_ROUNDS = 5
 _SETTLED = 0.05
 """Change of every estimate, over its deviation, after which no further round is made."""

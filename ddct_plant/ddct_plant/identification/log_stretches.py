@@ -13,7 +13,7 @@ SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
 TORQUES = ('engine_torque', 'clutch_torque')
 LOAD = 'load_torque'
 FEWEST_SAMPLES = 40
-"""Of a stretch: 0.4 s at 100 Hz, a little more than a period of the locked driveline."""
+"""Samples of the shortest stretch: 0.4 s at 100 Hz, just over a period when locked."""
 _GAP = 5.0
 """Times the usual step of a signal: a longer one is a gap."""
 _UNEVEN = 0.02

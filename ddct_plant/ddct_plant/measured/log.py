@@ -16,7 +16,7 @@ from ddct_plant.measured.columns import HELD, QUANTITIES, TIME, ColumnMap
 MOST_BYTES = 200_000_000
 MOST_ROWS = 1_000_000
 HIGHEST_SPEED = 1000.0
-"""In rad/s: no engine, shaft or wheel of a car; but 3000 rpm taken for rad/s is above."""
+"""In rad/s. No engine, shaft or wheel of a car is faster; 3000 rpm taken for rad/s is."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ class Capacity(NamedTuple):
     static: list[float]
     """(11,) while it sticks, at least the kinetic one."""
     temperature_c: float
-    """Of the facing, in degrees Celsius, at which it carries that."""
+    """Temperature of the facing in degrees Celsius, at which it carries that."""
 
 
 class FrictionClutch:

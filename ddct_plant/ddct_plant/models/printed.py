@@ -16,7 +16,7 @@ class PrintedNumber:
     label: str
     """Which coefficient it is: gain, or a, b, c of a zero or pole factor."""
     text: str
-    """As printed, for example '7696' or '3.134e04'."""
+    """The coefficient as printed, for example '7696' or '3.134e04'."""
 
     @property
     def value(self) -> float:

@@ -28,7 +28,7 @@ CLUTCH, WHEEL = 0, 1
 _STATES = 7
 _PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 _HELD = (0, 1, 3)
-"""Of C_m, C_load, clutch capacity, holding torque: all but the clutch capacity are held."""
+"""Inputs that are held: C_m, C_load and holding torque, not the clutch capacity."""
 
 
 class StickSlipDriveline:

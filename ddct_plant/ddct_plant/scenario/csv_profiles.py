@@ -19,7 +19,7 @@ from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 from ddct_plant.scenario.slip_profile import SlipProfile
 
 MOST_ROWS = 2000
-"""Of one file: a scenario with all profiles of this size can still be read back from a bag."""
+"""Most rows of one file. A bag can hold a scenario with all profiles of this size."""
 _PROFILES: tuple[type[OptionGroup], ...] = (
     TorqueProfile,
     EngineSpeedReference,

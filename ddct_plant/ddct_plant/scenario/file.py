@@ -24,7 +24,7 @@ from ddct_plant.scenario.plant import require_driveline
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
-"""Of a scenario file; one that does not say it is of this version."""
+"""Version of a scenario file. A file that states none is of this version."""
 
 
 def scenario_names() -> list[str]:
@@ -43,7 +43,7 @@ class ScenarioFile:
     """The name or path that it was asked for by."""
     content: Mapping[str, Any]
     lines: Mapping[str, int]
-    """Of the keys and items, by path."""
+    """Lines of the keys and items, by path."""
 
     @classmethod
     def read(cls, name_or_file: str) -> 'ScenarioFile':

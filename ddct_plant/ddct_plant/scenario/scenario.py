@@ -24,7 +24,7 @@ from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 from ddct_plant.scenario.slip_profile import SlipProfile
 
 LONGEST_S = 3600.0
-"""Of every time in a scenario."""
+"""Longest time in a scenario."""
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """How a slip reference can run to zero once control starts, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
@@ -32,7 +32,7 @@ ENGINE_SPEED_TARGET = 'engine_speed_target'
 PROFILE = 'profile'
 """Shape of a slip reference that is given over scenario time."""
 GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
-"""Of the C635, from the first gear on."""
+"""Ratios of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
 """2.269 times this is the identified total ratio, to 0.03 %."""
 _ADJUSTED = Option(
