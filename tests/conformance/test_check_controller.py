@@ -217,7 +217,7 @@ def test_checks_that_wait_for_one_other_share_a_line(capfd: pytest.CaptureFixtur
     assert [line.split()[0] for line in lines] == [*4 * ['pass'], 'fail', 'skipped', 'pass']
     first, *_, last = (check.name for check in CHECKS if {'answers', 'state'} & {*check.after})
     assert lines[-2].startswith(f'skipped  {first}, state, determinism, reset, NaN, ')
-    assert lines[-2].endswith(f"{last}: first the check 'answers' must pass")
+    assert lines[-2].endswith(f"{last}: the check 'answers' must pass first")
 
 
 @pytest.mark.usefixtures('installed')

@@ -65,7 +65,7 @@ def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
             missing = [each for each in check.after if outcomes[each].state != PASS]
             if missing:  # one that was skipped itself tells of the first that was not
                 causes[check.name] = first = causes.get(missing[0], missing[0])
-                state, detail = SKIPPED, f'first the check {first!r} must pass'
+                state, detail = SKIPPED, f'the check {first!r} must pass first'
             else:
                 state, detail = _asked(check, subject)
             outcomes[check.name] = Outcome(check.name, state, detail)

@@ -75,7 +75,7 @@ def determinism(subject: Subject) -> str:
     step = int(different[0])
     places = '; '.join(f'it calls {what} in {place}' for what, place in called.items())
     raise CheckFailedError(
-        f'a new object that is given the same again asks {again[step, 0]:.6g} in place of '
+        f'a new object with the same measurements asks for {again[step, 0]:.6g} instead of '
         f'{subject.answers[step, 0]:.6g} N m at step {step}: use the measurement alone '
         f'(its step is k, 10 ms each) and seeded random numbers; '
         f'{places or "it calls no clock and no random number that is known here"}'
@@ -92,7 +92,7 @@ def reset(subject: Subject) -> str:
     if different.size:
         step = int(different[0])
         raise CheckFailedError(
-            f'after reset it asks {again[step, 0]:.6g} in place of '
+            f'after reset it asks for {again[step, 0]:.6g} instead of '
             f'{subject.answers[step, 0]:.6g} N m at step {step}{_left_after_reset(subject)}: set '
             f'all state anew in {place_of_method(controller, "reset")}'
         )

@@ -98,8 +98,8 @@ def stability(subject: Subject) -> str:
     if subject.step_response(1.0).diverges:
         raise CheckFailedError(
             'in the closed loop the slip ends further from its reference than control found it, '
-            'or a step of the reference grows: lower the gain, after sign, unit and the '
-            f'{PERIOD_S:g} s of a step in sums are right '
+            'or the answer to a step of the reference grows: check sign, unit and the '
+            f'{PERIOD_S:g} s of a step in sums, then lower the gain '
             f'({place_of_method(subject.sample, "update")})'
         )
     model = _linear_model(subject)

@@ -34,7 +34,7 @@ def not_a_number(subject: Subject) -> str:
     controller.reset()
     if not np.array_equal(played(controller, subject.measured), subject.answers):
         raise CheckFailedError(
-            'after a measurement of NaN and a reset it answers otherwise than a new object: set '
+            'after a measurement of NaN and a reset it does not answer as a new object: set '
             f'all state anew in {place_of_method(controller, "reset")}'
         )
     return found
@@ -91,11 +91,14 @@ def preview(subject: Subject) -> str:
     changed = subject.played(_other_future)
     if np.array_equal(changed, subject.answers):
         raise CheckFailedError(
-            f'it declares preview_steps = {steps}, and a reference that is another from the next '
+            f'it declares preview_steps = {steps}, but a reference that differs from the next '
             'step on changes no torque: use slip_reference[1:], or leave preview_steps out'
         )
     most = np.abs(changed - subject.answers).max()
-    return f'{steps} steps; another reference from the next step on moves the torque by {most:.4g}'
+    return (
+        f'{steps} steps; a reference that differs from the next step on moves the torque by '
+        f'{most:.4g} N m'
+    )
 
 
 def sign(subject: Subject) -> str:
