@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ddct_bringup.campaign.code import require_code
 from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
 from ddct_bringup.campaign.rows import result_row, scored_headless
@@ -44,7 +46,8 @@ def compute_shard(job: ShardJob) -> bytes:
     require_code(job.code)
     campaign = Campaign(job.spec)
     runs = [campaign.run(index) for index in range(job.first, job.last)]
-    return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
+    with np.errstate(all='ignore'):  # what is not finite becomes a reason in its row
+        return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
 
 
 def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> Iterable[dict[str, Any]]:

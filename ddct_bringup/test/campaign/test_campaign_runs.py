@@ -1,0 +1,118 @@
+"""Each index is one run: its case, its controller, values that belong together, its seed."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.spec import spec_of
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import load_scenario
+
+SPEC: dict[str, Any] = {
+    'controllers': ['pi', 'ls8'],
+    'seed': 3,
+    'grid': {'wear_gain': [0.7, 1.0], 'clutch': ['linear', 'stick_slip']},
+    'random': {
+        'samples': 3,
+        'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000}},
+    },
+}
+PROFILE = {'csv': 'pedal.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
+
+
+def campaign(folder: Path = Path(), **changes: Any) -> Campaign:
+    return Campaign(spec_of({**SPEC, **changes}, folder))
+
+
+def test_the_indices_go_through_controllers_then_the_grid_then_samples() -> None:
+    made = campaign()
+    assert (made.runs, made.cases) == (24, 12)
+    runs = [made.run(index) for index in range(24)]
+    assert [run.controller.name for run in runs] == ['pi'] * 12 + ['ls8'] * 12
+    grid = [(run.varied['wear_gain'], run.varied['clutch']) for run in runs[:12:3]]
+    assert grid == [(0.7, 'linear'), (0.7, 'stick_slip'), (1.0, 'linear'), (1.0, 'stick_slip')]
+    assert [(run.settings.wear_gain, run.settings.clutch) for run in runs[:12:3]] == grid
+
+
+def test_all_controllers_meet_the_same_cases_with_the_same_noise() -> None:
+    made = campaign()
+    for case in range(made.cases):
+        first, second = made.run(case), made.run(case + made.cases)
+        assert first.varied == second.varied
+        assert first.settings == second.settings
+    assert len({made.run(case).settings.seed for case in range(made.cases)}) == made.cases
+    assert len({made.run(case).varied['vehicle.mass_kg'] for case in range(made.cases)}) == 12
+
+
+def test_another_key_does_not_change_what_a_key_draws() -> None:
+    vary = SPEC['random']['vary']
+    more = {'pedal_position': {'distribution': 'uniform', 'low': 0, 'high': 1}, **vary}
+    other = campaign(random={'samples': 3, 'vary': more})
+    for case in range(12):
+        drawn = other.varied(case)['vehicle.mass_kg']
+        assert drawn == campaign().varied(case)['vehicle.mass_kg']
+
+
+def test_what_belongs_together_moves_with_what_varies() -> None:
+    made = campaign(grid={'gear': [1, 3]})
+    for index in (0, 4):
+        run = made.run(index)
+        mass = run.varied['vehicle.mass_kg']
+        changes = {'gear': run.varied['gear'], 'vehicle.mass_kg': mass}
+        assert run.settings.scenario == load_scenario('thesis', changes)
+        assert run.settings.scenario.driveline.vehicle_inertia != pytest.approx(mass)
+
+
+def test_a_whole_profile_varies_by_its_points_or_by_files_beside_the_specification(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / 'pedal.csv').write_text('t,c\n0,10\n1,40\n', encoding='utf-8')
+    points = {'time_s': [0.0, 1.0], 'torque_n_m': [5.0, 6.0]}
+    made = campaign(tmp_path, grid={'engine': [points, PROFILE]}, random={**SPEC['random']})
+    assert made.run(0).settings.scenario.engine.torque_n_m == (5.0, 6.0)
+    assert made.run(3).settings.scenario.engine.torque_n_m == (10.0, 40.0)
+
+
+def test_a_file_of_a_profile_varies_where_the_scenario_takes_one(tmp_path: Path) -> None:
+    scenario = tmp_path / 'own.yaml'
+    scenario.write_text(
+        'duration_s: 0.2\ncontrol_start_s: 0.1\nscore_window_s: [0.1, 0.2]\n'
+        'engine: {csv: a.csv, time: t, value: c, unit: N m}\n',
+        encoding='utf-8',
+    )
+    for name, torque in (('a.csv', 10), ('b.csv', 20)):
+        (tmp_path / name).write_text(f't,c\n0,{torque}\n', encoding='utf-8')
+    made = campaign(tmp_path, scenario='own.yaml', grid={'engine.csv': ['a.csv', 'b.csv']})
+    torques = [made.run(index).settings.scenario.engine.torque_n_m for index in (0, 3)]
+    assert torques == [(10.0,), (20.0,)]
+    before = made.digest()
+    (tmp_path / 'b.csv').write_text('t,c\n0,21\n', encoding='utf-8')
+    assert made.digest() != before
+    (tmp_path / 'b.csv').unlink()
+    with pytest.raises(DdctError, match=r'b\.csv: cannot be read'):
+        made.digest()
+
+
+def test_a_sample_that_the_scenario_refuses_is_named_with_its_index_and_values() -> None:
+    made = campaign(grid={'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]})
+    with pytest.raises(ParameterError, match=r'run 3 \(duration_s 1.0, control_start_s 2.4, veh'):
+        made.require_buildable()
+
+
+def test_a_controller_that_does_not_suit_the_run_is_told_before_the_first_one() -> None:
+    made = campaign(grid={'controllers.ls8.gain': [1.0, 2.0]})
+    with pytest.raises(ParameterError, match='ls8'):
+        made.require_buildable()
+
+
+def test_two_controllers_of_one_name_are_refused(tmp_path: Path) -> None:
+    for name in ('a.yaml', 'b.yaml'):
+        (tmp_path / name).write_text(
+            'name: same\nunits: {input: rpm, output: N m}\n'
+            'transfer_function: {gain: -1.0, numerator: [], denominator: [2.0]}\n',
+            encoding='utf-8',
+        )
+    with pytest.raises(ParameterError, match='two are called same'):
+        campaign(tmp_path, controllers=['a.yaml', 'b.yaml'])

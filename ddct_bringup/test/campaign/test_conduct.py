@@ -1,0 +1,282 @@
+"""A campaign ends with the same bytes however it is computed, and loses nothing on the way."""
+
+import errno
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as parquet
+import pytest
+
+from ddct_bringup.campaign import conduct
+from ddct_bringup.campaign.code import code_digest
+from ddct_bringup.campaign.columns import COMPARED, METRICS
+from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.run.folder_lock import held
+from ddct_bringup.verdict.limits_file import limits_of_text, packaged_limits
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files import output_file
+
+SPEC: dict[str, Any] = {
+    'controllers': ['pi', 'ls8'],
+    'grid': {'wear_gain': [0.7, 1.0], 'duration_s': [0.7]},
+    'random': {
+        'samples': 2,
+        'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000}},
+    },
+}
+RUNS = 8
+WILD = """\
+name: wild
+units: {input: rpm, output: N m}
+transfer_function: {gain: 1.0, numerator: [], denominator: [-2000]}
+"""
+"""A controller whose state leaves all numbers behind within some steps."""
+
+
+class InThisProcess(Executor):
+    """Computes in this process; some of it breaks."""
+
+    def __init__(self, breaks: Callable[[int], Exception | None]) -> None:
+        self._breaks = breaks
+        self.computed: list[int] = []
+
+    def submit(self, fn: Any, /, *arguments: Any, **_: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        first = arguments[0].first
+        self.computed.append(first)
+        if error := self._breaks(first):
+            future.set_exception(error)
+        else:
+            future.set_result(fn(*arguments))
+        return future
+
+
+class OneByOne:
+    """Workers without processes."""
+
+    def __init__(self, breaks: Callable[[int], Exception | None] = lambda first: None) -> None:
+        self.count = 2
+        self.executors: list[InThisProcess] = []
+        self._breaks = breaks
+
+    def executor(self) -> Executor:
+        self.executors.append(InThisProcess(self._breaks))
+        return self.executors[-1]
+
+    def require_alive(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+    @property
+    def computed(self) -> list[int]:
+        return [first for executor in self.executors for first in executor.computed]
+
+
+@pytest.fixture
+def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., OneByOne]:
+    def given(workers: OneByOne) -> OneByOne:
+        @contextmanager
+        def workers_of(count: int | None, scheduler: str | None) -> Iterator[OneByOne]:
+            yield workers
+
+        monkeypatch.setattr(conduct, 'workers_of', workers_of)
+        return workers
+
+    return given
+
+
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a campaign that nothing came in the way of, of two processes."""
+    out = tmp_path_factory.mktemp('whole') / 'campaign'
+    carry_out(made(), packaged_limits(), out, workers=2)
+    return out
+
+
+def made(**changes: Any) -> Campaign:
+    return Campaign(spec_of({**SPEC, **changes}, Path()))
+
+
+def carried_out(out: Path, *, resume: bool = False, **changes: Any) -> bytes:
+    return carry_out(made(**changes), packaged_limits(), out, resume=resume).read_bytes()
+
+
+def test_a_row_holds_the_run_its_values_and_its_scores(whole: Path) -> None:
+    table = parquet.read_table(whole / RESULTS).to_pandas()
+    assert table['index'].tolist() == list(range(RUNS))
+    assert table['controller'].tolist() == ['pi'] * 4 + ['ls8'] * 4
+    assert table['wear_gain'].tolist() == [0.7, 0.7, 1.0, 1.0] * 2
+    varied = ['wear_gain', 'duration_s', 'vehicle.mass_kg']
+    assert list(table)[: 3 + len(varied)] == ['index', 'controller', 'path', *varied]
+    assert list(table)[6:] == list(COMPARED)
+    assert table['valid'].all()
+    assert (table['reason'] == '').all()
+    assert (table['steps'] == 70.0).all()
+    assert not {'update_time_median_us', 'missed_steps'} & set(METRICS)
+
+
+def test_the_bytes_are_the_same_without_processes(whole: Path, tmp_path: Path, use) -> None:
+    workers = use(OneByOne())
+    assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
+    assert sorted(workers.computed) == list(range(RUNS))
+    names = sorted(path.name for path in (tmp_path / 'out').iterdir())
+    assert names == ['.ddct-output', MANIFEST, RESULTS, SHARDS]
+
+
+def test_the_manifest_says_what_the_campaign_is(whole: Path) -> None:
+    manifest = Manifest.read(whole)
+    assert (manifest.root_seed, manifest.runs, manifest.shard_size) == (0, RUNS, 1)
+    assert manifest.code_digest == code_digest()
+    assert manifest.spec == SPEC
+    assert Campaign(manifest.campaign_spec()).digest() == manifest.spec_digest
+
+
+def test_what_an_interruption_left_is_completed_without_loss_or_duplicates(
+    whole: Path, tmp_path: Path, use
+) -> None:
+    out = tmp_path / 'out'
+    looks = iter([False] * 5 + [True] * 99)
+    use(OneByOne())
+    with pytest.raises(KeyboardInterrupt, match='what is done stays: go on with --resume'):
+        carry_out(made(), packaged_limits(), out, stopped=lambda: next(looks))
+    done = sorted(path.name for path in (out / SHARDS).iterdir())
+    assert 0 < len(done) < RUNS
+    assert not (out / RESULTS).exists()
+    (out / SHARDS / done[0]).write_bytes(b'PAR1 and then nothing')
+    again = use(OneByOne())
+    assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
+    missing = RUNS - len(done) + 1
+    assert len(again.computed) == missing
+
+
+def test_planning_can_be_interrupted(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(made(), packaged_limits(), tmp_path / 'out', stopped=lambda: True)
+    assert not (tmp_path / 'out').exists()
+
+
+def test_a_worker_that_dies_costs_only_the_time(whole: Path, tmp_path: Path, use) -> None:
+    deaths = {3: 2, 5: 1}
+
+    def breaks(first: int) -> Exception | None:
+        deaths[first] = deaths.get(first, 0) - 1
+        return BrokenProcessPool('killed') if deaths[first] >= 0 else None
+
+    workers = use(OneByOne(breaks))
+    assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
+    assert len(workers.executors) > 1
+
+
+def test_workers_that_always_die_end_the_campaign_with_a_line(
+    whole: Path, tmp_path: Path, use
+) -> None:
+    out = tmp_path / 'out'
+    use(OneByOne(lambda first: BrokenProcessPool('killed') if first == 3 else None))
+    with pytest.raises(DdctError, match='workers died 3 times one after the other.*--resume'):
+        carried_out(out)
+    use(OneByOne())
+    assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
+
+
+def test_what_a_worker_cannot_do_is_told_with_its_runs(tmp_path: Path, use) -> None:
+    use(OneByOne(lambda first: MemoryError('full') if first == 2 else None))
+    with pytest.raises(
+        DdctError, match=r'runs 2 to 2 could not be computed \(MemoryError: full\)'
+    ):
+        carried_out(tmp_path / 'out')
+
+
+@pytest.mark.parametrize('full_at', ['00000002.parquet', RESULTS])
+def test_a_full_disk_ends_it_with_a_line_and_it_goes_on_later(
+    whole: Path, tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch, full_at: str
+) -> None:
+    out = tmp_path / 'out'
+    use(OneByOne())
+    replace = Path.replace
+
+    def full(path: Path, target: Any) -> Path:
+        if Path(target).name == full_at:
+            raise OSError(errno.ENOSPC, 'No space left on device')
+        return replace(path, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(output_file.Path, 'replace', full)
+        with pytest.raises(DdctError, match=f'{full_at}: .*No space left on device.*--resume'):
+            carried_out(out)
+    assert not [path for path in out.rglob('*') if path.name.startswith(f'.{full_at}')]
+    assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ('changes', 'words'),
+    [
+        ({'seed': 1}, 'holds a campaign of another root seed, 0, not 1: go on'),
+        ({'controllers': ['pi']}, 'holds a campaign of another specification, '),
+    ],
+)
+def test_another_campaign_cannot_go_on(whole: Path, changes: Any, words: str) -> None:
+    with pytest.raises(DdctError, match=words):
+        carried_out(whole, resume=True, **changes)
+
+
+def test_other_code_or_limits_cannot_go_on(whole: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = Path(conduct.__file__).parents[1] / 'verdict' / 'limits.yaml'
+    mine = limits_of_text(file.read_text(encoding='utf-8') + '# mine\n', 'mine.yaml')
+    with pytest.raises(DdctError, match='another limits'):
+        carry_out(made(), mine, whole, resume=True)
+    monkeypatch.setattr('ddct_bringup.campaign.manifest.code_digest', lambda: '0' * 64)
+    with pytest.raises(DdctError, match=r'another code, .*\(0000000000\)'):
+        carried_out(whole, resume=True)
+
+
+def test_a_folder_with_other_content_is_not_touched(whole: Path, tmp_path: Path) -> None:
+    with pytest.raises(DdctError, match='holds a campaign: go on with --resume'):
+        carried_out(whole)
+    with pytest.raises(DdctError, match='there is nothing to go on with'):
+        carried_out(tmp_path / 'absent', resume=True)
+    foreign = tmp_path / 'foreign'
+    foreign.mkdir()
+    (foreign / 'thesis.txt').write_text('mine', encoding='utf-8')
+    with pytest.raises(DdctError, match='holds files that are not ours'):
+        carried_out(foreign)
+    (foreign / '.ddct-output').write_text('runs', encoding='utf-8')
+    with pytest.raises(DdctError, match='holds other results'):
+        carried_out(foreign)
+
+
+def test_two_campaigns_into_one_folder_are_one(tmp_path: Path) -> None:
+    out = tmp_path / 'out'
+    with held(out), pytest.raises(DdctError, match='is writing there'):
+        carried_out(out)
+    assert not out.exists()
+
+
+def test_a_manifest_that_is_damaged_is_told(tmp_path: Path) -> None:
+    with pytest.raises(DdctError, match='no manifest.json in it: give the folder of a campaign'):
+        Manifest.read(tmp_path)
+    (tmp_path / MANIFEST).write_text('{"schema_version": 1}', encoding='utf-8')
+    with pytest.raises(DdctError, match='manifest.json: cannot be read'):
+        Manifest.read(tmp_path)
+
+
+def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
+    (tmp_path / 'wild.yaml').write_text(WILD, encoding='utf-8')
+    use(OneByOne())
+    controllers = {'controllers': ['wild.yaml', 'pi'], 'architecture': 'base'}
+    spec = spec_of({**SPEC, **controllers}, tmp_path)
+    carry_out(Campaign(spec), packaged_limits(), tmp_path / 'out')
+    rows = parquet.read_table(tmp_path / 'out' / RESULTS).to_pylist()
+    assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
+    failed = rows[0]
+    assert "controller 'wild'" in failed['reason']
+    assert (failed['verdict_state'], failed['verdict_limits']) == ('invalid', 'no_limit')
+    assert {failed[name] for name in METRICS} == {None}

@@ -1,0 +1,44 @@
+"""Long work says how far it is; short work says nothing."""
+
+import io
+
+from ddct_bringup.campaign.progress import Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_the_rate_and_the_time_that_remains_are_told_after_two_seconds() -> None:
+    class Clock:
+        now = 0.0
+
+        def __call__(self) -> float:
+            return self.now
+
+    clock, stream = Clock(), io.StringIO()
+    progress = Progress('runs', 10_000, done=4000, stream=stream, clock=clock)
+    for clock.now, done in ((1.9, 4019), (2.5, 4025), (4.0, 4040), (13.0, 4130)):
+        progress.tell(done)
+    assert stream.getvalue() == (
+        'runs: 4025 of 10000, 10 a second, 9 min 58 s left\n'
+        'runs: 4130 of 10000, 10 a second, 9 min 47 s left\n'
+    )
+    assert progress.line(4000) == 'runs: 4000 of 10000'
+    clock.now = 7200.0
+    assert progress.line(5000).endswith('10 h 0 min left')
+
+
+def test_a_terminal_has_one_line_that_goes_in_the_end() -> None:
+    times = iter([0.0, 3.0, 3.0, 3.1, 4.0, 4.0])
+    stream = Terminal()
+    progress = Progress('runs', 100, stream=stream, clock=lambda: next(times))
+    for done in (30, 31, 40):
+        progress.tell(done)
+    progress.end()
+    clear = '\r\x1b[K'
+    assert stream.getvalue() == (
+        f'{clear}runs: 30 of 100, 10 a second, 7 s left'
+        f'{clear}runs: 40 of 100, 10 a second, 6 s left{clear}'
+    )

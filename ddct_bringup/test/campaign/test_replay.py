@@ -1,0 +1,115 @@
+"""The bag of a row has the scores of the row, and another one is told from it."""
+
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.campaign.columns import COMPARED
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign.replay import differences
+from ddct_bringup.programs import campaign
+
+ROW = {
+    **dict.fromkeys(COMPARED, 1.5),
+    **{'path': 'serial', 'valid': True, 'reason': '', 'verdict_state': 'engaged'},
+    **{'verdict_limits': 'within', 'criterion.judder': None},
+}
+SPEC = """\
+controllers: [ls8]
+clutch: stick_slip
+grid: {wear_gain: [0.8, 1.0]}
+random:
+  samples: 1
+  vary:
+    duration_s: {distribution: choice, values: [0.7, 0.8]}
+    vehicle.mass_kg: {distribution: uniform, low: 1000, high: 2000}
+"""
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a campaign of two runs."""
+    place = tmp_path_factory.mktemp('replayed')
+    (place / 'spec.yaml').write_text(SPEC, encoding='utf-8')
+    out = place / 'campaign'
+    assert campaign.main([str(place / 'spec.yaml'), '--out', str(out), '--workers', '1']) == 0
+    return out
+
+
+def replay(folder: Path, *arguments: str) -> int:
+    out = str(folder.parent / 'again')
+    return campaign.main(['replay', str(folder), '--headless', '--out', out, *arguments])
+
+
+def test_a_row_is_its_own_replay() -> None:
+    assert differences(ROW, dict(ROW)) == []
+
+
+@pytest.mark.parametrize(
+    ('name', 'value'),
+    [
+        ('peak_jerk_m_s3', 1.5 + 2.3e-16),
+        ('criterion.judder', 0.0),
+        ('engagement_time_s', None),
+        ('verdict_state', 'stalled'),
+        ('reason', 'other'),
+        ('valid', False),
+    ],
+)
+def test_whatever_differs_is_named(name: str, value: object) -> None:
+    (found,) = differences(ROW, {**ROW, name: value})
+    assert found == f'{name} is {value!r}, in the row {ROW[name]!r}'
+
+
+def test_a_vectorised_row_may_differ_in_the_last_digits_of_its_numbers() -> None:
+    row = {**ROW, 'path': 'vectorised'}
+    assert differences(row, {**row, 'peak_jerk_m_s3': 1.5 * (1 + 0.9e-9)}) == []
+    assert differences(row, {**row, 'peak_jerk_m_s3': 1.5 * (1 + 1.1e-9)})
+    assert differences(row, {**row, 'verdict_state': 'stalled'})
+
+
+def test_every_row_of_a_campaign_replays_to_the_last_bit(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for index in ('0', '1'):
+        assert replay(folder, '--index', index, '--overwrite', '--json', '-') == 0
+        told = capfd.readouterr()
+        assert f'run {index}: its {len(COMPARED)} figures and words are those of' in told.err
+        assert '"differences": []' in told.out
+    assert (folder.parent / 'again' / 'ls8' / 'ls8_0.mcap').is_file()
+
+
+def test_a_replay_that_differs_ends_with_1_and_its_figures(
+    folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr('ddct_bringup.programs.campaign_replay.read_row', _another_row)
+    assert replay(folder, '--index', '0', '--overwrite') == 1
+    assert 'run 0: verdict_state is ' in capfd.readouterr().err
+
+
+def _another_row(results: Path, index: int) -> dict[str, object]:
+    from ddct_bringup.campaign.columns import read_row
+
+    return {**read_row(results, index), 'verdict_state': 'over_revved'}
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'words'),
+    [
+        (['--index', '2'], f'{RESULTS}: it has no row 2'),
+        (['--index', '-1'], f'{RESULTS}: it has no row -1'),
+        (['--index', '0', '--limits', 'absent.yaml'], 'limits absent.yaml: cannot be read'),
+    ],
+)
+def test_a_row_that_is_not_there_is_told(
+    folder: Path, capfd: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    assert replay(folder, *arguments, '--overwrite') == 1
+    assert words in capfd.readouterr().err
+
+
+def test_a_folder_without_a_campaign_is_told(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert replay(tmp_path, '--index', '0') == 1
+    assert 'no manifest.json in it' in capfd.readouterr().err

@@ -1,0 +1,112 @@
+"""A specification is read with its files; whatever is wrong with it is named with its line."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.spec import read_spec
+from ddct_plant.base.errors import DdctError
+
+GRID = 'grid: {wear_gain: [0.7, 1.0]}\n'
+PI = 'controllers: [pi]\n'
+MASS = '{distribution: uniform, low: 1000, high: 1500}'
+
+
+def written(folder: Path, text: str) -> Path:
+    file = folder / 'spec.yaml'
+    file.write_text(text, encoding='utf-8')
+    return file
+
+
+def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) -> None:
+    spec = read_spec(written(tmp_path, PI + GRID))
+    assert (spec.common, spec.root, spec.samples) == ({'scenario': 'thesis'}, 0, 1)
+    assert Campaign(spec).run(1).settings.wear_gain == 1.0
+
+
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ('[1, 2]', 'spec.yaml: the specification is [1, 2]: give keys and values'),
+        (GRID, 'spec.yaml: controllers: give a list of names or files'),
+        ('controllers: []\n' + GRID, 'line 1: controllers: give a list'),
+        ('controllers: [pi, pi]\n' + GRID, "controllers has 'pi' twice"),
+        (PI, 'spec.yaml: nothing is varied: give grid, random or both'),
+        (PI + 'grids: {}\n', 'line 2: unknown key grids: did you mean grid?'),
+        (PI + 'grid: {}\n', 'line 2: grid is empty'),
+        (PI + 'grid: {wear_gain: []}\n', 'line 2: grid.wear_gain is []: give a list of values'),
+        (PI + 'grid: {wear_gain: 1.0}\n', 'grid.wear_gain is 1.0: give a list'),
+        (PI + 'grid: {wear_gain: [1, 9]}\n', 'grid.wear_gain is 9: it must be at most 3'),
+        (PI + 'grid: {wear_gain: [1, 1]}\n', 'grid.wear_gain has 1 twice'),
+        (
+            PI + 'grid:\n  vehicle.mas_kg: [1]\n',
+            'line 3: grid.vehicle.mas_kg: unknown key vehicle.mas_kg: did you mean vehicle.mass',
+        ),
+        (PI + 'grid: {mode: [realtime]}\n', 'grid.mode: unknown key mode'),
+        (PI + GRID + 'seed: -1\n', 'line 3: seed is -1: it must be at least 0'),
+        (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),
+        (PI + GRID + 'scenario: 3\n', 'scenario is 3: give text'),
+        (PI + GRID + 'schema_version: 2\n', 'schema_version is 2, this version reads up to 1'),
+        (PI + 'random: {samples: 2}\n', 'random.vary is empty'),
+        (PI + 'random: {samples: 2, vary: {}}\n', 'random.vary is empty'),
+        (PI + f'random: {{vary: {{gear: {MASS}}}}}\n', 'random.samples is missing'),
+        (PI + 'random: {samples: 0, vary: {}}\n', 'random.samples is 0: it must be at least 1'),
+        (
+            PI + 'random:\n  samples: 2\n  vary:\n    vehicle.mass_kg: {distribution: normal, '
+            'mean: 1500, std: 90}\n',
+            'line 5: random.vary.vehicle.mass_kg.low is missing',
+        ),
+        (
+            PI + GRID + f'random: {{samples: 2, vary: {{wear_gain: {MASS}}}}}\n',
+            'random.vary.wear_gain.low is 1000: it must be at most 3',
+        ),
+        (
+            PI + 'grid: {vehicle.mass_kg: [1500]}\n'
+            f'random: {{samples: 2, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
+            'vehicle.mass_kg varies beside vehicle.mass_kg: give one of them',
+        ),
+        (
+            PI + 'grid: {engine: [{time_s: [0], torque_n_m: [1]}], engine.torque_n_m: [[2]]}\n',
+            'engine.torque_n_m varies beside engine',
+        ),
+        (
+            PI + 'clutch: linear\ngrid: {clutch: [linear, stick_slip]}\n',
+            'clutch is given for all runs and varied: give it once',
+        ),
+        (PI + 'grid: {wear_gain: [1\n', 'not valid YAML: line'),
+    ],
+)
+def test_a_specification_that_cannot_be_used_is_named(
+    tmp_path: Path, text: str, words: str
+) -> None:
+    with pytest.raises(DdctError, match=re.escape(words)) as complaint:
+        read_spec(written(tmp_path, text))
+    assert str(complaint.value).startswith(f'{tmp_path}/spec.yaml: ')
+
+
+def test_a_specification_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(DdctError, match=r'absent\.yaml: cannot be read \(No such file'):
+        read_spec(tmp_path / 'absent.yaml')
+
+
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ('controllers: [pie]\n' + GRID, "unknown controller 'pie'"),
+        (PI + 'scenario: thesys\n' + GRID, "unknown scenario 'thesys'"),
+        (
+            'controllers: [pi, ls8]\n'
+            f'random: {{samples: 9999999, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
+            '19999998 runs: give at most 10000000',
+        ),
+    ],
+    ids=['controller', 'scenario', 'runs'],
+)
+def test_what_is_not_there_or_too_much_is_told_before_anything_is_computed(
+    tmp_path: Path, text: str, words: str
+) -> None:
+    spec = read_spec(written(tmp_path, text))
+    with pytest.raises(DdctError, match=re.escape(words)):
+        Campaign(spec)
