@@ -38,7 +38,8 @@ def test_what_is_varied_is_set_as_by_set_with_what_belongs_to_it():
 
 
 def test_what_is_varied_replaces_what_all_runs_change():
-    assert BASE.at({'duration_s': 2.5, 'clutch': 'linear'}).scenario.duration_s == 2.5
+    settings = BASE.at({'duration_s': 2.5, 'clutch': 'linear'})
+    assert (settings.scenario.duration_s, settings.clutch) == (2.5, 'linear')
 
 
 def test_a_value_that_the_scenario_refuses_is_named():
