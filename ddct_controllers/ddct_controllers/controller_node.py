@@ -21,12 +21,10 @@ from ddct_plant.graph.topics import (
     CONTROLLER_STATUS,
     CONTROLLER_TIMING,
     ENGINE_REQUEST,
-    ENGINE_TORQUE,
-    JOINT_STATES,
     SLIP_REFERENCE,
     TORQUE_DEMAND,
     TORQUE_REQUEST,
-    VEHICLE_SPEED,
+    seen_topics,
 )
 
 TIMING_BATCH = 20
@@ -37,6 +35,7 @@ class ControllerNode(FollowerNode):
     """
     Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
 
+    In a run with sensors the measurements are theirs.
     A controller with two inputs also answers with `engine/torque_request`, and takes the driver's
     demand in place of `engine/torque`. The options of the controller are parameters
     `gains.<name>`; its gains among them may be changed while it runs.
@@ -55,19 +54,20 @@ class ControllerNode(FollowerNode):
         )
         self._controller, info = self._make_controller(name)
         self._architecture = make_architecture(self.settings, self._controller)
+        self._seen = seen_topics(sensed=self.settings.sensed)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
             self._engine_request = Output(self, ENGINE_REQUEST)
             self._engine_topic = TORQUE_DEMAND
         else:
-            self._engine_topic = ENGINE_TORQUE
+            self._engine_topic = self._seen.engine_torque
         self._status = Output(self, CONTROLLER_STATUS)
         self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
         self.publish_run_info(info)
         self.follow(
-            JOINT_STATES,
-            VEHICLE_SPEED,
+            self._seen.joint_states,
+            self._seen.vehicle_speed,
             self._engine_topic,
             SLIP_REFERENCE,
             readers={SLIP_REFERENCE: self._read_reference},
@@ -96,14 +96,14 @@ class ControllerNode(FollowerNode):
         return SLIP_REFERENCE.read(message, preview_steps=self._controller.preview_steps)
 
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
-        engine, shaft, wheel, _ = inputs[JOINT_STATES.name]
+        engine, shaft, wheel = inputs[self._seen.joint_states.name][:3]
         speeds, rates = inputs[SLIP_REFERENCE.name]
         return Measurement(
             step=step,
             engine_speed=engine,
             shaft_speed=shaft,
             wheel_speed=wheel,
-            vehicle_speed=inputs[VEHICLE_SPEED.name],
+            vehicle_speed=inputs[self._seen.vehicle_speed.name],
             engine_torque=inputs[self._engine_topic.name],
             slip_reference=speeds,
             slip_reference_rate=rates,

@@ -53,13 +53,13 @@ class Measurement:
         slip_reference_rate: Sequence[float],
     ) -> 'Measurement':
         """Return what is measured of a plant at step k, beside the reference of that step."""
-        engine_speed, shaft_speed, wheel_speed = sight.now.joint_speed[:3]
+        engine_speed, shaft_speed, wheel_speed = sight.seen.joint_speed[:3]
         return cls(
             step=step,
             engine_speed=engine_speed,
             shaft_speed=shaft_speed,
             wheel_speed=wheel_speed,
-            vehicle_speed=sight.now.vehicle_speed,
+            vehicle_speed=sight.seen.vehicle_speed,
             engine_torque=sight.told,
             slip_reference=slip_reference,
             slip_reference_rate=slip_reference_rate,

@@ -8,7 +8,7 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import JOINT_STATES, SLIP, SLIP_REFERENCE
+from ddct_plant.graph.topics import SLIP_REFERENCE, seen_topics
 from ddct_reference.factory import make_reference
 
 
@@ -16,7 +16,8 @@ class ReferenceNode(FollowerNode):
     """
     Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead.
 
-    With the shape `engine_speed_target` it also takes `driveline/joint_states`.
+    With the shape `engine_speed_target` it also takes `driveline/joint_states`. In a run with
+    sensors it takes theirs of both.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)
@@ -32,12 +33,16 @@ class ReferenceNode(FollowerNode):
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info({'preview_steps': str(preview_steps)})
-        self.follow(SLIP, *((JOINT_STATES,) if self._reference.follows_shaft else ()))
+        self._seen = seen_topics(sensed=self.settings.sensed)
+        shafts = (self._seen.joint_states,) if self._reference.follows_shaft else ()
+        self.follow(self._seen.slip, *shafts)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
-        shaft_speed = inputs[JOINT_STATES.name][1] if self._reference.follows_shaft else math.nan
-        speeds, rates = self._reference.update(step, inputs[SLIP.name], shaft_speed)
+        shaft_speed = math.nan
+        if self._reference.follows_shaft:
+            shaft_speed = inputs[self._seen.joint_states.name][1]
+        speeds, rates = self._reference.update(step, inputs[self._seen.slip.name], shaft_speed)
         return (self._output.fill(stamp_ns, speeds, rates),)
 
 

@@ -7,20 +7,32 @@ from ddct_bringup.bag.measured_run import MeasuredRun
 from ddct_controllers.mpc.costs import BASIS, thesis_settings
 from ddct_controllers.mpc.options import program_options
 from ddct_controllers.registry import controller_spec
-from ddct_plant.base.options import OPTION_HEADERS, Options, group_of, option_rows, options_of
+from ddct_plant.base.options import (
+    OPTION_HEADERS,
+    OptionGroup,
+    Options,
+    group_of,
+    option_rows,
+    options_of,
+)
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
 def _scenario() -> Table:
+    return Table('', OPTION_HEADERS, [_code(row) for row in _rows(Scenario)])
+
+
+def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
+    """Return the options of a group and of the groups in it, in their order."""
     rows = []
-    for field in dataclasses.fields(Scenario):
-        if group := group_of(field):
-            rows += option_rows(options_of(group), group.prefix)
+    for field in dataclasses.fields(group):
+        if inner := group_of(field):
+            rows += _rows(inner)
         elif 'option' in field.metadata:
-            rows += option_rows({field.name: field.metadata['option']})
-    return Table('', OPTION_HEADERS, [_code(row) for row in rows])
+            rows += option_rows({field.name: field.metadata['option']}, group.prefix)
+    return rows
 
 
 def _controllers(*names: str, without: Sequence[str] = ()) -> Table:

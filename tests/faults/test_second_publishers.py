@@ -69,10 +69,12 @@ def test_every_topic_of_a_tick_is_looked_at(graph_of: GraphOf) -> None:
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph_of: GraphOf, topic: Topic
 ) -> None:
-    clutch = 'linear' if topic.in_run(RunKind(two_input=True)) else 'stick_slip'
-    controller = 'ls8' if topic.in_run(RunKind(clutch=clutch)) else 'mpc4'
+    sensed = not topic.in_run(RunKind(two_input=True, clutch='stick_slip'))
+    clutch = 'linear' if topic.in_run(RunKind(two_input=True, sensed=sensed)) else 'stick_slip'
+    controller = 'ls8' if topic.in_run(RunKind(clutch=clutch, sensed=sensed)) else 'mpc4'
+    changes = ('sensors={}',) if sensed else ()
     recorded = topic.name in ('recorder/ack', 'engine/torque')
-    graph = graph_of(plan(controller, duration_s=0.3, clutch=clutch))
+    graph = graph_of(plan(controller, duration_s=0.3, clutch=clutch, changes=changes))
     graph.add_other(Echo(topic, context=graph.context))
     node, complaint = _graph(graph, recorded=recorded).first_failure()
     assert node == 'driveline'

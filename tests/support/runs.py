@@ -23,11 +23,12 @@ def plan(
     wear_gain: float = 1.0,
     mode: str = 'lockstep',
     clutch: str = 'linear',
+    seed: int = 0,
     changes: tuple[str, ...] = (),
 ) -> RunPlan:
     """Return a short run of the thesis's scenario."""
     scenario = load_scenario('thesis', [f'duration_s={duration_s}', *changes])
-    settings = RunSettings(scenario, clutch=clutch, wear_gain=wear_gain, mode=mode)
+    settings = RunSettings(scenario, clutch=clutch, wear_gain=wear_gain, mode=mode, seed=seed)
     return RunPlan(settings, controller, layout)
 
 

@@ -14,8 +14,8 @@ from ddct_plant.graph.topics import RunKind
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names: they go into tables, labels and names of files."""
 
-_LARGEST = 1e9
-"""Of any number, in its unit."""
+_LARGEST = 2.0**31
+"""Of any number, in its unit; the largest seed is one less."""
 
 
 MEASURED = 'measured'
@@ -57,9 +57,9 @@ class RunFacts:
         """Whether every tick had to be complete."""
         return self.mode == 'lockstep'
 
-    def kind(self, *, two_input: bool) -> RunKind:
-        """Return what decides which topics the run has; only the bag's topics say `two_input`."""
-        return RunKind(lockstep=self.lockstep, two_input=two_input, clutch=self.clutch)
+    def kind(self, *, two_input: bool, sensed: bool) -> RunKind:
+        """Return what decides which topics the run has; the bag's own say what is asked for."""
+        return RunKind(self.lockstep, two_input, self.clutch, sensed)
 
     def to_custom_data(self) -> dict[str, str]:
         """Return the facts as text; numbers as JSON, which gives them back to the last bit."""

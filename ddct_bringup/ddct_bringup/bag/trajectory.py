@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.topics import ENGINE_REQUEST, Signal, all_signals
+from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_SLIP, Signal, all_signals
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,11 @@ class Trajectory:
     def two_input(self) -> bool:
         """Whether the controller commanded the engine too, by `engine_torque_request`."""
         return all(signal.name in self.signals for signal in ENGINE_REQUEST.signals)
+
+    @property
+    def sensed(self) -> bool:
+        """Whether controller and reference read sensors, which have signals of their own."""
+        return all(signal.name in self.signals for signal in SENSED_SLIP.signals)
 
     @property
     def steps(self) -> int:

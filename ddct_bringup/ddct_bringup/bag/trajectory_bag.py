@@ -27,7 +27,9 @@ def write_trajectory(
 
     Raise DdctError when the bag cannot be written.
     """
-    run = RunFacts.from_custom_data(custom_data).kind(two_input=trajectory.two_input)
+    run = RunFacts.from_custom_data(custom_data).kind(
+        two_input=trajectory.two_input, sensed=trajectory.sensed
+    )
     topics = recorded_topics(run)
     with BagWriter(folder, name, topics, custom_data) as bag:
         write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)

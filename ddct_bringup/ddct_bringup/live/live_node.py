@@ -54,7 +54,7 @@ class LiveNode(GraphNode):
         self._say = say
         self._stamp_ns = self._told_ns = START_NS
         self._run_info: dict[str, bytes] = {}
-        run = RunKind(clutch=self.settings.clutch)
+        run = RunKind(clutch=self.settings.clutch, sensed=self.settings.sensed)
         tick_topics = {topic for topic in recorded_topics(run) if topic.every_tick}
         self._unheard = tick_topics - {RECORDER_ACK}
         # Counted in a thread of the server's; what each beat has already done is beside it.

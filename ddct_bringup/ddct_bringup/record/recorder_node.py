@@ -79,7 +79,9 @@ class RecorderNode(GraphNode):
             Option(NODE_NAMES, 'nodes whose run_info the bag must hold', kind=str, many=True),
         )
         self._nodes = HeardNodes(self.settings, self._two_input, nodes)
-        self._run = RunKind(self.settings.lockstep, self._two_input, self.settings.clutch)
+        self._run = RunKind(
+            self.settings.lockstep, self._two_input, self.settings.clutch, self.settings.sensed
+        )
         self._topics = recorded_topics(self._run)
         self._tick_topics = [topic.name for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(

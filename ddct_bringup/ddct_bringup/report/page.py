@@ -86,6 +86,7 @@ def report_page(
         facts=recordings[0].facts,
         scenario_title=_scenario_title(runs),
         conditions=common_conditions([run.entry for run in runs]),
+        sensors=_sensors(runs),
         scenario_text=scenario_text(recordings[0]),
         digest=next((run.digest for run in runs if run.digest), None),
         commits=sorted({run['origin'].commit for run in shown if run['charted']}),
@@ -99,6 +100,13 @@ def _scenario_title(runs: Sequence[ReportRun]) -> str:
     entries = [run.entry for run in runs if run.recording is not None]
     changes = (entry['scenario_changes'] for entry in entries if entry['scenario_changes'])
     return scenario_title(entries[0]['scenario'], next(changes, ()))
+
+
+def _sensors(runs: Sequence[ReportRun]) -> str | None:
+    """Return what the scenario gives of its sensors; None where control was told the truth."""
+    told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
+    sensors = next(told, None)
+    return None if sensors is None else sensors.text or 'each of them is exact'
 
 
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:

@@ -101,8 +101,22 @@ _CLUTCH_QUANTITIES = (
 """Of runs with a clutch that sticks."""
 
 
+_SENSOR_QUANTITIES = (
+    Quantity(
+        'w_d_sensed',
+        'Slip speed as measured, less the true one',
+        'w_d',
+        'rpm',
+        lambda run: rpm_from_rad_s(run.sensed_slip_speed - run.slip_speed),
+    ),
+)
+"""Of runs with sensors."""
+
+
 def quantities_of(trajectory: Trajectory) -> tuple[Quantity, ...]:
     """Return what there is to draw of a run."""
-    if trajectory.clutch_phase is None:
-        return _QUANTITIES
-    return _QUANTITIES + _CLUTCH_QUANTITIES
+    return (
+        *_QUANTITIES,
+        *(() if trajectory.clutch_phase is None else _CLUTCH_QUANTITIES),
+        *(_SENSOR_QUANTITIES if trajectory.sensed else ()),
+    )

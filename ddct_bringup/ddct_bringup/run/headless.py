@@ -34,7 +34,7 @@ class ClosedLoop:
     def reply(self, step: int) -> dict[str, Any]:
         """Return every signal of step k by its name in `Trajectory`; advances all but time."""
         sight = self.plant.look(step)
-        slip_speed, shaft_speed = sight.now.slip_speed, sight.now.joint_speed[1]
+        slip_speed, shaft_speed = sight.seen.slip_speed, sight.seen.joint_speed[1]
         speeds, rates = self._reference.update(step, slip_speed, shaft_speed)
         measurement = Measurement.of_plant(step, sight, speeds, rates)
         started = time.perf_counter()

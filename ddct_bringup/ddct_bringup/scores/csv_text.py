@@ -15,11 +15,16 @@ from ddct_plant.base.printable import printable
 from ddct_plant.graph.topics import (
     JOINT_STATES,
     JOINTS,
+    SENSED_JOINT_STATES,
+    SENSED_JOINTS,
     SLIP,
     SLIP_REFERENCE,
     Signal,
     all_signals,
 )
+
+_OF_JOINTS = ((JOINT_STATES, JOINTS), (SENSED_JOINT_STATES, SENSED_JOINTS))
+"""Topics with a value for each joint."""
 
 
 def scores_csv(runs: Sequence[Entry]) -> str:
@@ -50,12 +55,9 @@ def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     Of previews and torques within the period it is the value at the tick.
     """
     columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
+    of_joints = [signal for topic, _ in _OF_JOINTS for signal in topic.signals]
     for signal in sorted(all_signals(), key=_place):
-        if (
-            signal.unit
-            and signal.name in trajectory.signals
-            and signal not in JOINT_STATES.signals
-        ):
+        if signal.unit and signal.name in trajectory.signals and signal not in of_joints:
             values = trajectory.signals[signal.name]
             columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
     return columns
@@ -80,8 +82,10 @@ def _text(value: Any) -> Any:
 def _joint_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     return {
         signal.column.replace('joint', joint): trajectory.signals[signal.name][:, index]
-        for index, joint in enumerate(JOINTS)
-        for signal in JOINT_STATES.signals
+        for topic, joints in _OF_JOINTS
+        for index, joint in enumerate(joints)
+        for signal in topic.signals
+        if signal.name in trajectory.signals
     }
 
 

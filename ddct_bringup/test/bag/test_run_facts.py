@@ -1,5 +1,6 @@
 """The facts of a run survive the way through a bag's custom data."""
 
+import dataclasses
 import math
 
 import pytest
@@ -34,6 +35,11 @@ def test_a_missing_fact_is_named(name):
     del custom_data[name]
     with pytest.raises(DdctError, match=f'no {name} '):
         RunFacts.from_custom_data(custom_data)
+
+
+def test_the_largest_seed_comes_back():
+    facts = dataclasses.replace(FACTS, seed=2**31 - 1)
+    assert RunFacts.from_custom_data(facts.to_custom_data()) == facts
 
 
 @pytest.mark.parametrize(

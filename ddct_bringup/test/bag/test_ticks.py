@@ -89,7 +89,8 @@ def test_engine_torque_request_is_needed_once_it_was_recorded():
 def test_a_lock_step_recording_holds_no_wall_clock_topic():
     names = {topic.name for topic in recorded_topics(RunKind(two_input=True))}
     assert names.isdisjoint({'controller/timing', '/diagnostics'})
-    assert {topic.name for topic in recorded_topics(RunKind(False, True, 'stick_slip'))} == {
+    everything = RunKind(False, True, 'stick_slip', sensed=True)
+    assert {topic.name for topic in recorded_topics(everything)} == {
         topic.name for topic in TOPICS
     }
 
@@ -112,6 +113,7 @@ def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
         'clutch/torque',
         'recorder/ack',
     ]
-    assert tick_names() == {*names[:5], 'clutch/phase'}
+    of_sensors = {'sensors/joint_states', 'sensors/slip', 'sensors/twist'}
+    assert tick_names() == {*names[:5], 'clutch/phase', *of_sensors}
     assert SLIP.resolved_name == '/clutch/slip'
     assert CLOCK.resolved_name == '/clock'

@@ -62,6 +62,7 @@ SHOWN = {
     'C_f_actuator': (RUN.actuator_torque[:, 0], 'N m'),
     'C_f_clutch': (RUN.clutch_torque[:, 0], 'N m'),
     'C_m': (RUN.engine_torque, 'N m'),
+    'w_d_sensed': ((RUN.sensed_slip_speed - RUN.slip_speed) * RPM, 'rpm'),
 }
 """The values by chart, as docs/develop/interfaces.md names the signals."""
 

@@ -120,7 +120,7 @@ class Scalar(MessageKind):
     def _get(self) -> Callable[[Any], float]:
         return attrgetter(self.path)
 
-    def values(self, message: Any) -> tuple[float]:
+    def values(self, message: Any) -> tuple[float, ...]:
         """Return the number."""
         return (self._get(message),)
 
@@ -159,13 +159,58 @@ class Joints(MessageKind):
 
     def read(self, topic: str, message: Any) -> list[float]:
         """Return the speeds; raise DdctError unless there is a finite one for each joint."""
-        names = list(self.names)
-        if list(message.name) != names or len(message.velocity) != len(names):
-            raise DdctError(
-                f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
-                f'it needs one velocity for each of {names}, in this order'
-            )
-        return _finite(topic, message.velocity)
+        return _finite(topic, _joint_speeds(topic, self.names, message))
+
+
+HELD = 'held'
+"""`header.frame_id` of a message of sensors that repeats a value; else it is empty."""
+
+
+@dataclass(frozen=True)
+class SensedScalar(Scalar):
+    """One number of a sensor, and whether it repeats the last one: `frame_id` is then HELD."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        fill_number = super()._filler(message, class_of)
+
+        def fill(value: float, held: float) -> None:
+            fill_number(value)
+            message.header.frame_id = HELD if held else ''
+
+        return fill
+
+    def values(self, message: Any) -> tuple[float, ...]:
+        """Return the number, and 1 where it repeats the last one, else 0."""
+        return (*super().values(message), float(message.header.frame_id == HELD))
+
+
+@dataclass(frozen=True)
+class SensedJoints(MessageKind):
+    """
+    Speeds of sensors in rad/s, one per joint, and which of them repeat the last one.
+
+    `effort` is then 1, else 0, and `frame_id` HELD if one of them is 1. Positions are left empty.
+    """
+
+    names: tuple[str, ...]
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        message.name = list(self.names)
+
+        def fill(speeds: Sequence[float], held: Sequence[float]) -> None:
+            message.velocity = array('d', speeds)
+            message.effort = array('d', held)
+            message.header.frame_id = HELD if any(held) else ''
+
+        return fill
+
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return speeds and flags; raise DdctError for other joints."""
+        return _joint_speeds('the message', self.names, message), message.effort
+
+    def read(self, topic: str, message: Any) -> list[float]:
+        """Return the speeds; raise DdctError unless there is a finite one for each joint."""
+        return _finite(topic, _joint_speeds(topic, self.names, message))
 
 
 @dataclass(frozen=True)
@@ -381,6 +426,17 @@ class PhaseReport(MessageKind):
                 f'{topic}: {error}: it needs phase, {self._WORK}, then the locks and releases'
             ) from error
         return require_number(topic, work, at_least=0.0)
+
+
+def _joint_speeds(topic: str, needed: Sequence[str], message: Any) -> Sequence[float]:
+    """Return the velocities; raise DdctError unless there is one for each of the joints."""
+    names = list(needed)
+    if list(message.name) != names or len(message.velocity) != len(names):
+        raise DdctError(
+            f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
+            f'it needs one velocity for each of {names}, in this order'
+        )
+    return message.velocity
 
 
 def _finite(topic: str, values: Sequence[float]) -> list[float]:

@@ -18,6 +18,8 @@ from ddct_plant.graph.message_kinds import (
     PhaseReport,
     PreviewPoints,
     Scalar,
+    SensedJoints,
+    SensedScalar,
     StampOnly,
     Status,
     TorquePoints,
@@ -28,6 +30,8 @@ from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 
 JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
 """Order of the joints in `driveline/joint_states`."""
+SENSED_JOINTS = JOINTS[:3]
+"""Those whose speed a sensor measures."""
 TICKS_STATUS = 'driveline: ticks'
 """Name of the status by which the driveline counts its steps and what was missing."""
 SAFE_STATE = ': safe state'
@@ -44,6 +48,8 @@ class RunKind:
     two_input: bool = False
     """Whether the controller also commands the engine."""
     clutch: str = LINEAR
+    sensed: bool = False
+    """Whether controller and reference read sensors in place of the truth."""
 
 
 @dataclass(frozen=True)
@@ -154,6 +160,14 @@ def _stick_slip(run: RunKind) -> bool:
     return run.clutch == STICK_SLIP
 
 
+def _sensed(run: RunKind) -> bool:
+    return run.sensed
+
+
+def _held(name: str, which: str = '') -> Signal:
+    return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
+
+
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
@@ -198,10 +212,50 @@ VEHICLE_ACCEL = Topic(
     'driveline',
     (Signal('vehicle_accel', 'm/s^2', 'A_x'),),
 )
+SENSED_JOINT_STATES = Topic(
+    'sensors/joint_states',
+    SensedJoints('sensor_msgs/msg/JointState', SENSED_JOINTS),
+    'driveline',
+    (
+        Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
+        _held('sensed_joint_held', '(3,) '),
+    ),
+    when=_sensed,
+)
+SENSED_SLIP = Topic(
+    'sensors/slip',
+    SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
+    'driveline',
+    (
+        Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
+        _held('sensed_slip_held'),
+    ),
+    when=_sensed,
+)
+SENSED_VEHICLE_SPEED = Topic(
+    'sensors/twist',
+    SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
+    'driveline',
+    (
+        Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
+        _held('sensed_vehicle_held'),
+    ),
+    when=_sensed,
+)
 TORQUE_DEMAND = _torque(
     'engine/torque_demand', 'engine', 'torque_demand', "the driver's demand at t_k"
 )
 ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
+SENSED_ENGINE_TORQUE = Topic(
+    'sensors/engine_torque',
+    SensedScalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x'),
+    'engine',
+    (
+        Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
+        _held('sensed_torque_held'),
+    ),
+    when=_sensed,
+)
 LOAD_TORQUE = _torque('load/torque', 'load', 'load_torque', 'C_load, held over the period')
 HOLDING_TORQUE = Topic(
     'load/holding_torque',
@@ -267,6 +321,26 @@ CONTROLLER_TIMING = _status('controller/timing', 'controller', every_tick=False,
 DIAGNOSTICS = _status(
     '/diagnostics', 'driveline, engine, actuator', every_tick=False, wall_clock=True
 )
+
+
+@dataclass(frozen=True)
+class SeenTopics:
+    """On which topics control sees the plant."""
+
+    joint_states: Topic
+    slip: Topic
+    vehicle_speed: Topic
+    engine_torque: Topic
+
+
+def seen_topics(*, sensed: bool) -> SeenTopics:
+    """Return the sensors of a run that has them, else the truth."""
+    if sensed:
+        return SeenTopics(
+            SENSED_JOINT_STATES, SENSED_SLIP, SENSED_VEHICLE_SPEED, SENSED_ENGINE_TORQUE
+        )
+    return SeenTopics(JOINT_STATES, SLIP, VEHICLE_SPEED, ENGINE_TORQUE)
+
 
 TOPICS = tuple(each for each in tuple(globals().values()) if isinstance(each, Topic))
 """All of the above: `run_info`, then the topics of each tick, `recorder/ack` last of them."""

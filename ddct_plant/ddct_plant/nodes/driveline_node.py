@@ -23,6 +23,9 @@ from ddct_plant.graph.topics import (
     JOINT_STATES,
     LOAD_TORQUE,
     RECORDER_ACK,
+    SENSED_JOINT_STATES,
+    SENSED_SLIP,
+    SENSED_VEHICLE_SPEED,
     SLIP,
     TICKS_STATUS,
     VEHICLE_ACCEL,
@@ -31,14 +34,16 @@ from ddct_plant.graph.topics import (
     Topic,
 )
 from ddct_plant.scenario.initial import initial_state
-from ddct_plant.scenario.plant import end_cause, make_driveline
+from ddct_plant.scenario.plant import driveline_sensors, end_cause, make_driveline
 from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
 """What the driveline integrates, in the order in which it takes them."""
-TICK = (CLOCK, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
+SENSED = (SENSED_SLIP, SENSED_JOINT_STATES, SENSED_VEHICLE_SPEED)
+"""What of a tick the sensors say."""
+TICK = (CLOCK, *SENSED, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
 """What makes a tick, in the order of sending: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
 """How often an unanswered tick is looked at."""
@@ -58,10 +63,13 @@ class DrivelineNode(GraphNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the driveline in its initial state; `begin` starts the run."""
         super().__init__('driveline', **kwargs)
-        self._run = RunKind(self.settings.lockstep, clutch=self.settings.clutch)
+        self._run = RunKind(
+            self.settings.lockstep, clutch=self.settings.clutch, sensed=self.settings.sensed
+        )
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self.plan = self._declare_plan()
         self.driveline = make_driveline(self.settings, initial_state(self.settings))
+        self._sensors = driveline_sensors(self.settings)
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
         self.refusals = Refusals(self)
@@ -146,7 +154,9 @@ class DrivelineNode(GraphNode):
 
     def _create_publishers(self) -> None:
         self._outputs = [
-            (Output(self, topic), topic.signals) for topic in TICK if topic.in_run(self._run)
+            (Output(self, topic), topic.signals, topic in SENSED)
+            for topic in TICK
+            if topic.in_run(self._run)
         ]
         self._diagnostics = Output(self, DIAGNOSTICS)
         self._safe_state = SafeStateReport(self)
@@ -179,8 +189,10 @@ class DrivelineNode(GraphNode):
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
         now = self.driveline.outputs()
-        for output, signals in self._outputs:
-            output.fill(stamp, *[getattr(now, signal.name) for signal in signals]).publish()
+        said = self._sensors.measure(step, now) if self._sensors else None
+        for output, signals, sensed in self._outputs:
+            source = said if sensed else now
+            output.fill(stamp, *[getattr(source, signal.name) for signal in signals]).publish()
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.tell(step, stamp, why)

@@ -12,8 +12,14 @@ from ddct_plant.graph.node import Output
 from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_request_timeout
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES, TORQUE_DEMAND
-from ddct_plant.scenario.plant import make_engine
+from ddct_plant.graph.topics import (
+    ENGINE_REQUEST,
+    ENGINE_TORQUE,
+    JOINT_STATES,
+    SENSED_ENGINE_TORQUE,
+    TORQUE_DEMAND,
+)
+from ddct_plant.scenario.plant import make_engine, torque_estimate
 
 REQUEST = ENGINE_REQUEST.name
 
@@ -21,6 +27,8 @@ REQUEST = ENGINE_REQUEST.name
 class EngineNode(FollowerNode):
     """
     Answer `driveline/joint_states` with `engine/torque_demand` and `engine/torque`.
+
+    A run with sensors has `sensors/engine_torque` beside the latter.
 
     With `two_input` the demand is answered at once, and `engine/torque` once the controller's
     `engine/torque_request` of that stamp is here. In real time, when requests stop for
@@ -43,6 +51,9 @@ class EngineNode(FollowerNode):
         self._commanded = GuardedEngine(self._engine, timeout_s)
         self._demand = Output(self, TORQUE_DEMAND)
         self._torque = Output(self, ENGINE_TORQUE)
+        self._estimate = torque_estimate(self.settings)
+        if self._estimate is not None:
+            self._estimated = Output(self, SENSED_ENGINE_TORQUE)
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
         if self._two_input:
@@ -59,11 +70,22 @@ class EngineNode(FollowerNode):
         speed = inputs[JOINT_STATES.name]
         if self._two_input:
             torque = self._commanded.request(step, inputs[REQUEST], speed)
-            return () if torque is None else (self._torque.fill(stamp_ns, torque),)
+            return () if torque is None else self._delivered(step, stamp_ns, torque)
         return (
-            self._torque.fill(stamp_ns, self._engine.torque(step, speed=speed)),
+            *self._delivered(step, stamp_ns, self._engine.torque(step, speed=speed)),
             self._demand.fill(stamp_ns, self._engine.demand(step)),
         )
+
+    def _delivered(self, step: int, stamp: int, torque: float) -> Reply:
+        """Return C_m over the period of step k, and what is known of it."""
+        delivered = self._torque.fill(stamp, torque)
+        if self._estimate is None:
+            return (delivered,)
+        estimate = self._estimate.measure(step, torque)
+        known = self._estimated.fill(
+            stamp, estimate.sensed_engine_torque, estimate.sensed_torque_held
+        )
+        return (known, delivered)
 
     def _speed(self, message: Any) -> float:
         """Return w_m in rad/s where an engine with limits needs it, else 0 and spare the time."""
@@ -93,7 +115,8 @@ class EngineNode(FollowerNode):
                 f'no {REQUEST} for too long: the demand holds until the engine is started again',
             )
         if torque is not None:
-            self._torque.fill(stamp, torque).publish()
+            for output in self._delivered(step, stamp, torque):
+                output.publish()
 
     def _refuse_request(self, _message: Any) -> None:
         raise DdctError(

@@ -21,6 +21,7 @@ from ddct_plant.models.stick_slip_driveline import (
 )
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
 
 def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
@@ -118,3 +119,15 @@ def holding_torque(settings: RunSettings) -> HoldingTorque:
     """Return the friction at the wheel of a stick-slip run: rolling resistance and brake."""
     scenario = settings.scenario
     return HoldingTorque(scenario.load, scenario.vehicle, scenario.brake, scenario.slope)
+
+
+def driveline_sensors(settings: RunSettings) -> DrivelineSensors | None:
+    """Return what measures the driveline, None where control is told the truth."""
+    sensors = settings.scenario.sensors
+    return DrivelineSensors(sensors, settings.seed) if sensors else None
+
+
+def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
+    """Return what estimates C_m, None where control is told the truth."""
+    sensors = settings.scenario.sensors
+    return TorqueEstimate(sensors, settings.seed) if sensors else None

@@ -22,6 +22,7 @@ from ddct_plant.models.static_torque import EQUILIBRIA
 from ddct_plant.scenario.closing import ClosingParameters
 from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 from ddct_plant.scenario.slip_profile import SlipProfile
+from ddct_plant.sensors.parameters import SensorParameters
 
 LONGEST_S = 3600.0
 """Longest time in a scenario."""
@@ -193,6 +194,7 @@ class Scenario(OptionGroup):
     brake: BrakeProfile = _section(BrakeProfile())
     engine_limits: EngineLimits | None = None
     closing: ClosingParameters | None = field(default=None, metadata={'stick_slip': True})
+    sensors: SensorParameters | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""
     gear: int | None = option(

@@ -24,7 +24,12 @@ class RunSettings(OptionGroup):
     mode: str = option(
         'lockstep', 'wait for every node, or 100 Hz on the wall clock', choices=MODES
     )
-    seed: int = option(0, 'seed of random numbers', at_least=0, at_most=2**31 - 1)
+    seed: int = option(
+        0,
+        'seed of the random numbers, which are those of `sensors` alone',
+        at_least=0,
+        at_most=2**31 - 1,
+    )
 
     def __post_init__(self) -> None:
         """Check every setting; raise ParameterError that names a bad one and the choices."""
@@ -46,6 +51,11 @@ class RunSettings(OptionGroup):
     def stick_slip(self) -> bool:
         """Whether the clutch sticks, and rolling resistance and brake hold the wheels."""
         return self.clutch == STICK_SLIP
+
+    @property
+    def sensed(self) -> bool:
+        """Whether controller and reference read sensors in place of the truth."""
+        return self.scenario.sensors is not None
 
     @property
     def reference_shape(self) -> str:

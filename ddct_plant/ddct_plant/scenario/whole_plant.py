@@ -7,6 +7,7 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.plant import (
+    driveline_sensors,
     end_cause,
     holding_torque,
     linear_clutch,
@@ -15,8 +16,10 @@ from ddct_plant.scenario.plant import (
     make_engine,
     make_load,
     stick_slip_clutch,
+    torque_estimate,
 )
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.sensors.sensed import Seen
 
 
 class TorqueActuator(Protocol):
@@ -70,11 +73,16 @@ class StickSlip:
 
 @dataclass(frozen=True, slots=True)
 class PlantSight:
-    """What control is told of the plant at t_k."""
+    """The plant at t_k, and what control is told of it."""
 
     now: DrivelineOutputs
+    """The truth."""
+    seen: Seen
+    """What controller and reference see of it: the truth, or what the sensors say."""
     demand: float
     """C_m in N m that the driver asks for."""
+    delivered: float | None
+    """C_m in N m over the coming period; None while a request of the controller is due."""
     told: float
     """C_m in N m as the controller is told it: the demand if it commands C_m."""
 
@@ -90,16 +98,23 @@ class WholePlant:
         self.driveline = make_driveline(settings, initial)
         self._engine = make_engine(settings)
         self._load = make_load(settings)
+        self._sensors = driveline_sensors(settings)
+        self._estimate = torque_estimate(settings)
         self.actuator: TorqueActuator = make_actuator(settings, initial)
         self._friction = StickSlip(settings) if settings.stick_slip else Linear(settings)
 
     def look(self, step: int) -> PlantSight:
         """Return what there is to be seen at step k."""
         now = self.driveline.outputs()
+        seen = now if self._sensors is None else self._sensors.measure(step, now)
         demand = self._engine.demand(step)
         # A controller that commands the engine is told the demand, any other what is delivered.
-        told = demand if self._two_input else self._engine.torque(step, speed=now.joint_speed[0])
-        return PlantSight(now, demand, told)
+        if self._two_input:
+            return PlantSight(now, seen, demand, None, demand)
+        torque = told = self._engine.torque(step, speed=now.joint_speed[0])
+        if self._estimate is not None:
+            told = self._estimate.measure(step, torque).sensed_engine_torque
+        return PlantSight(now, seen, demand, torque, told)
 
     def reply(
         self, step: int, sight: PlantSight, torque_request: float, engine_request: float | None
@@ -107,8 +122,8 @@ class WholePlant:
         """Return the plant's signals of step k by name; both requests are in N m."""
         now = sight.now
         actuator_torque = self.actuator.update(torque_request)
-        engine_torque = sight.told
-        if self._two_input:
+        engine_torque = sight.delivered
+        if engine_torque is None:
             engine_torque = self._engine.torque(step, engine_request, now.joint_speed[0])
         reply = {
             'joint_position': now.joint_position,
@@ -126,6 +141,9 @@ class WholePlant:
         }
         if self._two_input:
             reply['engine_torque_request'] = engine_request
+        if self._sensors is not None and self._estimate is not None:
+            reply |= self._sensors.measure(step, now).signals()
+            reply |= self._estimate.measure(step, engine_torque).signals()
         return reply
 
     @property

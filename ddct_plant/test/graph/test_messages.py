@@ -1,5 +1,7 @@
 """Every message that is made reads back as what went into it, and so do reused ones."""
 
+import math
+
 import pytest
 
 rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
@@ -7,7 +9,7 @@ rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the RO
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.graph import topics  # noqa: E402
-from ddct_plant.graph.message_kinds import NS_PER_S, Scalar, stamp_ns  # noqa: E402
+from ddct_plant.graph.message_kinds import NS_PER_S, Scalar, SensedScalar, stamp_ns  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)
@@ -15,6 +17,7 @@ POINTS = [float(i) / 3.0 for i in range(11)]
 VALUES = {
     'run_info': ([],),
     'driveline/joint_states': ([0.0] * 4, [1.0] * 4, [2.0] * 4),
+    'sensors/joint_states': ([1.0] * 3, [0.0] * 3),
     'clutch/slip_reference': ([1.0], [2.0]),
     'controller/status': ([],),
     'controller/timing': ([],),
@@ -24,7 +27,8 @@ VALUES = {
     'clutch/phase': (1.0, 0.5, ()),
 }
 """What a topic carries; one number per signal where nothing is said."""
-SCALARS = [topic for topic in topics.TOPICS if isinstance(topic.kind, Scalar)]
+SCALARS = [topic for topic in topics.TOPICS if type(topic.kind) is Scalar]
+SENSED = [topic for topic in topics.TOPICS if type(topic.kind) is SensedScalar]
 
 
 @pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
@@ -44,6 +48,36 @@ def test_single_values_come_back_to_the_last_bit(topic):
     again = write(LATER, value)
     assert again is first
     assert (topic.read(again), stamp_ns(again)) == (value, LATER)
+
+
+@pytest.mark.parametrize('topic', SENSED, ids=lambda topic: topic.name)
+def test_a_sensor_s_value_and_its_flag_come_back(topic):
+    write = topic.writer()
+    lost = write(STAMP, 0.1, 1.0)
+    assert (topic.read(lost), topic.values(lost)) == (0.1, (0.1, 1.0))
+    assert lost.header.frame_id == 'held'
+    came = write(LATER, -1.0 / 3.0, 0.0)
+    assert (topic.read(came), topic.values(came)) == (-1.0 / 3.0, (-1.0 / 3.0, 0.0))
+    assert came.header.frame_id == ''
+    with pytest.raises(DdctError, match=f'{topic.name} is nan'):
+        topic.read(write(LATER, math.nan, 0.0))
+
+
+def test_sensed_joints_have_a_flag_each_and_leave_no_array_empty_at_the_end():
+    topic = topics.SENSED_JOINT_STATES
+    write = topic.writer()
+    some = write(STAMP, [1.0, 2.0, 3.0], [0.0, 1.0, 0.0])
+    assert list(some.name) == ['engine', 'primary_shaft', 'wheel']
+    assert (topic.read(some), list(some.effort)) == ([1.0, 2.0, 3.0], [0.0, 1.0, 0.0])
+    assert [list(each) for each in topic.values(some)] == [[1.0, 2.0, 3.0], [0.0, 1.0, 0.0]]
+    assert some.header.frame_id == 'held'
+    none = write(LATER, [1.0, 2.0, 3.0], [0.0] * 3)
+    assert (none.header.frame_id, list(none.effort)) == ('', [0.0] * 3)
+    with pytest.raises(DdctError, match='sensors/joint_states is inf'):
+        topic.read(write(LATER, [1.0, math.inf, 3.0], [0.0] * 3))
+    none.name = ['engine', 'wheel', 'primary_shaft']
+    with pytest.raises(DdctError, match='in this order'):
+        topic.read(none)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,198 @@
+"""What is wrong with the sensors of a run, as a scenario says it; nothing unless it is given."""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Option, OptionGroup, options_of
+from ddct_plant.base.timebase import steps_in
+
+_MOST = 1e6
+
+
+class Errors(NamedTuple):
+    """The errors of one sensor that have its unit."""
+
+    noise: float
+    """Standard deviation."""
+    quantum: float
+    """Step between two values, 0 for none."""
+    bias: float
+
+
+def _off(default: Any, meaning: str, unit: str = '', **description: Any) -> Any:
+    """Return the field of an option that files and hashes leave out while it is off."""
+    described = Option(default, meaning, unit, **description)
+    return dataclasses.field(default=default, metadata={'option': described, 'left_out': True})
+
+
+def _noise(unit: str) -> Any:
+    meaning = 'standard deviation of Gaussian noise, each sample by itself'
+    return _off(0.0, meaning, unit, at_least=0.0, at_most=_MOST)
+
+
+def _quantum(unit: str) -> Any:
+    meaning = 'step between two values, to the nearest of which it is rounded; 0: none'
+    return _off(0.0, meaning, unit, at_least=0.0, at_most=_MOST)
+
+
+def _bias(unit: str) -> Any:
+    return _off(0.0, 'what it always says too much', unit, at_least=-_MOST, at_most=_MOST)
+
+
+@dataclass(frozen=True)
+class SensorOptions(OptionGroup):
+    """What every sensor may have."""
+
+    gain: float = _off(1.0, 'what it says over what is true', above=0.0, at_most=10.0)
+    delay_s: float = _off(
+        0.0,
+        'age of what it says, a multiple of 10 ms; up to then it says its first value',
+        's',
+        at_least=0.0,
+        at_most=10.0,
+        whole_periods=True,
+    )
+    dropout: float = _off(
+        0.0,
+        'share of samples that are lost, below 1: the last value that came is repeated',
+        at_least=0.0,
+        at_most=1.0,
+    )
+    dropout_burst: float | None = _off(
+        None,
+        'mean number of samples that are lost in a row',
+        otherwise='1 / (1 - `dropout`): each sample is lost by itself',
+        at_least=1.0,
+        at_most=1e4,
+    )
+
+    def __post_init__(self) -> None:
+        """Check every option; raise ParameterError that names a bad one."""
+        super().__post_init__()
+        if self.dropout == 1.0:
+            raise ParameterError(f'{self.prefix}dropout is 1: give a share below 1')
+        least = self.dropout / (1.0 - self.dropout)
+        if self.dropout_burst is not None and self.dropout_burst < least:
+            raise ParameterError(
+                f'{self.prefix}dropout_burst is {self.dropout_burst:g}: with a dropout of '
+                f'{self.dropout:g} give at least {least:g}'
+            )
+
+    @property
+    def errors(self) -> Errors:
+        """Its errors in its unit."""
+        raise NotImplementedError
+
+    @property
+    def delay_steps(self) -> int:
+        """Age of what it says, in periods."""
+        return steps_in(f'{self.prefix}delay_s', self.delay_s)
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """What is given of it, `KEY VALUE UNIT`."""
+        return tuple(
+            f'{name} {getattr(self, name):g} {each.unit}'.rstrip()
+            for name, each in options_of(type(self)).items()
+            if getattr(self, name) != each.default
+        )
+
+
+@dataclass(frozen=True)
+class SpeedSensor(SensorOptions):
+    """A sensor of the speed of a shaft."""
+
+    noise_rad_s: float = _noise('rad/s')
+    quantum_rad_s: float = _quantum('rad/s')
+    bias_rad_s: float = _bias('rad/s')
+    teeth: int = _off(
+        0,
+        'teeth of an encoder that are counted: speeds then come in steps of '
+        '2π / (`teeth` × `count_s`); 0: the speed itself is measured',
+        at_least=0,
+        at_most=100000,
+    )
+    count_s: float = _off(
+        0.01,
+        'how long teeth are counted, a multiple of 10 ms; the speed is the mean over that time',
+        's',
+        above=0.0,
+        at_most=10.0,
+        whole_periods=True,
+    )
+
+    @property
+    def errors(self) -> Errors:
+        """Its errors in rad/s."""
+        return Errors(self.noise_rad_s, self.quantum_rad_s, self.bias_rad_s)
+
+    @property
+    def count_steps(self) -> int:
+        """How long teeth are counted, in periods."""
+        return steps_in(f'{self.prefix}count_s', self.count_s)
+
+
+@dataclass(frozen=True)
+class EngineSpeedSensor(SpeedSensor, prefix='sensors.engine_speed.'):
+    """The sensor of w_m."""
+
+
+@dataclass(frozen=True)
+class ShaftSpeedSensor(SpeedSensor, prefix='sensors.shaft_speed.'):
+    """The sensor of w_p."""
+
+
+@dataclass(frozen=True)
+class WheelSpeedSensor(SpeedSensor, prefix='sensors.wheel_speed.'):
+    """The sensor of w_r."""
+
+
+@dataclass(frozen=True)
+class VehicleSpeedSensor(SensorOptions, prefix='sensors.vehicle_speed.'):
+    """What is known of V_x."""
+
+    noise_m_s: float = _noise('m/s')
+    quantum_m_s: float = _quantum('m/s')
+    bias_m_s: float = _bias('m/s')
+
+    @property
+    def errors(self) -> Errors:
+        """Its errors in m/s."""
+        return Errors(self.noise_m_s, self.quantum_m_s, self.bias_m_s)
+
+
+@dataclass(frozen=True)
+class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
+    """What is known of C_m."""
+
+    noise_n_m: float = _noise('N m')
+    quantum_n_m: float = _quantum('N m')
+    bias_n_m: float = _bias('N m')
+
+    @property
+    def errors(self) -> Errors:
+        """Its errors in N m."""
+        return Errors(self.noise_n_m, self.quantum_n_m, self.bias_n_m)
+
+
+def _group(default: OptionGroup) -> Any:
+    return dataclasses.field(default=default, metadata={'left_out': True})
+
+
+@dataclass(frozen=True)
+class SensorParameters(OptionGroup, prefix='sensors.'):
+    """The sensors that controller and reference read; each is exact unless more is given."""
+
+    engine_speed: EngineSpeedSensor = _group(EngineSpeedSensor())
+    shaft_speed: ShaftSpeedSensor = _group(ShaftSpeedSensor())
+    wheel_speed: WheelSpeedSensor = _group(WheelSpeedSensor())
+    vehicle_speed: VehicleSpeedSensor = _group(VehicleSpeedSensor())
+    engine_torque: EngineTorqueEstimate = _group(EngineTorqueEstimate())
+
+    @property
+    def text(self) -> str:
+        """What is given of each sensor, in one line."""
+        given = {field.name: getattr(self, field.name).given for field in dataclasses.fields(self)}
+        return '; '.join(f'{name}: {", ".join(each)}' for name, each in given.items() if each)

@@ -1,0 +1,99 @@
+"""One sensor: what it says at each step of the quantity that it measures."""
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.sensors.draws import gaussian, losses
+from ddct_plant.sensors.parameters import SensorOptions, SpeedSensor
+
+
+class Sample(NamedTuple):
+    """What a sensor says at one step."""
+
+    value: float
+    """In the unit of the quantity."""
+    held: bool
+    """Whether the sample of this step was lost, and the value is the last that came."""
+
+
+class Sensor:
+    """
+    y_k = s_(k-d), or y_(k-1) where sample k is lost; s_k = Q(gain x_k + bias + sigma n_k).
+
+    x_k is true at step k, n_k standard normal, Q rounds to the nearest multiple of the quantum, d
+    is the delay in periods, and s_k is s_0 before t_0.
+    """
+
+    def __init__(self, options: SensorOptions, quantity: str, seed: int) -> None:
+        """Take the random numbers that belong to the seed of the run and the quantity."""
+        self._gain = options.gain
+        self._errors = options.errors
+        self._normal = gaussian(seed, quantity) if self._errors.noise else None
+        self._losses = losses(seed, quantity, options) if options.dropout else None
+        self._places = 1 + options.delay_steps
+        self._line: deque[float] = deque(maxlen=self._places)
+        self._sample = Sample(math.nan, held=False)
+
+    def take(self, truth: float) -> Sample:
+        """Return what it says at the next step."""
+        reading = self._reading(truth)
+        self._line.extend([reading] if self._line else [reading] * self._places)
+        held = self._losses is not None and next(self._losses)
+        value = self._sample.value if held else self._line[0]
+        self._sample = Sample(value, held)
+        return self._sample
+
+    def _reading(self, truth: float) -> float:
+        """Return s_k."""
+        errors = self._errors
+        value = self._gain * truth + errors.bias
+        if self._normal is not None:
+            value += errors.noise * next(self._normal)
+        if not errors.quantum or math.isinf(value):  # of a loop that diverges
+            return value
+        # The remainder is exact, and no quantum is too small for it.
+        return value - math.remainder(value, errors.quantum)
+
+
+class ToothCount:
+    """
+    The speed of a shaft by the teeth that passed: 2 pi (n_k - n_(k-m)) / (N m T).
+
+    n_k = floor(N theta_k / 2 pi) of N teeth, m periods T of 10 ms; one tooth is at the sensor at
+    t_0, and before it the shaft turned as fast as then. The sign is that of the speed.
+    """
+
+    def __init__(self, teeth: int, periods: int) -> None:
+        """Count `teeth` per turn over `periods` of 10 ms."""
+        self._teeth_per_rad = teeth / (2.0 * math.pi)
+        self._speed_per_tooth = 2.0 * math.pi / (teeth * periods * PERIOD_S)
+        self._counts: deque[int] = deque(maxlen=1 + periods)
+        self._periods = periods
+
+    def take(self, position: float, speed: float) -> float:
+        """Return what is counted at the next step in rad/s, of theta in rad and w in rad/s."""
+        if not self._counts:
+            before = range(self._periods, 0, -1)
+            self._counts.extend(self._count(position - k * PERIOD_S * speed) for k in before)
+        self._counts.append(self._count(position))
+        return (self._counts[-1] - self._counts[0]) * self._speed_per_tooth
+
+    def _count(self, position: float) -> int:
+        return math.floor(position * self._teeth_per_rad)
+
+
+class ShaftSensor:
+    """The sensor of a speed, which may count teeth."""
+
+    def __init__(self, options: SpeedSensor, quantity: str, seed: int) -> None:
+        """As `Sensor`; what is counted stands for the truth."""
+        self._sensor = Sensor(options, quantity, seed)
+        self._teeth = ToothCount(options.teeth, options.count_steps) if options.teeth else None
+
+    def take(self, position: float, speed: float) -> Sample:
+        """Return what it says at the next step, in rad/s, of theta in rad and w in rad/s."""
+        if self._teeth is not None and math.isfinite(position):
+            speed = self._teeth.take(position, speed)
+        return self._sensor.take(speed)

@@ -1,0 +1,60 @@
+"""A run with sensors: the same in every layout, and control reads what they say."""
+
+from pathlib import Path
+
+import numpy as np
+from support.in_process_graph import GraphOf
+from support.runs import LAYOUTS, bag_bytes, expected, plan, record
+from support.sensors import ALL_ON, FLAGS
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_plant.graph.topics import SENSED_SLIP
+
+DURATION_S = 0.7
+SEED = 2**31 - 1
+
+
+def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(tmp_path: Path) -> None:
+    bags = []
+    for layout in LAYOUTS:
+        run = plan('pi', layout, duration_s=DURATION_S, seed=SEED, changes=(ALL_ON,))
+        folder = tmp_path / layout
+        trajectory = record(run, folder).trajectory
+        assert trajectory.sha256() == expected(run).sha256(), layout
+        assert all(set(np.unique(trajectory.signals[name])) == {0.0, 1.0} for name in FLAGS)
+        bags.append(bag_bytes(folder))
+    assert all(bag == bags[0] for bag in bags)
+
+
+def test_two_inputs_closing_stage_and_shaft_speed_go_by_the_sensors(graph_of: GraphOf) -> None:
+    run = plan(
+        'decoupled_pid',
+        'single-process',
+        duration_s=DURATION_S,
+        seed=3,
+        clutch='stick_slip',
+        changes=(
+            ALL_ON,
+            'closing={}',
+            'reference.shape=engine_speed_target',
+            'engine_speed_reference={time_s: [0.0, 2.0], speed_rad_s: [160.0, 180.0]}',
+        ),
+    )
+    graph = graph_of(run)
+    graph.add_all()
+    graph.run()
+    trajectory = read_bag(graph.folder).trajectory
+    assert (trajectory.sensed, trajectory.two_input) == (True, True)
+    assert trajectory.sha256() == expected(run).sha256()
+
+
+def test_a_run_in_real_time_has_them_too(graph_of: GraphOf) -> None:
+    run = plan('pi', 'single-process', duration_s=0.5, mode='realtime', changes=(ALL_ON,))
+    graph = graph_of(run)
+    graph.add_all()
+    graph.run()
+    recording = read_bag(graph.folder)
+    headless = expected(plan('pi', duration_s=0.5, changes=(ALL_ON,)))
+    assert recording.counts[SENSED_SLIP.resolved_name] == headless.steps + 1
+    if not recording.missed and not recording.realtime.missed_steps:
+        assert np.array_equal(recording.trajectory.sensed_slip_speed, headless.sensed_slip_speed)
