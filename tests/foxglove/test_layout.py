@@ -47,6 +47,12 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!driveshaft', 'angle theta_sr'): lambda run: run.joint_position[:, 3],
     ('Plot!vehicle', 'accel. A_x'): lambda run: run.vehicle_accel,
     ('Plot!vehicle', 'speed V_x'): lambda run: run.vehicle_speed,
+    ('Plot!slip', 'measured (sensors)'): lambda run: run.sensed_slip_speed,
+    ('Plot!engine_torque', 'estimated C_m (sensors)'): lambda run: run.sensed_engine_torque,
+    ('Plot!speeds', 'measured w_m (sensors)'): lambda run: run.sensed_joint_speed[:, 0],
+    ('Plot!speeds', 'measured w_p (sensors)'): lambda run: run.sensed_joint_speed[:, 1],
+    ('Plot!speeds', 'measured w_r (sensors)'): lambda run: run.sensed_joint_speed[:, 2],
+    ('Plot!vehicle', 'measured V_x (sensors)'): lambda run: run.sensed_vehicle_speed,
     ('StateTransitions!controller', 'feedback'): lambda run: _told(run, 'feedback'),
     ('StateTransitions!controller', 'request saturated'): lambda run: _told(run, 'saturated'),
     ('StateTransitions!controller', 'clutch phase (stick-slip)'): lambda run: _phases(run),
@@ -65,8 +71,8 @@ def _phases(run: Trajectory) -> np.ndarray:
 
 
 def _made_up_run() -> Trajectory:
-    """Return a stick-slip run with another number in every place, of two inputs."""
-    run = expected(plan('pi', duration_s=0.7, clutch='stick_slip'))
+    """Return a stick-slip run with sensors, of two inputs, with another number in each place."""
+    run = expected(plan('pi', duration_s=0.7, clutch='stick_slip', changes=('sensors={}',)))
     random = np.random.default_rng(1)
     arrays = {
         name: random.normal(0.0, 100.0, np.shape(values))
