@@ -30,13 +30,14 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
             scenario.control_start_step,
             preview_steps,
         )
-    descent = _make_descent(settings)
+    descent = make_descent(settings)
     if settings.detailed:
         return FollowingReference(descent, scenario.control_start_step, preview_steps)
     return StoredReference(descent, nominal_slip(scenario), preview_steps)
 
 
-def _make_descent(settings: RunSettings) -> Descent:
+def make_descent(settings: RunSettings) -> Descent:
+    """Return how the reference of a run descends, which is not `engine_speed_target`."""
     reference = settings.scenario.reference
     if settings.reference_shape == 'ramp':
         return CrfRamp(reference.slope_rad_s2)

@@ -60,10 +60,10 @@ class Locking:
     def together_from(self) -> int | None:
         """First step at or after the lock, or t_a for a linear clutch; None without."""
         if self.phase is not None:
-            return None if self.locks_from_s is None else _step_at(self.locks_from_s)
+            return None if self.locks_from_s is None else step_at(self.locks_from_s)
         if self.engagement_time_s is None:
             return None
-        return _step_at(time_of_step(self.control_start) + self.engagement_time_s)
+        return step_at(time_of_step(self.control_start) + self.engagement_time_s)
 
     @property
     def slipping(self) -> slice:
@@ -96,6 +96,7 @@ class Locking:
         return [time for step in events for time, what in step if what == kind]
 
 
-def _step_at(time_s: float) -> int:
+def step_at(time_s: float) -> int:
+    """Return the first step at or after a scenario time."""
     # A time on the grid is not pushed to the next step by its last bit.
     return math.ceil(time_s / PERIOD_S - 1e-9)

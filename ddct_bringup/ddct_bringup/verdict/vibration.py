@@ -8,7 +8,7 @@ from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 JUDDER_BAND_HZ = (2.0, 20.0)
 SHORTEST_JUDDER_S = 1.0
 """Of slipping: two periods of the lowest frequency of the band."""
-_BAND_PASS = signal.butter(2, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos')
+BAND_PASS = signal.butter(2, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos')
 
 
 def judder(torsion_speed: np.ndarray) -> float | None:
@@ -20,7 +20,7 @@ def judder(torsion_speed: np.ndarray) -> float | None:
     """
     if (len(torsion_speed) - 1) * PERIOD_S < SHORTEST_JUDDER_S:
         return None
-    return float(np.sqrt(np.mean(signal.sosfiltfilt(_BAND_PASS, torsion_speed) ** 2)))
+    return float(np.sqrt(np.mean(signal.sosfiltfilt(BAND_PASS, torsion_speed) ** 2)))
 
 
 def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:

@@ -71,8 +71,7 @@ class Actuator:
         """Requests in effect within one period: a delay of 13 ms changes them after 3 ms."""
         self._state_update, self._nodes = lifted(model, late)
         delayed = max(initial_request, 0.0)
-        at_rest = np.linalg.solve(model.a, -model.b[:, 0] * delayed)
-        self._state_and_delayed = np.array([*at_rest, *[delayed] * self._inputs])
+        self._state_and_delayed = np.array([*at_rest(model, delayed), *[delayed] * self._inputs])
         self._waiting = deque([delayed] * (periods + self._inputs - 1))
 
     def update(self, request: float) -> list[float]:
@@ -84,6 +83,11 @@ class Actuator:
         nodes = (self._nodes @ values).tolist()
         values[: -self._inputs] = self._state_update @ values
         return nodes
+
+
+def at_rest(model: StateSpace, request: float) -> np.ndarray:
+    """Return the state (n,) of G_a that rests on a request in N m."""
+    return np.linalg.solve(model.a, -model.b[:, 0] * request)
 
 
 def lifted(model: StateSpace, late: int) -> tuple[np.ndarray, np.ndarray]:

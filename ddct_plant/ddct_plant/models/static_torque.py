@@ -48,8 +48,9 @@ class StaticTorque:
         """Return C_fOL in N m for C_m and C_load in N m, w_m and w_p in rad/s."""
         p = self.driveline
         if self.equilibrium == 'full':
-            engine_torque -= p.engine_damping * engine_speed
-            load_torque += p.total_ratio * p.shaft_damping * shaft_speed
+            # Not in place: a batch of runs gives arrays, which stay what they are.
+            engine_torque = engine_torque - p.engine_damping * engine_speed
+            load_torque = load_torque + p.total_ratio * p.shaft_damping * shaft_speed
         return constant_slip_torque(p, engine_torque, load_torque)
 
     def twist(self, clutch_torque: float, load_torque: float, shaft_speed: float) -> float:

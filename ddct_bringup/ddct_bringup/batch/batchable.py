@@ -1,0 +1,103 @@
+"""Which runs can be computed in a batch, and the linear feedback of those that can."""
+
+import dataclasses
+
+import numpy as np
+
+from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_controllers.interface import Controller, Measurement
+from ddct_controllers.linear import LinearController
+from ddct_controllers.pi import PiController
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET
+from ddct_plant.scenario.settings import RunSettings
+
+HEEDED = frozenset(
+    {
+        *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
+        *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
+        *('driveline', 'actuator', 'controllers', 'gear', 'adjusted'),
+        *('engine_authority', 'engine_speed_reference', 'pedal_position'),
+    }
+)
+"""What a scenario may give: a batch has it too, or no linear controller has to do with it."""
+_PLAYED_STEPS = 60
+_SAME = 1e-11
+"""Of the largest torque: how far `update` of somebody else's class may be off its model."""
+
+
+def batchable(settings: RunSettings, controller: Controller) -> str:
+    """
+    Return in a line why a run cannot be computed in a batch, empty if it can.
+
+    The controller is not changed but for a reset.
+    """
+    return _why_not_plant(settings) or _why_not_controller(controller)
+
+
+def _why_not_plant(settings: RunSettings) -> str:
+    if settings.stick_slip:
+        return f'the clutch is {settings.clutch}'
+    if not settings.lockstep:
+        return f'the mode is {settings.mode}'
+    if settings.reference_shape == ENGINE_SPEED_TARGET:
+        return f'reference.shape is {ENGINE_SPEED_TARGET}'
+    scenario = settings.scenario
+    for field in dataclasses.fields(scenario):
+        if field.name not in HEEDED and getattr(scenario, field.name) != field.default:
+            return f'the scenario gives {field.name}'
+    return ''
+
+
+def _why_not_controller(controller: Controller) -> str:
+    if controller.commands_engine:
+        return 'the controller commands the engine'
+    kind = type(controller)
+    if kind.hold is not Controller.hold:
+        return 'the controller does more than reset while feedback is held off'
+    if _is_ours(kind):
+        return ''
+    try:
+        model = controller.linear_model()
+        if model is None:
+            return 'the controller is not linear'
+        controller.reset()
+        same = _acts_as(controller, model)
+        controller.reset()
+    except FOREIGN_FAILURES as error:
+        return f'the controller failed when it was tried ({type(error).__name__}: {error})'
+    except DdctError as error:
+        return f'the controller failed when it was tried ({error})'
+    return '' if same else 'the controller does not do what its linear_model says'
+
+
+def _is_ours(kind: type[Controller]) -> bool:
+    """Say whether `update` and `linear_model` are those of one of our classes, which agree."""
+    return any(
+        kind.update is ours.update and kind.linear_model is ours.linear_model
+        for ours in (LinearController, PiController)
+    )
+
+
+def _acts_as(controller: Controller, model: object) -> bool:
+    """Say whether it answers played measurements, up to very large ones, as its model does."""
+    if not isinstance(model, StateSpace) or model.d.shape != (1, 1) or model.period_s != PERIOD_S:
+        return False
+    random, filtered = np.random.default_rng(0), DiscreteFilter(model)
+    largest = worst = 0.0
+    for step in range(_PLAYED_STEPS):
+        played = _measurement(random, step, controller.preview_steps)
+        torque = filtered.update(played.slip_error_rpm)
+        largest = max(largest, abs(torque))
+        worst = max(worst, abs(controller.update(played).clutch_torque - torque))
+    return bool(worst <= _SAME * largest or worst == 0.0)
+
+
+def _measurement(random: np.random.Generator, step: int, preview_steps: int) -> Measurement:
+    """Return speeds, torques and references in which nothing is related, larger step by step."""
+    size = 10.0 ** (3.0 * step / _PLAYED_STEPS)
+    values = random.normal(scale=size, size=7).tolist()
+    references = random.normal(scale=size, size=(2, preview_steps + 1)).tolist()
+    return Measurement(step, *values[:5], *references, *values[5:])

@@ -1,0 +1,96 @@
+"""What the criteria are computed from, of many runs with a linear clutch."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ddct_bringup.batch.judder import judder_of
+from ddct_bringup.verdict.criteria import JudgedRun, Values
+from ddct_bringup.verdict.lock import step_at
+from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S
+from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, time_of_step
+
+
+@dataclass(frozen=True)
+class LinearLockings:
+    """`Locking` of R linear clutches, which never lock."""
+
+    slip_speed: np.ndarray
+    """(R, N+1) in rad/s."""
+    control_start: int
+    engagement_time_s: np.ndarray
+    """(R,), NaN where there is none."""
+    time_to_lock_s = None
+    releases = None
+
+    @cached_property
+    def together_from(self) -> np.ndarray:
+        """First step at or after t_a, (R,); one behind the last where there is none."""
+        at_s = time_of_step(self.control_start) + self.engagement_time_s
+        steps = self.slip_speed.shape[-1]
+        return np.array([steps if np.isnan(time) else step_at(time) for time in at_s.tolist()])
+
+    @property
+    def slipping(self) -> tuple[np.ndarray, np.ndarray]:
+        """First sample of the longest stretch of slipping and the one behind its last, (R,)."""
+        runs, samples = self.slip_speed.shape
+        mask = self.slip_speed != 0.0
+        mask &= np.arange(samples) < self.together_from[:, np.newaxis]
+        changes = np.diff(mask, prepend=False, append=False, axis=-1)
+        rows, edges = (each.reshape(-1, 2) for each in np.nonzero(changes))
+        # Each row's stretches from the longest to the shortest, the earlier of equals first.
+        order = np.lexsort((edges[:, 0], edges[:, 0] - edges[:, 1], rows[:, 0]))
+        found, at = np.unique(rows[order, 0], return_index=True)
+        longest = np.zeros((runs, 2), dtype=int)
+        longest[found] = edges[order][at]
+        return longest[:, 0], longest[:, 1]
+
+
+@dataclass(frozen=True)
+class JudgedRuns(JudgedRun):
+    """
+    R runs of one length and score window whose trajectory is a stack; all signals are finite.
+
+    Values are (R,), not finite where they are not defined.
+    """
+
+    @cached_property
+    def locking(self) -> LinearLockings:  # type: ignore[override]
+        """When the plates come together."""
+        times = self.metrics['engagement_time_s']
+        return LinearLockings(self.trajectory.slip_speed, self.control_start, times)
+
+    @cached_property
+    def shuffle(self) -> tuple[Values, Values]:
+        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
+        samples = np.arange(self.torsion_speed_rpm.shape[-1])
+        together = samples >= self.locking.together_from[:, np.newaxis]
+        magnitude = np.where(together, np.abs(self.torsion_speed_rpm), -1.0)
+        peak, largest = np.argmax(magnitude, axis=-1), np.max(magnitude, axis=-1)
+        above = magnitude >= largest[:, np.newaxis] / np.e
+        after = len(samples) - np.argmax(above[:, ::-1], axis=-1)
+        met = together[:, -1]
+        decay = np.where(met & (after < len(samples)), (after - peak) / STEPS_PER_S, np.nan)
+        return np.where(met, largest, np.nan), decay
+
+    @property
+    def judder(self) -> Values:
+        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
+        first, after = self.locking.slipping
+        long = (after - first - 1) * PERIOD_S >= SHORTEST_JUDDER_S
+        found = np.full(len(first), np.nan)
+        if long.any():
+            found[long] = judder_of(self.torsion_speed_rpm[long], first[long], after[long])
+        return found
+
+    @cached_property
+    def strongest(self) -> tuple[Values | None, Values | None]:
+        """Weighted acceleration and dose where they are strongest."""
+        dose = self.metrics['vdv_m_s1_75']
+        defined = np.isfinite(dose)
+        if not defined.any():
+            return None, None
+        found = super().strongest
+        acceleration, strongest = (np.where(defined, each, np.nan) for each in np.array(found))
+        return acceleration, strongest

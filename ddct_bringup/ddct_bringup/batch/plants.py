@@ -1,0 +1,102 @@
+"""The linear plants of many runs: engine, load, actuator, clutch and driveline."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.batch.actuators import Actuators
+from ddct_bringup.batch.columns import distinct, product, stacked
+from ddct_plant.base.timebase import STEPS_PER_S
+from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.driveline import driveline_outputs, step_matrix
+from ddct_plant.models.load import resisting_torque
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_load
+from ddct_plant.scenario.settings import RunSettings
+
+_STATES = slice(0, 4)
+_ENGINE, _LOAD = 4, 5
+_ACTUATOR = slice(6, 12)
+"""Rows of what a step takes: states, C_m, C_load, and what `Actuators` has as values."""
+
+
+class Plants:
+    """
+    `WholePlant` for R runs of one equilibrium, with a linear clutch and an engine without limits.
+
+    Angles are left out: nothing that is scored depends on them.
+    """
+
+    def __init__(
+        self, runs: Sequence[RunSettings], actuators: Sequence[ActuatorParameters], steps: int
+    ) -> None:
+        """Start in the initial states; engine and road are known up to step `steps`."""
+        scenarios = [run.scenario for run in runs]
+        self._driveline = stacked([scenario.driveline for scenario in scenarios])
+        self._static: Any = StaticTorque(self._driveline, scenarios[0].equilibrium)
+        start = stacked([initial_state(run) for run in runs])
+        self._wear = np.array([run.wear_gain for run in runs])
+        loads = [make_load(run) for run in runs]
+        self._wheel_radius: Any = np.array([load.wheel_radius for load in loads])
+        self._drag = np.array([load.drag for load in loads])
+        self._wind = np.array([load.wind for load in loads])
+        times = np.arange(steps + 1) / STEPS_PER_S
+        self._forces = np.stack([load.forces(times) for load in loads], axis=-1)
+        engines = [scenario.engine for scenario in scenarios]
+        first, places = distinct(engines)
+        profiles = [
+            np.interp(times, engines[index].time_s, engines[index].torque_n_m) for index in first
+        ]
+        self.engine_torque = np.take(np.stack(profiles, axis=-1), places, axis=-1)
+        """C_m in N m at every step, (N+1, R), what `Engine.demand` returns."""
+        self._actuators = Actuators(actuators, start.torque_request, steps + 1)
+        nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
+        self._step = _step_matrices([each.driveline for each in scenarios], nodes)
+        self._values = np.zeros((_ACTUATOR.stop, len(runs)))
+        speeds = start.engine_speed, start.shaft_speed, start.wheel_speed
+        self._values[_STATES] = *speeds, start.twist
+        self._torques: Any = (start.engine_torque, start.clutch_torque, start.load_torque)
+
+    def outputs(self) -> Any:
+        """Return `DrivelineOutputs` at the present stamp, each value (R,) and without angles."""
+        states: Any = self._values[_STATES]
+        return driveline_outputs(self._driveline, self._wheel_radius, states, self._torques)
+
+    def load_torque(self, step: int) -> np.ndarray:
+        """Return C_load in N m, (R,), at step `step` in the present state."""
+        vehicle_speed = self._wheel_radius * self._values[2]
+        return resisting_torque(
+            self._drag, self._wind, self._forces[step], self._wheel_radius, vehicle_speed
+        )
+
+    def static_torque(self, step: int, load_torque: np.ndarray) -> np.ndarray:
+        """Return C_fOL in N m, (R,), for C_load in N m in the present state."""
+        engine_speed, shaft_speed = self._values[:2]
+        return self._static.torque(
+            self.engine_torque[step], load_torque, engine_speed, shaft_speed
+        )
+
+    def advance(self, step: int, load_torque: np.ndarray, request: np.ndarray) -> None:
+        """Step by 10 ms with held C_m and C_load, (R,) in N m, and what the clutch is asked."""
+        values, engine_torque = self._values, self.engine_torque[step]
+        self._actuators.ask(step, request)
+        values[_ENGINE], values[_LOAD] = engine_torque, load_torque
+        values[_ACTUATOR] = self._actuators.values
+        values[_STATES] = product(self._step, values)
+        self._torques = (engine_torque, self._wear * self._actuators.advance(), load_torque)
+
+
+def _step_matrices(drivelines: Sequence[DrivelineParameters], nodes: np.ndarray) -> np.ndarray:
+    """
+    Return the (4, 12, R) map to the next states, actuator and clutch included.
+
+    `nodes` (R, 11, 6) give C_f within a period by the values of the actuators.
+    """
+    first, places = distinct(drivelines)
+    steps = step_matrix(stacked([drivelines[index] for index in first]))[places, :4]
+    transition, held, points = steps[:, :, :4], steps[:, :, 7:9], steps[:, :, 9:]
+    matrices = np.concatenate([transition, held, points @ nodes], axis=-1)
+    return np.ascontiguousarray(matrices.transpose(1, 2, 0))

@@ -1,0 +1,125 @@
+"""
+Compute many runs of linear plants and controllers at once.
+
+    from ddct_bringup.batch.run_batch import batchable, run_batch
+    results = run_batch([(settings, controller), ...])
+
+A result equals that of the run step by step to 1e-9 of each value, and does not depend on what
+other runs are in the batch.
+"""
+
+from collections import defaultdict
+from collections.abc import Hashable, Sequence
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.loops import simulate_batch
+from ddct_bringup.batch.references import reference_kind
+from ddct_bringup.batch.results import BatchResult, one_or_more, stacked_results
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_controllers.interface import Controller
+from ddct_plant.base.errors import DdctError
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.scenario.settings import RunSettings
+
+__all__ = ['BatchResult', 'batchable', 'run_batch', 'trajectories']
+
+MOST_RUNS = 1000
+"""At once: a step's matrices of as many stay in the processor's cache."""
+Run = tuple[RunSettings, Controller]
+
+
+def run_batch(runs: Sequence[Run], limits: Limits | None = None) -> list[BatchResult | None]:
+    """
+    Return the result of each run, all `batchable`, in their order.
+
+    A controller may stand in many runs; each starts with it as it is after a reset. `limits` are
+    the packaged ones by default. None stands for a run that grows beyond all numbers or cannot be
+    built: step by step it ends with the words that say so.
+    """
+    limits = limits or packaged_limits()
+    results: list[BatchResult | None] = [None] * len(runs)
+    for chunk in _chunks(runs):
+        for index, result in zip(chunk, _results([runs[i] for i in chunk], limits), strict=True):
+            results[index] = result
+    return results
+
+
+def trajectories(runs: Sequence[Run]) -> Trajectory:
+    """
+    Return the signals of runs as a stack, the runs as the first axis of each.
+
+    They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference and
+    request. All runs have one length, control start, architecture, equilibrium, kind of reference
+    and order of the controller.
+    """
+    # A sum over one column alone is rounded in another order than one over many.
+    columns = [*runs, *runs] if len(runs) == 1 else runs
+    models = _models(columns)
+    stack = simulate_batch([settings for settings, _ in columns], models)
+    return one_or_more(stack, slice(len(runs)))
+
+
+def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
+    """Return what runs must have in common to be computed together."""
+    scenario = settings.scenario
+    return (
+        scenario.steps,
+        scenario.control_start_step,
+        scenario.score_window_s,
+        scenario.equilibrium,
+        settings.architecture,
+        reference_kind(settings),
+        len(model.a),
+    )
+
+
+def _chunks(runs: Sequence[Run]) -> list[list[int]]:
+    """Return which runs are computed together."""
+    groups = defaultdict(list)
+    for index, ((settings, _), model) in enumerate(zip(runs, _models(runs), strict=True)):
+        groups[_alike(settings, model)].append(index)
+    return [
+        group[first : first + MOST_RUNS]
+        for group in groups.values()
+        for first in range(0, len(group), MOST_RUNS)
+    ]
+
+
+def _results(runs: Sequence[Run], limits: Limits) -> list[BatchResult | None]:
+    try:
+        with np.errstate(all='ignore'):  # what is not finite has no result
+            stack = trajectories(runs)
+    except DdctError:
+        if len(runs) == 1:
+            return [None]
+        half = len(runs) // 2
+        return _results(runs[:half], limits) + _results(runs[half:], limits)
+    finite = _finite(stack)
+    kept = stack if finite.all() else one_or_more(stack, finite)
+    settings = [run for (run, _), counts in zip(runs, finite, strict=True) if counts]
+    results = iter(stacked_results(settings, kept, limits) if settings else [])
+    return [next(results) if counts else None for counts in finite]
+
+
+def _finite(stack: Trajectory) -> np.ndarray:
+    """Return of each run of a stack whether all its signals are finite, (R,)."""
+    each = [
+        np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
+        for values in stack.signals.values()
+    ]
+    return np.all(each, axis=0)
+
+
+def _models(runs: Sequence[Run]) -> list[StateSpace]:
+    """Return the feedback of each run; of a controller in many runs once."""
+    controllers = {id(controller): controller for _, controller in runs}
+    models = {}
+    for key, controller in controllers.items():
+        model = controller.linear_model()
+        assert model is not None, 'run_batch takes batchable runs'
+        models[key] = model
+    return [models[id(controller)] for _, controller in runs]

@@ -1,0 +1,124 @@
+"""Which runs go into a batch, and in a line why another does not."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from ddct_bringup.batch.batchable import HEEDED, batchable
+from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_controllers.interface import Command, Controller
+from ddct_controllers.linear import LinearController
+from ddct_controllers.pi import PiController
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+PI = PiController(0.1, 0.1)
+
+
+class Proportional(Controller):
+    """Somebody's controller that says what it is."""
+
+    gain = -0.1
+
+    def reset(self):
+        """Have no state."""
+
+    def update(self, measurement):
+        return Command(self.gain * measurement.slip_error_rpm)
+
+    def linear_model(self):
+        none = np.zeros((0, 0))
+        return StateSpace(
+            none, np.zeros((0, 1)), np.zeros((1, 0)), np.full((1, 1), self.gain), PERIOD_S
+        )
+
+
+class Saturated(Proportional):
+    def update(self, measurement):
+        return Command(min(super().update(measurement).clutch_torque, 50.0))
+
+
+class Led(Proportional):
+    def update(self, measurement):
+        return Command(super().update(measurement).clutch_torque + measurement.engine_torque)
+
+
+class Remembering(Proportional):
+    def hold(self, measurement):
+        """Go on."""
+
+
+class Broken(Proportional):
+    def update(self, measurement):
+        raise ValueError('no')
+
+
+class Limited(PiController):
+    def update(self, measurement):
+        return Command(min(super().update(measurement).clutch_torque, 50.0))
+
+
+@pytest.mark.parametrize(
+    ('controller', 'reason'),
+    [
+        (PI, ''),
+        (LinearController(Proportional().linear_model()), ''),
+        (Proportional(), ''),
+        (Saturated(), 'the controller does not do what its linear_model says'),
+        (Limited(0.1, 0.1), 'the controller does not do what its linear_model says'),
+        (Led(), 'the controller does not do what its linear_model says'),
+        (Remembering(), 'the controller does more than reset while feedback is held off'),
+        (Broken(), 'the controller failed when it was tried (ValueError: no)'),
+        (make_controller('mpc1', SETTINGS), 'the controller does more than reset'),
+        (make_controller('mpc4', SETTINGS), 'the controller commands the engine'),
+    ],
+)
+def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reason):
+    found = batchable(SETTINGS, controller)
+    assert found.startswith(reason)
+    assert bool(found) == bool(reason)
+    assert '\n' not in found
+
+
+@pytest.mark.parametrize(
+    ('changes', 'settings', 'reason'),
+    [
+        ({}, {'clutch': 'stick_slip'}, 'the clutch is stick_slip'),
+        ({}, {'mode': 'realtime'}, 'the mode is realtime'),
+        (
+            {
+                'reference.shape': 'engine_speed_target',
+                'engine_speed_reference': {'time_s': [0.0], 'speed_rad_s': [170.0]},
+            },
+            {},
+            'reference.shape is engine_speed_target',
+        ),
+        ({'engine_limits': {}}, {}, 'the scenario gives engine_limits'),
+    ],
+)
+def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
+    assert batchable(RunSettings(load_scenario('thesis', changes), **settings), PI) == reason
+
+
+def test_what_a_batch_does_not_know_keeps_a_run_out_of_it():
+    names = {field.name for field in dataclasses.fields(Scenario)}
+    assert names > HEEDED
+    stick_slip = {f.name for f in dataclasses.fields(Scenario) if f.metadata.get('stick_slip')}
+    assert names - HEEDED >= {*stick_slip, 'engine_limits'}
+
+
+def test_somebodys_linear_controller_gives_what_it_gives_step_by_step():
+    controller = Proportional()
+    (ours,) = run_batch([(SETTINGS, controller)])
+    expected = scored_headless(SETTINGS, chosen_from(controller), packaged_limits())
+    for name, value in expected['metrics'].items():
+        assert ours.metrics[name] == (None if value is None else pytest.approx(value, rel=1e-9))

@@ -1,0 +1,62 @@
+"""The criteria of many runs at once are those of each run, whatever their slip does."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.batch.judged_runs import JudgedRuns
+from ddct_bringup.batch.results import one_or_more
+from ddct_bringup.scores.metrics import metric_values
+from ddct_bringup.verdict.criteria import JudgedRun, finite, raw_criteria
+
+RUNS, SAMPLES, START, WINDOW = 40, 331, 200, (200, 300)
+
+
+@pytest.fixture(scope='module')
+def stack():
+    """Return signals that wander, with slips that rest at zero now and then, or never meet it."""
+    random = np.random.default_rng(3)
+
+    def wandering(*shape):
+        return np.cumsum(random.normal(size=(RUNS, SAMPLES, *shape)), axis=1)
+
+    slip = 20.0 + wandering() * random.uniform(0.1, 3.0, (RUNS, 1))
+    for run in range(RUNS):
+        for first in random.integers(0, START, run % 4):
+            slip[run, first : first + 5] = 0.0
+    slip[0] = 0.0
+    return Trajectory(
+        {
+            'joint_speed': wandering(4),
+            'joint_effort': wandering(4),
+            'slip_speed': slip,
+            'vehicle_accel': wandering(),
+            'slip_reference': wandering(1),
+            'torque_request': wandering(),
+        }
+    )
+
+
+@pytest.mark.parametrize('window', [WINDOW, (200, 400)], ids=['scored', 'ends before'])
+def test_criteria_are_those_of_each_run(stack, window):
+    def judged(kind, trajectory):
+        metrics: dict[str, Any] = dict(metric_values(trajectory, START, window))
+        if kind is JudgedRun:
+            metrics = {name: finite(value) for name, value in metrics.items()}
+        window_s = tuple(step / 100 for step in window)
+        return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0)
+
+    ours: dict[str, Any] = raw_criteria(judged(JudgedRuns, stack))
+    undefined = set()
+    for run in range(RUNS):
+        single = raw_criteria(judged(JudgedRun, one_or_more(stack, run)))
+        for name, value in single.items():
+            found = ours[name] if np.ndim(ours[name]) == 0 else ours[name][run]
+            if finite(value) is None:
+                undefined.add(name)
+                assert finite(found) is None, name
+            else:
+                assert found == pytest.approx(value, rel=1e-12), name
+    assert {'shuffle_decay', 'shuffle_amplitude', 'judder', 'engagement_time'} <= undefined

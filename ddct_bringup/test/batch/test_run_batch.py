@@ -1,0 +1,186 @@
+"""A batch of runs gives what each run gives step by step, whatever else is in the batch."""
+
+import dataclasses
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from ddct_bringup.batch.run_batch import batchable, run_batch, trajectories
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_controllers.linear import LinearController
+from ddct_controllers.pi import PiController
+from ddct_controllers.registry import make_controller, own_controller_names
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+
+SHORT = {'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]}
+LIMITS = packaged_limits()
+
+
+def scenario(random, **changes):
+    """Return one whose every number that a campaign may vary is its own."""
+
+    def times(size):
+        return float(random.uniform(1.0 - size, 1.0 + size))
+
+    driveline = {
+        f'driveline.{field.name}': getattr(DrivelineParameters(), field.name) * times(0.2)
+        for field in dataclasses.fields(DrivelineParameters)
+        if field.name != 'vehicle_inertia'  # it follows from the mass
+    }
+    slope = {'time_s': [0.0, 0.9], 'slope_rad': random.uniform(-0.1, 0.1, 2).tolist()}
+    own = {
+        **SHORT,
+        **driveline,
+        'driveline.engine_damping': 0.02 * times(0.5),
+        'vehicle.mass_kg': 1500.0 * times(0.3),
+        'load.wind_speed_m_s': float(random.uniform(-15.0, 15.0)),
+        'engine': {'time_s': [0.0, 0.1, 0.5], 'torque_n_m': random.uniform(20, 300, 3).tolist()},
+        'initial.engine_speed_rad_s': 160.0 * times(0.2),
+        'reference.slope_rad_s2': 200.0 * times(0.5),
+        'reference.reference_end_s': round(float(random.uniform(0.5, 1.3)), 2),
+        'actuator.delay_s': int(random.integers(0, 35)) / 1000,
+        **({'actuator.bandwidth_factor': times(0.5)} if random.random() < 0.3 else {}),
+        **({'slope': slope} if random.random() < 0.5 else {}),
+        **changes,
+    }
+    if own.get('reference.shape') == 'profile':
+        own['slip_reference'] = {'time_s': [0.2, 1.0], 'slip_rad_s': [30.0 * times(1.0), 0.0]}
+    return load_scenario('thesis', own)
+
+
+def runs_of_every_kind():
+    """Return a run of every linear controller, and of every architecture and shape."""
+    random = np.random.default_rng(15)
+    plain = RunSettings(load_scenario('thesis'))
+    runs = []
+    for name in own_controller_names():
+        controller = make_controller(name, plain)
+        if controller.linear_model() is not None:
+            settings = RunSettings(scenario(random), wear_gain=float(random.uniform(0.5, 2.5)))
+            runs.append((settings, controller))
+    for architecture in ARCHITECTURES:
+        shapes = ('ramp', 'tanh', 'polynomial', 'profile')
+        for index, shape in enumerate(shapes[:1] if 'tanh' in architecture else shapes):
+            equilibrium = ('thesis', 'full')[index % 2]
+            described = scenario(random, **{'reference.shape': shape, 'equilibrium': equilibrium})
+            settings = RunSettings(
+                described, architecture, wear_gain=float(random.uniform(0.4, 2.8))
+            )
+            runs += [(settings, make_controller(name, settings)) for name in ('pi', 'ls3')]
+    return runs
+
+
+@pytest.fixture(scope='module')
+def runs():
+    return runs_of_every_kind()
+
+
+@pytest.fixture(scope='module')
+def batch(runs):
+    return run_batch(runs)
+
+
+@pytest.fixture(scope='module')
+def serial(runs):
+    return [step_by_step(*run) for run in runs]
+
+
+def step_by_step(settings, controller):
+    return scored_headless(settings, chosen_from(controller, 'same'), LIMITS)
+
+
+def criteria(verdict):
+    return {each['name']: each['value'] for each in verdict['criteria']}
+
+
+def assert_close(values, expected):
+    assert values.keys() == expected.keys()
+    for name, value in expected.items():
+        if value is None:
+            assert values[name] is None, name
+        else:
+            assert values[name] == pytest.approx(value, rel=1e-9, abs=0.0), name
+
+
+def test_every_run_can_be_in_a_batch(runs):
+    assert {batchable(*run) for run in runs} == {''}
+    assert len({controller.registered_name for _, controller in runs}) >= 14
+
+
+def test_metrics_and_criteria_are_those_of_the_run_step_by_step(batch, serial):
+    for ours, expected in zip(batch, serial, strict=True):
+        assert_close(ours.metrics, expected['metrics'])
+        assert_close(criteria(ours.verdict), criteria(expected['verdict']))
+
+
+def test_words_are_those_of_the_run_step_by_step(batch, serial):
+    for ours, expected in zip(batch, serial, strict=True):
+        assert (ours.valid, ours.reason) == (expected['valid'], expected['reason'])
+        assert ours.verdict['limits'] == expected['verdict']['limits']
+        assert ours.verdict['state'] == expected['verdict']['state']
+
+
+def test_the_runs_are_of_many_kinds(serial):
+    states = Counter(result['verdict']['state'] for result in serial)
+    assert len(states) >= 3
+    crossed = Counter(result['metrics']['engagement_time_s'] is None for result in serial)
+    assert min(crossed[True], crossed[False]) >= 5
+
+
+def test_a_result_does_not_depend_on_the_rest_of_the_batch(runs, batch):
+    assert run_batch(runs[::-1])[::-1] == batch
+    for index in range(0, len(runs), 9):
+        assert run_batch([runs[index]]) == [batch[index]]
+
+
+def test_whole_trajectories_are_those_of_the_run_step_by_step():
+    random = np.random.default_rng(1)
+    settings = [RunSettings(scenario(random), wear_gain=0.8 + 0.2 * i) for i in range(3)]
+    runs = [(each, make_controller('ls8', each)) for each in settings]
+    stack = trajectories(runs)
+    for index, (each, controller) in enumerate(runs):
+        controller.reset()
+        expected = run_headless(each, controller)
+        for name, values in stack.signals.items():
+            ours, theirs = values[index], getattr(expected, name)
+            assert ours.shape == theirs.shape
+            assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-10 * np.abs(theirs).max()), name
+
+
+def test_a_controller_may_stand_in_many_runs_and_have_been_used():
+    settings = RunSettings(load_scenario('thesis', SHORT))
+    controller = make_controller('ls3', settings)
+    fresh = run_batch([(settings, controller)])
+    run_headless(settings, controller)
+    assert run_batch([(settings, controller)] * 3) == 3 * fresh
+
+
+def test_a_run_that_grows_beyond_all_numbers_has_no_result():
+    settings = RunSettings(load_scenario('thesis', SHORT))
+    one = np.ones((1, 1))
+    wild = LinearController(StateSpace(1e4 * one, 1e3 * one, 1e3 * one, 0.0 * one, PERIOD_S))
+    calm = PiController(0.1, 0.1)
+    none, counts = run_batch([(settings, wild), (settings, calm)])
+    assert none is None
+    assert [counts] == run_batch([(settings, calm)])
+
+
+def test_a_run_that_cannot_be_built_leaves_the_others_alone():
+    settings = RunSettings(load_scenario('thesis', SHORT))
+    weightless = dataclasses.replace(settings.scenario.driveline, shaft_inertia=1e-310)
+    odd = dataclasses.replace(
+        settings, scenario=dataclasses.replace(settings.scenario, driveline=weightless)
+    )
+    controller = PiController(0.1, 0.1)
+    runs = [(settings, controller), (odd, controller), (settings, controller)]
+    first, none, last = run_batch(runs)
+    assert none is None
+    assert [first] == [last] == run_batch(runs[:1])
