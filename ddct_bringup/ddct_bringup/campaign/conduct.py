@@ -53,9 +53,8 @@ def carry_out(
     Raise DdctError for what cannot be used or does not end well, KeyboardInterrupt when
     `stopped()` becomes true: the shards that are done stay, and `resume` goes on with them.
     """
-    manifest = Manifest.of(campaign, limits)
-    with held(out):
-        manifest = _begin(manifest, out, campaign, resume=resume, stopped=stopped)
+    with held(out), workers_of(workers, scheduler) as ready:
+        manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
         schema = schema_of(campaign.spec)
         shards = _shards(campaign, limits, manifest, out)
         missing = [
@@ -63,24 +62,18 @@ def carry_out(
             for each in shards
             if not holds_rows(each.file, schema, each.job.first, each.job.last)
         ]
-        if missing:
-            with workers_of(workers, scheduler) as ready:
-                done = manifest.runs - sum(each.job.last - each.job.first for each in missing)
-                progress = Progress('runs', manifest.runs, done=done)
-                _Conduct(ready, progress, stopped).compute(missing, done)
+        done = manifest.runs - sum(each.job.last - each.job.first for each in missing)
+        progress = Progress('runs', manifest.runs, done=done)
+        _Conduct(ready, progress, stopped).compute(missing, done)
         merge([each.file for each in shards], schema, out / RESULTS, RESUME)
     return out / RESULTS
 
 
 def _begin(
-    manifest: Manifest,
-    out: Path,
-    campaign: Campaign,
-    *,
-    resume: bool,
-    stopped: Callable[[], bool],
+    campaign: Campaign, limits: Limits, out: Path, *, resume: bool, stopped: Callable[[], bool]
 ) -> Manifest:
     """Return the manifest in the folder, which is written first unless the campaign goes on."""
+    manifest = Manifest.of(campaign, limits)
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
         known = Manifest.read(out)

@@ -2,14 +2,14 @@
 
 import errno
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 import pyarrow.parquet as parquet
 import pytest
+from in_this_process import OneByOne, in_this_process
 
 from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.code import code_digest
@@ -40,65 +40,19 @@ transfer_function: {gain: 1.0, numerator: [], denominator: [-2000]}
 """A controller whose state leaves all numbers behind within some steps."""
 
 
-class InThisProcess(Executor):
-    """Computes in this process; some of it breaks."""
-
-    def __init__(self, breaks: Callable[[int], Exception | None]) -> None:
-        self._breaks = breaks
-        self.computed: list[int] = []
-
-    def submit(self, fn: Any, /, *arguments: Any, **_: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        first = arguments[0].first
-        self.computed.append(first)
-        if error := self._breaks(first):
-            future.set_exception(error)
-        else:
-            future.set_result(fn(*arguments))
-        return future
-
-
-class OneByOne:
-    """Workers without processes."""
-
-    def __init__(self, breaks: Callable[[int], Exception | None] = lambda first: None) -> None:
-        self.count = 2
-        self.executors: list[InThisProcess] = []
-        self._breaks = breaks
-
-    def executor(self) -> Executor:
-        self.executors.append(InThisProcess(self._breaks))
-        return self.executors[-1]
-
-    def require_alive(self) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
-
-    @property
-    def computed(self) -> list[int]:
-        return [first for executor in self.executors for first in executor.computed]
-
-
 @pytest.fixture
-def use(monkeypatch: pytest.MonkeyPatch) -> Callable[..., OneByOne]:
-    def given(workers: OneByOne) -> OneByOne:
-        @contextmanager
-        def workers_of(count: int | None, scheduler: str | None) -> Iterator[OneByOne]:
-            yield workers
-
-        monkeypatch.setattr(conduct, 'workers_of', workers_of)
-        return workers
-
-    return given
+def use() -> Iterator[Callable[[OneByOne], OneByOne]]:
+    """Compute campaigns by these workers until the test ends."""
+    with ExitStack() as stack:
+        yield lambda workers: stack.enter_context(in_this_process(workers))
 
 
 @pytest.fixture(scope='module')
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of a campaign that nothing came in the way of, of two processes."""
+    """Return the folder of a campaign that nothing came in the way of."""
     out = tmp_path_factory.mktemp('whole') / 'campaign'
-    carry_out(made(), packaged_limits(), out, workers=2)
+    with in_this_process():
+        carry_out(made(), packaged_limits(), out)
     return out
 
 
@@ -124,7 +78,7 @@ def test_a_row_holds_the_run_its_values_and_its_scores(whole: Path) -> None:
     assert not {'update_time_median_us', 'missed_steps'} & set(METRICS)
 
 
-def test_the_bytes_are_the_same_without_processes(whole: Path, tmp_path: Path, use) -> None:
+def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> None:
     workers = use(OneByOne())
     assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
     assert sorted(workers.computed) == list(range(RUNS))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from in_this_process import in_this_process
 
 from ddct_bringup.campaign.columns import COMPARED
 from ddct_bringup.campaign.conduct import RESULTS
@@ -32,7 +33,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp('replayed')
     (place / 'spec.yaml').write_text(SPEC, encoding='utf-8')
     out = place / 'campaign'
-    assert campaign.main([str(place / 'spec.yaml'), '--out', str(out), '--workers', '1']) == 0
+    with in_this_process():
+        assert campaign.main([str(place / 'spec.yaml'), '--out', str(out)]) == 0
     return out
 
 
