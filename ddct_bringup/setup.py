@@ -29,6 +29,7 @@ setup(
     packages=find_packages(exclude=['test']),
     package_data={
         f'{PACKAGE}.bag.file': ['*.yaml'],
+        f'{PACKAGE}.campaign_report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.thesis': ['admissible_scenarios/*'],
         f'{PACKAGE}.verdict': ['*.yaml'],

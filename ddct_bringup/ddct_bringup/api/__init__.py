@@ -8,6 +8,7 @@ Arguments are called as the options of `ddct bringup`. What cannot be used raise
 `ParameterError`, which is one. Nothing is printed; what a scenario moved by itself is warned of.
 """
 
+from ddct_bringup.api.campaigns import CampaignResults, read_campaign
 from ddct_bringup.api.figures import figure
 from ddct_bringup.api.runs import Run, compare, load, run, table
 from ddct_bringup.api.sweeps import sweep
@@ -18,6 +19,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import scenario_names
 
 __all__ = [
+    'CampaignResults',
     'Command',
     'Controller',
     'ControllerContext',
@@ -30,6 +32,7 @@ __all__ = [
     'controller_names',
     'figure',
     'load',
+    'read_campaign',
     'run',
     'scenario_names',
     'sweep',

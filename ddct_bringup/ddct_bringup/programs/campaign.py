@@ -7,14 +7,15 @@ from pathlib import Path
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec
-from ddct_bringup.programs import campaign_replay
+from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
+from ddct_bringup.programs import campaign_replay, campaign_show
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
 from ddct_plant.program.stop_signals import stop_signals
 
 PROGRAM = 'ddct campaign'
-_COMMANDS = {'replay': campaign_replay}
+_COMMANDS = {'replay': campaign_replay, 'show': campaign_show}
 """By name what else can be done with a campaign's folder."""
 
 _EPILOG = """\
@@ -22,9 +23,11 @@ examples:
   ddct campaign wear.yaml --out campaigns/wear             on all cores
   ddct campaign wear.yaml --out campaigns/wear --resume    go on with what is missing
   ddct campaign wear.yaml --out campaigns/wear --scheduler tcp://10.0.0.5:8786
+  ddct campaign show campaigns/wear                        what came out, as tables
   ddct campaign replay campaigns/wear --index 17 --out runs/again
 
-Writes DIR/results.parquet, a row per run, and DIR/manifest.json. Shards of it are written while
+Writes DIR/results.parquet, a row per run, DIR/manifest.json, and what came out as DIR/report.html
+and DIR/summary.json. Shards of it are written while
 it runs; after an interruption --resume computes what is missing, with the same result. SPEC.yaml
 is described in docs/use/campaigns.md.
 """
@@ -54,14 +57,16 @@ def _campaign(argv: list[str]) -> int:
             resume=options.resume,
             stopped=lambda: bool(stops),
         )
-    print(results, flush=True)
+    write_campaign_page(options.out)
+    print(results)
+    print(options.out / PAGE, flush=True)
     return 0
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = ProgramParser(
         prog=PROGRAM,
-        usage='%(prog)s SPEC.yaml --out DIR [options]\n       %(prog)s replay DIR ...',
+        usage='%(prog)s SPEC.yaml --out DIR [options]\n       %(prog)s replay|show DIR ...',
         description='Run controllers over a grid and random samples of plants, headless.',
         epilog=_EPILOG,
     )

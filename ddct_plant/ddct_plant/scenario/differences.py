@@ -21,7 +21,7 @@ def changed_values(scenario: Scenario) -> tuple[str, ...]:
     """
     if scenario.name not in scenario_names():
         return ()
-    values, packaged = _values(scenario_content(scenario)), _packaged_values(scenario.name)
+    values, packaged = values_by_key(scenario), _packaged_values(scenario.name)
     keys = [*values, *(key for key in packaged if key not in values)]
     return tuple(
         f'{key}={_text(values[key])}' if key in values else f'{key} left out'
@@ -40,13 +40,17 @@ def scenario_title(name: str, changes: Sequence[str]) -> str:
     return f'{name}, {count}: {shown}'
 
 
+def values_by_key(scenario: Scenario) -> dict[str, Any]:
+    """Return the values of a scenario by their dotted keys."""
+    return _values(scenario_content(scenario))
+
+
 @cache
 def _packaged_values(name: str) -> dict[str, Any]:
-    return _values(scenario_content(load_scenario(name)))
+    return values_by_key(load_scenario(name))
 
 
 def _values(content: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
-    """Return the values by their dotted keys."""
     values: dict[str, Any] = {}
     for key, value in content.items():
         if isinstance(value, Mapping):

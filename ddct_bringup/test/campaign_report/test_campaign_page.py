@@ -1,0 +1,132 @@
+"""The page of a campaign: the numbers of `summary.json`, every failed run, and text as text."""
+
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from made_campaign import GRID, make_campaign
+from made_results import made_results
+
+from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, write_campaign_page
+from ddct_bringup.campaign_report.page import campaign_page
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+
+EVIL = '</script></style>--><evil onload="x"> \'"&amp;'
+"""Closes whatever is open and opens an element that no page has."""
+
+
+class Elements(HTMLParser):
+    """Collects the elements, the numbers of `data`, the text, and the JSON for the scripts."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.names: set[str] = set()
+        self.numbers: list[float] = []
+        self.text = ''
+        self.scripts: list[str] = []
+        self._in = ''
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._in = tag
+        self.names |= {tag, *(name for name, _ in attrs)}
+        if tag == 'data':
+            self.numbers.append(float(dict(attrs)['value'] or ''))
+
+    def handle_endtag(self, tag: str) -> None:
+        self._in = ''
+
+    def handle_data(self, data: str) -> None:
+        if self._in == 'script':
+            self.scripts.append(data)
+        elif self._in != 'style':
+            self.text += data
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a campaign in which a worn clutch fails, and one run is invalid."""
+
+    def state(run):
+        worn = run.varied['wear_gain'] == 0.8
+        return INVALID if run.index == 11 else 'not_engaged' if worn else ENGAGED
+
+    made = make_campaign(tmp_path_factory.mktemp('campaigns') / 'wear', GRID, state)
+    write_campaign_page(made)
+    return made
+
+
+@pytest.fixture(scope='module')
+def page(folder: Path) -> Elements:
+    return Elements((folder / PAGE).read_text(encoding='utf-8'))
+
+
+def test_every_number_of_the_summary_is_on_the_page(folder: Path, page: Elements) -> None:
+    summary = json.loads((folder / SUMMARY).read_text(encoding='utf-8'))
+    wanted = []
+    for group in summary['groups']:
+        wanted.append(group['failed']['share'])
+        for found in group['quantities']:
+            wanted += [found['median'], found['cvar'], found['worst_engaged']['value']]
+    assert {value for value in wanted if value is not None} <= set(page.numbers)
+    assert len([value for value in wanted if value is not None]) > 20
+    for group in summary['groups']:
+        for found in group['first_failures']:
+            for way in (found['below'], found['above']):
+                assert way['first_failure'] is None or f'run {way["index"]}' in page.text
+
+
+def test_the_summary_says_what_failed(folder: Path) -> None:
+    summary = json.loads((folder / SUMMARY).read_text(encoding='utf-8'))
+    pi, ls8 = summary['groups']
+    assert (pi['failed']['failed'], pi['failed']['invalid'], pi['failed']['share']) == (
+        2,
+        0,
+        1 / 3,
+    )
+    assert (ls8['failed']['failed'], ls8['failed']['invalid']) == (2, 1)
+    below = pi['first_failures'][0]['below']
+    assert (below['first_failure'], below['held_to'], below['index']) == (0.8, 1.0, 1)
+
+
+def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) -> None:
+    assert '1 of 12 runs is invalid' in page.text
+    assert '2 not engaged' in page.text
+    data = json.loads(page.scripts[0])
+    states = [state for panel in data['maps']['maps'][0]['panels'] for state in panel['state']]
+    assert (states.count('not_engaged'), states.count(INVALID), len(states)) == (4, 1, 12)
+    assert 'ddct campaign replay' in data['replay']
+
+
+def test_the_page_needs_nothing_else(folder: Path) -> None:
+    html = (folder / PAGE).read_text(encoding='utf-8')
+    assert not re.search(r'(?:src|href)="(?!#|data:)', html)
+    assert '://' not in html.replace('http://www.w3.org/2000/svg', '')
+
+
+def test_words_from_a_campaign_are_text_and_never_a_part_of_the_page() -> None:
+    results = made_results(
+        [ENGAGED, EVIL],
+        {'clutch': [EVIL, 'linear'], EVIL: [0.8, 1.0]},
+        {'peak_jerk_m_s3': [1.0, 2.0]},
+        controllers=[EVIL, EVIL],
+    )
+    facts = dict.fromkeys(('scenario', 'specification', EVIL), EVIL)
+    html = campaign_page(results, summary_of(results), EVIL, facts)
+    page = Elements(html)
+    assert not {'evil', 'onload'} & page.names
+    assert EVIL in page.text
+    data = json.loads(page.scripts[0])
+    assert data['maps']['groups'] == [f'{EVIL}, {EVIL}', f'{EVIL}, linear']
+
+
+@pytest.mark.parametrize('state', [ENGAGED, 'runaway', INVALID])
+def test_one_run_is_enough_for_a_page(tmp_path: Path, state: str) -> None:
+    content = {'controllers': ['pi'], 'grid': {'wear_gain': [1.0]}}
+    made = make_campaign(tmp_path / 'one', content, lambda run: state)
+    summary = write_campaign_page(made)
+    assert summary['groups'][0]['failed']['runs'] == 1
+    assert 'No number was varied' in (made / PAGE).read_text(encoding='utf-8')

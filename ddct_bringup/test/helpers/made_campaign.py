@@ -1,0 +1,45 @@
+"""The folder of a campaign whose rows are made by hand."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.campaign.columns import METRICS, schema_of, shard_bytes
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.runs import Campaign, CampaignRun
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+
+GRID = {
+    'controllers': ['pi', 'ls8'],
+    'grid': {'wear_gain': [0.8, 1.0, 1.2], 'vehicle.mass_kg': [1300.0, 1500.0]},
+}
+"""Twelve runs."""
+
+
+def make_campaign(
+    folder: Path,
+    content: Mapping[str, Any],
+    state_of: Callable[[CampaignRun], str] = lambda run: ENGAGED,
+    **cells: Any,
+) -> Path:
+    """Write manifest and results of the runs of a specification; a metric of each is its index."""
+    campaign = Campaign(spec_of(content, folder))
+    schema = schema_of(campaign.spec)
+    rows = []
+    for index in range(campaign.runs):
+        run = campaign.run(index)
+        state = state_of(run)
+        rows.append(
+            dict.fromkeys(schema.names)
+            | dict.fromkeys(METRICS, float(index))
+            | {'index': index, 'controller': run.controller.name, 'path': 'serial'}
+            | {'valid': state != INVALID, 'reason': '', 'verdict_limits': 'no_limit'}
+            | {'verdict_state': state, **run.varied, **cells}
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    Manifest.of(campaign, packaged_limits()).write(folder)
+    (folder / RESULTS).write_bytes(shard_bytes(schema, rows))
+    return folder
