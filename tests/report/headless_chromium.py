@@ -82,7 +82,7 @@ async def _visit(
         result.ready_ms = await tab.evaluate(_READY)
         for script in scripts:
             if script == PRINT:
-                printed = await tab.call('Page.printToPDF')
+                printed = await tab.call('Page.printToPDF', preferCSSPageSize=True)
                 result.values.append(base64.b64decode(printed['data']))
             else:
                 result.values.append(await tab.evaluate(script))

@@ -1,11 +1,17 @@
 """The report's page in a real browser: no error, no request, and every switch does its work."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 from headless_chromium import PRINT, chromium, visit
+from support.runs import plan
 
+from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.programs.report import main
+from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.headless import run_headless
 from ddct_controllers.design.drawing.line_looks import controller_look
 
 pytestmark = pytest.mark.browser
@@ -27,6 +33,29 @@ SHOWN_LINES = """Bokeh.documents[0].roots().flatMap((chart) => chart.renderers)
   .filter((line) => line.name && line.visible).length"""
 
 
+PHONE_PX = 390
+LONG_NAMES = ('my_first_predictive_controller', 'a_controller_whose_name_has_fifty_letters_or_so')
+MOST_PAGES = 4
+OUTSIDE = """[...document.querySelectorAll('body *')].filter((each) => {
+  const box = each.getBoundingClientRect();
+  return box.width && (box.right > 390.5 || box.left < -0.5) && !each.closest('.scroll');
+}).map((each) => each.className || each.tagName)"""
+
+
+@pytest.fixture(scope='module')
+def five(demo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a page over five runs, two of them of controllers of others with long names."""
+    folder = tmp_path_factory.mktemp('five')
+    run = plan('pi', 'headless', duration_s=3.0)
+    trajectory = run_headless(run.settings, 'pi')
+    for name in LONG_NAMES:
+        custom = custom_data(run.settings, name, run.steps)
+        write_trajectory(trajectory, folder / name, name, custom, {})
+    out = folder / 'report.html'
+    assert main([str(demo), str(folder), '--out', str(out)]) == 0
+    return out
+
+
 @pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light'), (1920, 'dark')])
 def test_the_page_draws_every_chart_without_error_or_request(
     page: Path, width: int, scheme: str
@@ -39,6 +68,78 @@ def test_the_page_draws_every_chart_without_error_or_request(
     assert len(painted) == CHARTS
     assert min(painted) > 20
     assert wider <= 0
+
+
+def test_a_phone_shows_all_without_scrolling_sideways_but_in_tables(five: Path) -> None:
+    page_px = 'document.scrollingElement.scrollWidth'
+    open_all = "document.querySelectorAll('details').forEach((each) => { each.open = true; })"
+    chips = """[...document.querySelectorAll('.chip')].map((chip) => {
+      const {left, right} = chip.getBoundingClientRect();
+      return left >= 0 && right <= 390 && chip.scrollWidth <= chip.clientWidth;
+    })"""
+    seen = visit(five, width=PHONE_PX, scripts=[page_px, OUTSIDE, chips, open_all, page_px])
+    assert seen.values[0] <= PHONE_PX
+    assert seen.values[1] == []
+    assert seen.values[2] == [True] * 5
+    assert seen.values[4] <= PHONE_PX
+    assert seen.errors == []
+
+
+def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(five: Path) -> None:
+    listen = """addEventListener('beforeprint', () => {
+      const shown = (each) => getComputedStyle(each).display !== 'none';
+      window.onPaper = [document.querySelector('.paper-too').open,
+        ...document.querySelectorAll('#definitions, #definitions dd')].map((each) =>
+          each === true || (each !== false && shown(each)));
+    })"""
+    closed = "document.querySelector('.paper-too').open"
+    seen = visit(five, scripts=[listen, PRINT, 'window.onPaper', closed])
+    pages = re.findall(rb'/Type\s*/Page\b', seen.values[1])
+    assert 2 <= len(pages) <= MOST_PAGES
+    assert (
+        b'595' in re.findall(rb'/MediaBox \[([^\]]*)', seen.values[1])[0]
+        or b'594' in seen.values[1]
+    )
+    assert len(seen.values[2]) > 50
+    assert all(seen.values[2])
+    assert seen.values[3] is False
+
+
+POINT = """((name, share) => {
+  const chart = Bokeh.documents[0].roots().find((each) => each.name === name);
+  const {el, frame} = [...Bokeh.index].find((each) => each.model === chart);
+  const line = chart.renderers.find((each) => each.name === 'ls8');
+  const {t, [name]: values} = line.data_source.data;
+  const sample = Math.round(share * t.length);
+  el.scrollIntoView({block: 'center'});
+  return new Promise((done) => setTimeout(() => {
+    const {left, top} = el.getBoundingClientRect();
+    const [clientX, clientY] = [left + frame.x_scale.compute(t[sample]),
+      top + frame.y_scale.compute(values[sample]) - OFF];
+    el.dispatchEvent(new PointerEvent('pointermove', {clientX, clientY, bubbles: true}));
+    const tip = document.getElementById('tip');
+    done([tip.hidden, tip.innerText, t[sample], values[sample]]);
+  }, 100));
+})('w_sr', 0.25)"""
+
+
+@pytest.mark.parametrize('width', [PHONE_PX, 1280])
+def test_the_pointer_is_told_the_nearest_curve_with_value_and_unit(page: Path, width: int) -> None:
+    near, far = POINT.replace('OFF', '0'), POINT.replace('OFF', '-150')
+    scroll = "dispatchEvent(new Event('scroll'))"
+    hidden = "document.getElementById('tip').hidden"
+    seen = visit(page, width=width, scripts=[near, scroll, hidden, far])
+    away, text, time, value = seen.values[0]
+    assert not away
+    name, told, when = text.split('\n')
+    assert (name, when) == ('ls8', f'at {time:.2f} s')
+    assert told.startswith('w_sr = ')
+    assert told.endswith(' rpm')
+    number = float(told.split()[2].replace('−', '-'))
+    assert number == pytest.approx(value, rel=1e-3)
+    assert seen.values[2] is True
+    assert seen.values[3][0] is True
+    assert seen.errors == []
 
 
 def test_a_run_is_switched_off_in_all_charts(page: Path) -> None:

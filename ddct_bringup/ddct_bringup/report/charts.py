@@ -16,7 +16,7 @@ from bokeh.models import (
     Range1d,
 )
 from bokeh.models.annotations import BoxAnnotation, Span
-from bokeh.models.renderers import DataRenderer, GlyphRenderer
+from bokeh.models.renderers import DataRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import RunFacts
@@ -62,16 +62,13 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     for quantity in charted_quantities(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor)
         _mark_window(chart, runs[0].facts)
-        lines = [
-            _line(chart, quantity, run, source)
-            for run, source in zip(runs, sources, strict=True)
-            if quantity in quantities_of(run.trajectory)
-        ]
+        for run, source in zip(runs, sources, strict=True):
+            if quantity in quantities_of(run.trajectory):
+                _line(chart, quantity, run, source)
         if quantity.key == 'w_d':
             _draw_references(chart, runs, sources)
             _mark_thesis(chart, runs)
             _mark_events(chart, runs)
-        _add_hover(chart, quantity, lines)
         document.add_root(chart)
         roots[quantity.key] = str(chart.id)
     sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
@@ -143,9 +140,7 @@ def _mark_window(chart: figure, facts: RunFacts) -> None:
     )
 
 
-def _line(
-    chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource
-) -> GlyphRenderer:
+def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
     line = chart.line(
         't',
         quantity.key,
@@ -170,7 +165,6 @@ def _line(
             visible=run.shown,
         )
         limit.tags = [{**_tag(run), 'alpha': FAINT}]
-    return line
 
 
 def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
@@ -271,14 +265,3 @@ def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
 def _tag(run: ChartRun) -> dict[str, Any]:
     """Return what the page knows a line by: its runs, and its colour or None for the neutral."""
     return {'runs': [run.index], 'colour': run.look.colour}
-
-
-def _add_hover(chart: figure, quantity: Quantity, lines: Sequence[GlyphRenderer]) -> None:
-    tooltips = [
-        ('', '$name'),
-        ('time', '@t{0.00} s'),
-        (quantity.symbol, f'@{{{quantity.key}}}{{0.000}} {quantity.unit}'),
-    ]
-    if quantity.limit:
-        tooltips.append(('capacity', f'@{{{quantity.limit_key}}}{{0.000}} {quantity.unit}'))
-    chart.add_tools(HoverTool(renderers=list(lines), line_policy='nearest', tooltips=tooltips))

@@ -146,28 +146,8 @@
 
   addEventListener('colours', paint);
 
-  // Paper gets light copies of the charts, which fit its width.
-
-  const TURNS = 200;
-  let themeOnScreen = null;
-  addEventListener('beforeprint', async () => {
-    themeOnScreen ??= colours.theme();
-    colours.set('light');
-    paint();
-    // Bokeh takes over new colours in promises; these, unlike timers, still run before printing.
-    for (let turn = 0; turn < TURNS; turn++) await null;
-    views.forEach((view) => {
-      const {canvas} = view.export('png', true);
-      view.el.closest('figure').querySelector('.paper').replaceChildren(canvas);
-    });
-  });
-  addEventListener('afterprint', () => {
-    document.querySelectorAll('.paper').forEach((paper) => paper.replaceChildren());
-    colours.set(themeOnScreen ?? 'auto');
-    paint();
-    themeOnScreen = null;
-  });
-
+  printCharts(views, paint);
+  tellNearest(views);
   count();
   // The document comes in the colours of the light page.
   if (colours.dark()) paint();

@@ -17,6 +17,7 @@ from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_marks import common_conditions, run_labels
 from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.report.tables.definitions import definitions
 from ddct_bringup.report.tables.loop_table import loop_rows, without_evidence
 from ddct_bringup.report.tables.origin import run_origin, scenario_text
 from ddct_bringup.report.tables.summary import comparable_rows, metric_cells
@@ -38,6 +39,7 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
 _ROOM = 'ddct_bringup.report'
+_SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
 SHOWN_AT_FIRST = 12
 """Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
 
@@ -54,6 +56,7 @@ def report_page(
     thesis_rows = [run['thesis'] for run in shown]
     charted = [_chart_run(run) for run in shown if run['charted']]
     document, roots = chart_document(charted)
+    quantities = charted_quantities(charted)
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = [run.recording for run in runs if run.recording is not None]
@@ -61,9 +64,10 @@ def report_page(
         marker=Markup(MARKER),
         bokeh_js=_library(),
         style=page_part(_ROOM, 'page.css'),
-        script=page_part(_ROOM, 'common.js') + page_part(_ROOM, 'page.js'),
+        script=Markup().join(page_part(_ROOM, each) for each in _SCRIPTS),
         data=json_data(data),
-        quantities=charted_quantities(charted),
+        quantities=quantities,
+        definitions=definitions(quantities, thesis=any(thesis_rows)),
         lanes=LANES if LANES in roots else None,
         phases=OPACITY,
         verdict=verdict_rows(runs),

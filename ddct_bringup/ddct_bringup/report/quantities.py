@@ -18,6 +18,8 @@ class Quantity:
     title: str
     symbol: str
     unit: str
+    meaning: str
+    """What it is measured between, and what its sign says."""
     values: Callable[[Trajectory], np.ndarray]
     """(N+1,) in the unit."""
     limit: Callable[[Trajectory], np.ndarray] | None = None
@@ -29,13 +31,21 @@ class Quantity:
         return f'{self.key}_limit'
 
 
-_QUANTITIES = (
-    Quantity('w_d', 'Slip speed', 'w_d', 'rpm', lambda run: rpm_from_rad_s(run.slip_speed)),
+QUANTITIES = (
+    Quantity(
+        'w_d',
+        'Slip speed of the clutch',
+        'w_d',
+        'rpm',
+        'speed of the engine less that of the primary shaft. Above zero the engine is faster.',
+        lambda run: rpm_from_rad_s(run.slip_speed),
+    ),
     Quantity(
         'error',
-        'Slip error, reference less w_d',
+        'Slip error',
         'e',
         'rpm',
+        'reference less w_d. Below zero the clutch slips more than it should.',
         lambda run: rpm_from_rad_s(run.slip_reference[:, 0] - run.slip_speed),
     ),
     Quantity(
@@ -43,27 +53,49 @@ _QUANTITIES = (
         'Torsion speed of the driveshaft',
         'w_sr',
         'rpm',
+        'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',
         lambda run: rpm_from_rad_s(run.joint_speed[:, 3]),
     ),
-    Quantity('A_x', 'Vehicle acceleration', 'A_x', 'm/s²', lambda run: run.vehicle_accel),
     Quantity(
-        'C_f_request', 'Clutch torque requested', 'C_f', 'N m', lambda run: run.torque_request
+        'A_x',
+        'Acceleration of the vehicle',
+        'A_x',
+        'm/s²',
+        'above zero the car gets faster.',
+        lambda run: run.vehicle_accel,
+    ),
+    Quantity(
+        'C_f_request',
+        'Clutch torque: requested',
+        'C_f',
+        'N m',
+        'what the controller asks for. It acts from the engine on the shaft.',
+        lambda run: run.torque_request,
     ),
     Quantity(
         'C_f_actuator',
-        'Clutch torque of the actuator',
+        'Clutch torque: from the actuator',
         'C_f',
         'N m',
+        'what the actuator gives, after its delay and its dynamics.',
         lambda run: run.actuator_torque[:, 0],
     ),
     Quantity(
         'C_f_clutch',
-        'Clutch torque with wear',
+        'Clutch torque: after wear',
         'C_f',
         'N m',
+        'what the clutch can transmit: that of the actuator times the wear gain.',
         lambda run: run.clutch_torque[:, 0],
     ),
-    Quantity('C_m', 'Engine torque', 'C_m', 'N m', lambda run: run.engine_torque),
+    Quantity(
+        'C_m',
+        'Engine torque',
+        'C_m',
+        'N m',
+        'above zero it drives the engine.',
+        lambda run: run.engine_torque,
+    ),
 )
 """Of every run."""
 
@@ -74,12 +106,13 @@ def _capacity(run: Trajectory) -> np.ndarray:
     return np.where(locked, run.clutch_static_torque[:, 0], run.clutch_torque[:, 0])
 
 
-_CLUTCH_QUANTITIES = (
+CLUTCH_QUANTITIES = (
     Quantity(
         'C_f_transmitted',
-        'Clutch torque transmitted, and capacity',
+        'Clutch torque: transmitted',
         'C_f',
         'N m',
+        'what passes through the plates. The thin line is what they can carry.',
         lambda run: run.joint_effort[:, 1],
         _capacity,
     ),
@@ -88,6 +121,7 @@ _CLUTCH_QUANTITIES = (
         'Friction energy of the clutch',
         'E_f',
         'kJ',
+        'heat of the clutch since the start of the run.',
         lambda run: np.cumsum(run.friction_work) / 1e3,
     ),
     Quantity(
@@ -95,18 +129,20 @@ _CLUTCH_QUANTITIES = (
         'Temperature of the facing',
         'T_f',
         '°C',
+        'temperature of the facing.',
         lambda run: run.clutch_temperature,
     ),
 )
 """Of runs with a clutch that sticks."""
 
 
-_SENSOR_QUANTITIES = (
+SENSOR_QUANTITIES = (
     Quantity(
         'w_d_sensed',
         'Slip speed as measured, less the true one',
         'w_d',
         'rpm',
+        'above zero the sensor reads too much.',
         lambda run: rpm_from_rad_s(run.sensed_slip_speed - run.slip_speed),
     ),
 )
@@ -116,7 +152,7 @@ _SENSOR_QUANTITIES = (
 def quantities_of(trajectory: Trajectory) -> tuple[Quantity, ...]:
     """Return what there is to draw of a run."""
     return (
-        *_QUANTITIES,
-        *(() if trajectory.clutch_phase is None else _CLUTCH_QUANTITIES),
-        *(_SENSOR_QUANTITIES if trajectory.sensed else ()),
+        *QUANTITIES,
+        *(() if trajectory.clutch_phase is None else CLUTCH_QUANTITIES),
+        *(SENSOR_QUANTITIES if trajectory.sensed else ()),
     )

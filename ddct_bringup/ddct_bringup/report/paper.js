@@ -1,0 +1,42 @@
+'use strict';
+
+// Paper gets light copies of the charts, two beside each other, and the tables that a screen folds away.
+function printCharts(views, paint) {
+  const WIDTH_PX = 500;
+  const DENSITY = 2;
+  const TURNS = 200;
+  const density = Object.getOwnPropertyDescriptor(window, 'devicePixelRatio');
+  let before = null;
+
+  function place(view) { return view.el.closest('.chart'); }
+
+  addEventListener('beforeprint', async () => {
+    const folded = [...document.querySelectorAll('details.paper-too:not([open])')];
+    before ??= {theme: colours.theme(), folded};
+    folded.forEach((part) => { part.open = true; });
+    colours.set('light');
+    paint();
+    views.forEach((view) => {
+      place(view).style.width = `${WIDTH_PX}px`;
+      view.after_resize();
+    });
+    // Bokeh takes over new colours in promises; these, unlike timers, still run before printing.
+    for (let turn = 0; turn < TURNS; turn++) await null;
+    // It draws as finely as the screen is, and paper is finer.
+    Object.defineProperty(window, 'devicePixelRatio', {value: DENSITY, configurable: true});
+    views.forEach((view) => {
+      const {canvas} = view.export('png', true);
+      view.el.closest('figure').querySelector('.paper').replaceChildren(canvas);
+    });
+    Object.defineProperty(window, 'devicePixelRatio', density);
+  });
+
+  addEventListener('afterprint', () => {
+    document.querySelectorAll('.paper').forEach((paper) => paper.replaceChildren());
+    views.forEach((view) => { place(view).style.width = ''; });
+    before?.folded.forEach((part) => { part.open = false; });
+    colours.set(before?.theme ?? 'auto');
+    paint();
+    before = null;
+  });
+}

@@ -1,0 +1,149 @@
+"""What the words, symbols, signs and dashes of the page mean, so that it needs no other page."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from ddct_bringup.report.quantities import Quantity
+from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_plant.program.table import Figure
+
+
+@dataclass(frozen=True)
+class Definition:
+    """One entry; a reader finds it by the text of the table or chart."""
+
+    term: str
+    meaning: str
+    unit: str = ''
+    """As it is printed, empty for a word or a pure number."""
+
+
+@dataclass(frozen=True)
+class DefinitionGroup:
+    """The entries of one subject."""
+
+    title: str
+    entries: tuple[Definition, ...]
+
+
+_READING = (
+    Definition(
+        '–',
+        'no value, because it is not defined for this run. The entries below say when that is so.',
+    ),
+    Definition(
+        '+ and −',
+        'a speed, torque or error has a sign, given with its symbol below. Of a percentage beside '
+        'the thesis: + is larger than printed.',
+    ),
+    Definition(
+        'σ',
+        'standard deviation over the score window, in the unit of its quantity. Less is smoother.',
+    ),
+    Definition(
+        'w_d below zero',
+        'The linear clutch never locks. It transmits what the actuator gives, so w_d may pass '
+        'zero at t_a and end below it: the engine is then slower than the shaft. A clutch that '
+        'sticks locks at zero and stays there.',
+    ),
+    Definition('score window', 'the span of time that σ, jerk, VDV and RMSE are taken over.', 's'),
+    Definition('control start', 'when feedback is switched on. Before it the open loop acts.'),
+)
+_THESIS = (
+    Definition(
+        'calibrated, predicted',
+        'whether the scenario was fitted to this row of Table 5.1 of the thesis, or the row took '
+        'no part in the fit.',
+    ),
+    Definition(
+        'range below a figure',
+        'what the admissible scenarios predict. A dash at one end: some of them have no value.',
+    ),
+)
+_STATES = (
+    Definition('engaged', 'the plates turn as one at the end, or never parted.'),
+    Definition('not engaged', 'they do not, but nothing worse happened.'),
+    Definition('oscillating', 'the slip goes to and fro and has not settled.'),
+    Definition('runaway', 'the plates are driven apart.'),
+    Definition('stalled, over revved', 'the engine left its limits, which ended the run.'),
+    Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
+    Definition(
+        'within, beyond, no limit',
+        'how a value stands to a limit that is published for it. Most have none.',
+    ),
+)
+_LOOPS = (
+    Definition('wear', 'K_usura, the factor of wear on the clutch torque. 1 is as designed.'),
+    Definition('stable', 'whether the sampled closed loop is stable at the wear of the run.'),
+    Definition('stable wear', 'the wear gains between which the loop is stable.'),
+    Definition(
+        'corner M_s',
+        'highest M_s with the driveline parameters at ±20 % and wear from 0.7 to 1.3. A dash: '
+        'one of those loops is unstable.',
+    ),
+    Definition('unstable corners', 'how many of those corners have an unstable loop.'),
+)
+_TIMES = (
+    Definition('median, 99 %, longest', 'wall time of the updates of the controller.', 'µs'),
+    Definition('over 10 ms', 'updates that took longer than the period.'),
+    Definition('missed', 'steps in real time that went on without a reply and held the torque.'),
+    Definition('latest', 'how much too late a step was taken at most. Lock-step has none.', 'µs'),
+    Definition('resends, late', 'ticks that were sent again; replies to a tick that was over.'),
+    Definition('run', 'wall time from the first tick to the last.', 's'),
+)
+_ORIGIN = (
+    Definition('lockstep, realtime', 'each step waits for all replies; or it follows the clock.'),
+    Definition(
+        'computed from', 'whether the controller is as the thesis prints it, or uses the scenario.'
+    ),
+)
+
+
+def definitions(quantities: Iterable[Quantity], *, thesis: bool) -> list[DefinitionGroup]:
+    """
+    Return the groups of a page that draws these quantities.
+
+    `thesis` tells whether runs stand beside Table 5.1.
+    """
+    reading = _READING + (_THESIS if thesis else ())
+    signals = tuple(
+        Definition(each.symbol, f'{each.title}: {each.meaning}', each.unit) for each in quantities
+    )
+    return [
+        DefinitionGroup('Reading the tables', reading),
+        DefinitionGroup('Signals', signals),
+        DefinitionGroup('Metrics', _figures((*TABLE_5_1, *FURTHER))),
+        DefinitionGroup('Criteria', _criteria()),
+        DefinitionGroup('States and limits', _STATES),
+        DefinitionGroup('Frequency', _LOOPS + _figures(LOOP_FIGURES)),
+        DefinitionGroup('Update times', _TIMES),
+        DefinitionGroup('Origin', _ORIGIN),
+    ]
+
+
+_METRIC_SYMBOLS = {metric.meaning: metric.symbol for metric in METRICS.values()}
+
+
+def _criteria() -> tuple[Definition, ...]:
+    """Return the criteria; one that is a metric too refers to it."""
+    return tuple(
+        Definition(
+            each.symbol, f'the metric {_METRIC_SYMBOLS[each.meaning]}.', unit_text(each.unit)
+        )
+        if each.meaning in _METRIC_SYMBOLS
+        else _defined(each)
+        for each in CRITERIA
+    )
+
+
+def _figures(figures: Sequence[Figure]) -> tuple[Definition, ...]:
+    return tuple(_defined(each) for each in figures)
+
+
+def _defined(figure: Figure) -> Definition:
+    meaning = figure.meaning.removeprefix(f'{figure.symbol}, ')
+    missing = f' No value: {figure.undefined}.' if figure.undefined else ''
+    return Definition(figure.symbol, f'{meaning}.{missing}', unit_text(figure.unit))

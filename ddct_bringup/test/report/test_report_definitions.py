@@ -1,0 +1,64 @@
+"""What the page's tables and charts leave open is defined on the page."""
+
+import pytest
+
+from ddct_bringup.report.quantities import CLUTCH_QUANTITIES, QUANTITIES, SENSOR_QUANTITIES
+from ddct_bringup.report.tables.definitions import definitions
+from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.state import STATES
+from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+
+SIGNALS = (*QUANTITIES, *CLUTCH_QUANTITIES, *SENSOR_QUANTITIES)
+GROUPS = {group.title: group.entries for group in definitions(SIGNALS, thesis=True)}
+
+
+@pytest.mark.parametrize(
+    ('title', 'figures'),
+    [
+        ('Metrics', (*TABLE_5_1, *FURTHER)),
+        ('Criteria', CRITERIA),
+        ('Frequency', LOOP_FIGURES),
+    ],
+)
+def test_every_figure_of_the_tables_is_defined_with_its_unit_and_when_it_has_none(title, figures):
+    entries = {entry.term: entry for entry in GROUPS[title]}
+    metrics = {entry.term: entry for entry in GROUPS['Metrics']}
+    for figure in figures:
+        entry = entries[figure.symbol]
+        assert entry.unit == unit_text(figure.unit)
+        referred = entry.meaning.removeprefix('the metric ').removesuffix('.')
+        defined = metrics.get(referred, entry) if entry.meaning.startswith('the ') else entry
+        assert figure.undefined in defined.meaning or referred == 'missed', figure.symbol
+
+
+def test_every_signal_is_defined_with_unit_and_sign():
+    entries = {(entry.term, entry.unit, entry.meaning) for entry in GROUPS['Signals']}
+    for quantity in SIGNALS:
+        assert (
+            quantity.symbol,
+            quantity.unit,
+            f'{quantity.title}: {quantity.meaning}',
+        ) in entries
+    signed = ('w_d', 'e', 'w_sr', 'A_x', 'C_m')
+    for term, _, meaning in entries:
+        assert term not in signed or 'bove zero' in meaning or 'elow zero' in meaning, term
+
+
+def test_every_state_is_defined():
+    terms = ', '.join(entry.term for entry in GROUPS['States and limits'])
+    for state in (*STATES, 'within', 'beyond', 'no_limit'):
+        assert state.replace('_', ' ') in terms
+
+
+def test_a_dash_sigma_and_a_slip_below_zero_are_explained():
+    terms = {entry.term: entry.meaning for entry in GROUPS['Reading the tables']}
+    assert set(terms) >= {'–', '+ and −', 'σ', 'w_d below zero', 'score window', 'control start'}
+    assert 'never locks' in terms['w_d below zero']
+
+
+def test_a_page_without_the_thesis_says_nothing_of_it():
+    (reading, *_) = definitions(SIGNALS, thesis=False)
+    assert 'thesis' not in ' '.join(entry.term for entry in reading.entries)
+    assert not any('Table 5.1' in entry.meaning for entry in reading.entries)
