@@ -17,9 +17,9 @@ from ddct_plant.program.table import Table, print_table
 def add_design_options(parser: argparse.ArgumentParser) -> None:
     """Add the specifications, and what is to be written; None is what was not given."""
     add = parser.add_argument
-    add('--rise-time', type=float, metavar='S', help='longest t_r')
+    add('--rise-time', type=float, metavar='S', help='longest rise time')
     add('--overshoot', type=float, metavar='PERCENT', help='largest overshoot')
-    add('--name', metavar='NAME', help='of the controller (default: mine)')
+    add('--name', metavar='NAME', help='name of the controller (default: mine)')
     add('--out', type=Path, metavar='DIR', help='write the controller and its charts')
     add('--overwrite', action='store_true', default=None, help='replace an earlier design')
     add('--json', metavar='FILE', help='write all figures; - is standard output')

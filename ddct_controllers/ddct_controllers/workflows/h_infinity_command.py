@@ -30,14 +30,14 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import complain
 
 _DESCRIPTION = """\
-Chapter 3 of the thesis: specifications to weights, synthesis, cleaning, discretisation, and
-what the closed loop then does. A controller is given only when its sampled loop meets the
+Go through Chapter 3 of the thesis: from specifications to weights, then synthesis, cleaning and
+discretisation, and what the closed loop does. --out writes the controller as DIR/NAME.yaml,
+which `bringup` and `compare` take, and charts. It is written only if its sampled loop meets the
 specifications and is stable at every corner of the driveline, or with --write-anyway.
---weights thesis: K and w_2 as printed. fitted: those that lead to nearly the printed Hinf1.
-sampled: as printed with one more on the torque, and hold and delay in the plant; run this one.
-Without --rise-time and --overshoot they are the thesis's 0.3 s and 8 %.
-K grows with the square of the rise time, w_2 falls with it, unless they are given.
---out writes the controller as DIR/NAME.yaml, which `bringup` and `compare` take, and charts."""
+--weights thesis takes K and w_2 as printed. fitted takes those that lead to nearly the printed
+Hinf1. sampled takes the printed ones and one on the torque, with hold and delay in the plant;
+choose it for a controller that is to run. Without --rise-time and --overshoot the thesis's 0.3 s
+and 8 % hold. K grows with the square of the rise time and w_2 falls with it, unless given."""
 _EXAMPLES = """\
 examples:
   ddct design h-infinity
@@ -60,10 +60,20 @@ def add_parser(subparsers: Any) -> None:
     add('--weights', choices=tuple(RECIPES), default=_DEFAULT_RECIPE, help='(default: thesis)')
     add('--low-frequency-gain', type=float, metavar='K', help='|S| near 0 over w^2')
     add('--bandwidth', type=float, metavar='W_2', help='corner of W_t in rad/s')
-    add('--effort', type=float, metavar='TORQUE', help='N m per rpm that cost 1 (sampled)')
-    add('--back-off', type=float, metavar='FACTOR', help='level over the optimum (riccati)')
+    add(
+        '--effort',
+        type=float,
+        metavar='TORQUE',
+        help='N m per rpm of torque that costs 1 (sampled)',
+    )
+    add(
+        '--back-off',
+        type=float,
+        metavar='FACTOR',
+        help='level over the optimum, a factor (riccati)',
+    )
     add('--method', choices=METHODS, default=METHODS[0], help='(default: riccati)')
-    add('--write-anyway', action='store_true', help='what a design lacks is told and noted only')
+    add('--write-anyway', action='store_true', help='write a design that falls short too')
     add_design_options(parser)
     parser.set_defaults(run=run)
 
@@ -101,11 +111,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _tell(options: argparse.Namespace, name: str, missing: str) -> None:
-    """Say what a design lacks; raise DdctError where it was asked for and may not lack it."""
+    """Say how a design falls short; raise DdctError if the user has asked for that design."""
     asked = (options.rise_time, options.overshoot, options.out)
     if any(each is not None for each in asked) and not options.write_anyway:
         raise DdctError(
-            f'{name} is not given: {missing}: ask for less, choose other weights, or add '
+            f'{name} falls short: {missing}: ask for less, choose other weights, or add '
             '--write-anyway'
         )
     complain('ddct design', f'{name}: {missing}')

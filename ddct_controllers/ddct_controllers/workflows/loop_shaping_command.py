@@ -26,12 +26,12 @@ from ddct_plant.models.driveline_model import engine_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
 
 _DESCRIPTION = """\
-Without specifications, the thesis's Chapter 2: its specifications translated, the way from
-K_c/s to G_c1, G_c2 beside a rule for it, and both in the loop as the thesis judges it, with
-the delay, and sampled with hold and delay (`reproduce numbers` has every number).
-With --rise-time and --overshoot, a controller that meets them in the sampled loop. --out
+With --rise-time and --overshoot: find a controller that meets them in the sampled loop. --out
 writes it as DIR/NAME.yaml, which `bringup` and `compare` take as a controller, with its
-Nyquist, Nichols and step charts."""
+Nyquist, Nichols and step charts. Without them: go through Chapter 2 of the thesis. This shows
+its specifications translated, the steps from K_c/s to G_c1, G_c2 beside a rule for it, and both
+loops as the thesis judges them, with the delay, and sampled with hold and delay.
+`ddct reproduce numbers` has every number."""
 _EXAMPLES = """\
 examples:
   ddct design loop-shaping
@@ -54,7 +54,7 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument(
         '--disturbance',
         choices=_DISTURBANCES,
-        help='engine torque that leaves no error at last (default: step)',
+        help='engine torque after which no error is left (default: step)',
     )
     parser.add_argument(
         '--structure', choices=STRUCTURES, help='as G_c1 or as G_c2 (default: either)'

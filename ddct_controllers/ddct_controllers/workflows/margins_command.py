@@ -20,10 +20,10 @@ from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 _DESCRIPTION = """\
-Margins of the sampled loop with its hold and its 10 ms delay: at one wear gain, the
-gain, phase, delay and disk margins, M_s, M_t, crossover, bandwidth, and the driveline
-mode. Then the highest wear gain that is stable and, over wear gains 0.7 to 1.3 and all
-driveline parameters +-20 %, the highest M_s and the number of unstable corners."""
+Compute the margins of the sampled loop with its hold and its 10 ms delay. At one wear gain:
+gain, phase, delay and disk margins, M_s, M_t, crossover, bandwidth, and the driveline mode.
+Then the highest wear gain that is stable. Over wear gains 0.7 to 1.3 and all driveline
+parameters +-20 %: the highest M_s and the number of unstable corners."""
 _EXAMPLES = """\
 examples:
   ddct design margins
@@ -40,7 +40,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument('--controller', default='all', metavar='NAME|FILE|all')
     parser.add_argument(
-        '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura of the margins'
+        '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura, 1 if new'
     )
     add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
     parser.add_argument('--json', metavar='FILE', help='write all figures; - is standard output')

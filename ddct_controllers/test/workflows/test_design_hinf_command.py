@@ -79,7 +79,7 @@ def test_a_design_that_lacks_something_is_not_written_and_says_what(
     command = ['h-infinity', *options, '--out', str(tmp_path / 'designs')]
     assert main(command) == 1
     error = capsys.readouterr().err
-    assert error.startswith('ddct design: mine is not given: ') and error.count('\n') == 1
+    assert error.startswith('ddct design: mine falls short: ') and error.count('\n') == 1
     assert all(words in error for words in lacking)
     assert error.count(';') == len(lacking) - 1
     assert not (tmp_path / 'designs').exists()
