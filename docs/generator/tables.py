@@ -32,6 +32,7 @@ from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
 from generator.score_tables import score_tables
+from generator.sensor_table import sensor_table
 
 
 def calibration_tables() -> Mapping[str, Table]:
@@ -96,6 +97,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'h-infinity': h_infinity_tables,
     'calibration': calibration_tables,
     'launches': lambda: {'new_clutch': launch_table()},
+    'sensors': lambda: {'in_thesis': sensor_table()},
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,

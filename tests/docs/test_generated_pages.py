@@ -9,6 +9,7 @@ from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
 from generator.score_tables import score_tables
+from generator.sensor_table import sensor_table
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
@@ -69,6 +70,11 @@ def test_metrics_criteria_and_limits_are_as_the_programs_say_them() -> None:
 def test_the_table_of_launches_is_what_the_scenarios_give() -> None:
     computed = as_markdown({'new_clutch': launch_table()})
     assert shown_tables('launches') == computed, 'run: make docs KINDS=launches'
+
+
+def test_the_table_of_sensors_is_what_its_runs_give() -> None:
+    computed = as_markdown({'in_thesis': sensor_table()})
+    assert shown_tables('sensors') == computed, 'run: make docs KINDS=sensors'
 
 
 def test_the_diagrams_are_what_the_program_draws() -> None:
