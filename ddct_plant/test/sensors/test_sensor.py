@@ -1,11 +1,14 @@
 """What one sensor makes of a quantity: each error by itself, and all in their order."""
 
+import dataclasses
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.sensors.draws import gaussian, losses
 from ddct_plant.sensors.parameters import EngineSpeedSensor, EngineTorqueEstimate, SensorOptions
 from ddct_plant.sensors.sensor import Sensor, ShaftSensor, ToothCount
 
@@ -119,17 +122,30 @@ def test_the_seed_gives_the_numbers_and_another_seed_others():
 
 
 @pytest.mark.parametrize('seed', [0, 2**31 - 1])
-def test_quantities_have_numbers_of_their_own_and_so_have_noise_and_losses(seed):
+def test_quantities_have_numbers_of_their_own(seed):
     options = EngineSpeedSensor(noise_rad_s=1.0)
-    streams = [
+    one, other = (
         said(options, np.zeros(N), seed, name)[0] for name in ('engine_speed', 'shaft_speed')
-    ]
-    assert abs(np.mean(streams[0] * streams[1])) < Z / math.sqrt(N)
-    both = EngineSpeedSensor(noise_rad_s=1.0, dropout=0.3)
-    values, held = said(both, np.zeros(N), seed)
-    came = ~held
-    assert np.array_equal(values[came], streams[0][came])
-    assert abs(streams[0][held].mean()) < Z / math.sqrt(held.sum())
+    )
+    assert abs(np.mean(one * other)) < Z / math.sqrt(N)
+
+
+def test_losses_leave_the_noise_as_it_is_and_do_not_depend_on_it():
+    noisy = EngineSpeedSensor(noise_rad_s=1.0)
+    values, held = said(dataclasses.replace(noisy, dropout=0.5), np.zeros(500))
+    assert np.array_equal(values[~held], said(noisy, np.zeros(500))[0][~held])
+    # The first numbers of many seeds: later ones of one stream would part by themselves. A draw
+    # below 1/16 has four leading zeros, of which numpy takes the size of a normal number too.
+    rare = EngineSpeedSensor(dropout=1.0 / 16.0)
+    sizes: dict[bool, list[float]] = {True: [], False: []}
+    for seed in range(2000):
+        _, lost = itertools.islice(losses(seed, 'w', rare), 2)
+        sizes[lost].append(abs(next(gaussian(seed, 'w'))))
+    means = [np.mean(each) for each in sizes.values()]
+    deviation = math.sqrt(1.0 - 2.0 / math.pi) * math.hypot(
+        *(1.0 / math.sqrt(len(each)) for each in sizes.values())
+    )
+    assert abs(means[0] - means[1]) < Z * deviation
 
 
 def test_teeth_are_counted_over_the_time_that_is_given():
