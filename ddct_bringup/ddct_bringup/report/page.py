@@ -110,7 +110,7 @@ def _sensors(runs: Sequence[ReportRun]) -> str | None:
     """Return what the scenario gives of its sensors; None where control was told the truth."""
     told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
     sensors = next(told, None)
-    return None if sensors is None else sensors.text or 'each of them is exact'
+    return None if sensors is None else sensors.text
 
 
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:

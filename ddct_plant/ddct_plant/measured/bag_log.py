@@ -38,7 +38,7 @@ def read_bag_signals(
 
     Speeds, C_m and A_x come every 10 ms. C_f comes every 1 ms of the clutch that always slips; of
     one that sticks it is what was transmitted just before each tick. C_load is left out: no car
-    measures it.
+    measures it. Of a run with sensors these are the true signals too.
     """
     try:
         values = {

@@ -195,4 +195,5 @@ class SensorParameters(OptionGroup, prefix='sensors.'):
     def text(self) -> str:
         """What is given of each sensor, in one line."""
         given = {field.name: getattr(self, field.name).given for field in dataclasses.fields(self)}
-        return '; '.join(f'{name}: {", ".join(each)}' for name, each in given.items() if each)
+        lines = [f'{name}: {", ".join(each)}' for name, each in given.items() if each]
+        return '; '.join(lines) or 'each of them is exact'

@@ -106,6 +106,8 @@ def test_a_file_and_its_hash_hold_what_is_given_of_the_sensors_and_no_more():
     assert scenario_to_yaml(exact).count('sensors: {}') == 1
     assert changed_values(noisy) == ('sensors.wheel_speed.noise_rad_s=0.1',)
     assert noisy.sensors is not None
+    assert exact.sensors is not None
+    assert exact.sensors.text == 'each of them is exact'
     assert noisy.sensors.text == 'wheel_speed: noise_rad_s 0.1 rad/s'
     assert len({scenario_digest(each) for each in (thesis, exact, noisy)}) == 3
 

@@ -1,0 +1,54 @@
+"""The page says whether controllers read sensors, which ones, and how far these were off."""
+
+from pathlib import Path
+
+from made_run import made_facts
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.report.page import report_page
+from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.scoring import score_run
+from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.settings import RunSettings
+
+CHART = 'Slip speed as measured, less the true one'
+
+
+def page(*changes: str) -> str:
+    """Return the report of a short run of `pi`."""
+    given = ['duration_s=0.7', 'score_window_s=[0.1,0.6]', *changes]
+    settings = RunSettings(load_scenario('thesis', given))
+    scenario = settings.scenario
+    recording = Recording(
+        path=Path('/nowhere/pi_0.mcap'),
+        trajectory=run_headless(settings, 'pi'),
+        facts=made_facts(
+            controller='pi',
+            control_start_s=scenario.control_start_s,
+            score_window_s=scenario.score_window_s,
+            duration_s=scenario.duration_s,
+        ),
+        custom_data={'scenario_yaml': scenario_to_yaml(scenario)},
+        run_info={},
+        counts={},
+        missed={},
+        realtime=RealtimeFacts(),
+    )
+    entry = score_run(recording, 'pi', packaged_limits(), None)
+    return report_page([ReportRun(entry, recording, None, settings)], [], packaged_limits())
+
+
+def test_sensors_are_named_and_have_their_chart():
+    html = page('sensors.engine_speed.noise_rad_s=0.25', 'sensors.engine_torque.gain=1.05')
+    words = 'engine_speed: noise_rad_s 0.25 rad/s; engine_torque: gain 1.05.'
+    assert f'Controller and reference read <b>sensors</b>: {words}' in html
+    assert CHART in html
+
+
+def test_a_run_without_sensors_has_neither():
+    html = page()
+    assert 'sensors</b>' not in html
+    assert CHART not in html
