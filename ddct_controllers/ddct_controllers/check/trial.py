@@ -103,11 +103,13 @@ def closed_trial(
     """
     Run a new object, which stays wrapped, on the plant; its slip reference falls to zero.
 
-    `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Raise what the
-    controller raises, as a DdctError that names it.
+    `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Sensors of the scenario
+    are left out: trials are told apart by less than their noise. Raise what the controller raises,
+    as a DdctError that names it.
     """
     heard = Heard()
-    plant = WholePlant(settings, two_input=controller.commands_engine)
+    exact = replace(settings, scenario=replace(settings.scenario, sensors=None))
+    plant = WholePlant(exact, two_input=controller.commands_engine)
     _listen(controller, heard, scale)
     architecture = make_architecture(settings, controller)
     start, probe = settings.scenario.control_start_step, probe_step(settings)
