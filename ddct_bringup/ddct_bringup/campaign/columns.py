@@ -121,6 +121,7 @@ def _type(spec: CampaignSpec, key: str) -> pa.DataType:
         return pa.string()
     if values and all(isinstance(value, bool) for value in values):
         return pa.bool_()
-    if values and all(isinstance(value, int) for value in values):
+    whole = key in spec.vary and spec.vary[key].whole
+    if whole or (values and all(isinstance(value, int) for value in values)):
         return pa.int64()
     return pa.float64()

@@ -11,9 +11,12 @@ from scipy.special import ndtr, ndtri
 from ddct_plant.base.checks import require_choice, require_number
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, close_name
+from ddct_plant.base.timebase import PERIOD_S
 
-KIND, LOW, HIGH, CHOICE = 'distribution', 'low', 'high', 'choice'
+KIND, LOW, HIGH, STEP, CHOICE = 'distribution', 'low', 'high', 'step', 'choice'
 Numbers = Mapping[str, float]
+_DIGITS = 12
+"""After the point, of a value that is rounded to a step: 0.035, not 0.035000000000000003."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,18 @@ class Distribution:
             return self.values[min(place, len(self.values) - 1)]
         value = float(KINDS[self.kind].quantile(self.numbers, uniform))
         low, high = self.ends
-        return min(max(value, low), high)
+        value = min(max(value, low), high)
+        return self._rounded(value) if STEP in self.numbers else value
+
+    @property
+    def whole(self) -> bool:
+        """Whether its values are whole numbers."""
+        return float(self.numbers.get(STEP, 0.5)).is_integer()
+
+    def _rounded(self, value: float) -> float | int:
+        step = self.numbers[STEP]
+        rounded = round(round(value / step) * step, _DIGITS)
+        return int(rounded) if self.whole else rounded
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -122,8 +136,12 @@ def distribution_of(where: str, content: Any, option: Option | None) -> Distribu
     require_choice(f'{where}.{KIND}', kind, _NAMES)
     if kind == CHOICE:
         return _choice(where, content, option)
-    distribution = Distribution(kind, _numbers(where, content, KINDS[kind]))
-    _require_order(where, distribution)
+    numbers = _numbers(where, content, KINDS[kind])
+    _require_order(
+        where, Distribution(kind, {name: numbers[name] for name in numbers if name != STEP})
+    )
+    distribution = Distribution(kind, numbers)
+    _require_steps(where, numbers)
     if option:
         _require_within(where, distribution, option)
     return distribution
@@ -133,14 +151,16 @@ _NAMES = (*KINDS, CHOICE)
 
 
 def _numbers(where: str, content: Mapping[str, Any], kind: Kind) -> dict[str, float]:
-    known = (*kind.required, *kind.optional)
+    known = (*kind.required, *kind.optional, STEP)
     _require_known(where, content, known)
     missing = [name for name in kind.required if name not in content]
     if missing:
         raise ParameterError(f'{where}.{missing[0]} is missing: {content[KIND]} needs it')
     return {
         name: require_number(
-            f'{where}.{name}', content[name], above=0.0 if name in kind.above_zero else None
+            f'{where}.{name}',
+            content[name],
+            above=0.0 if name in (*kind.above_zero, STEP) else None,
         )
         for name in known
         if name in content
@@ -166,13 +186,33 @@ def _require_order(where: str, distribution: Distribution) -> None:
         )
 
 
+def _require_steps(where: str, numbers: Numbers) -> None:
+    """Refuse a bound that rounding would leave."""
+    for name in (LOW, HIGH):
+        if STEP in numbers and name in numbers:
+            parts = numbers[name] / numbers[STEP]
+            if abs(parts - round(parts)) > 1e-6:
+                raise ParameterError(
+                    f'{where}.{name} is {numbers[name]:g}: give a multiple of the {STEP}, '
+                    f'{numbers[STEP]:g}'
+                )
+
+
 def _require_within(where: str, distribution: Distribution, option: Option) -> None:
     """Refuse a distribution that can give what the key does not take."""
     key = where.rpartition('vary.')[2]
-    if option.many or option.choices or option.kind is not float or option.whole_periods:
+    if option.many or option.choices or option.kind not in (float, int):
         raise ParameterError(
-            f'{where}: {key} does not take any number: use {{{KIND}: {CHOICE}, values: [...]}}'
+            f'{where}: {key} takes no number: use {{{KIND}: {CHOICE}, values: [...]}}'
         )
+    if option.kind is int and not distribution.whole:
+        raise ParameterError(f'{where}.{STEP}: {key} takes whole numbers: give {STEP}: 1')
+    if option.whole_periods:
+        parts = distribution.numbers.get(STEP, 0.0) / PERIOD_S
+        if not parts or abs(parts - round(parts)) > 1e-6:
+            raise ParameterError(
+                f'{where}.{STEP}: {key} takes multiples of 10 ms: give {STEP}: {PERIOD_S}'
+            )
     low, high = distribution.ends
     bounds = (
         (LOW, low, option.at_least if option.above is None else option.above),

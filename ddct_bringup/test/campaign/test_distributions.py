@@ -58,6 +58,14 @@ def test_a_choice_takes_each_value_as_often_as_its_weight_says() -> None:
     ]
 
 
+def test_a_step_rounds_what_is_drawn_to_what_the_key_takes() -> None:
+    bounds = {'distribution': 'uniform', 'low': 0.0, 'high': 0.05}
+    delay = described('actuator.delay_s', **bounds, step=0.001)
+    assert [delay.value(each) for each in (0.0001, 0.7041, 0.9999)] == [0.0, 0.035, 0.05]
+    gear = described('gear', distribution='uniform', low=1, high=3, step=1)
+    assert [type(gear.value(0.3)), gear.value(0.3), gear.value(0.1)] == [int, 2, 1]
+
+
 @pytest.mark.parametrize(
     ('key', 'content', 'words'),
     [
@@ -104,7 +112,22 @@ def test_a_choice_takes_each_value_as_often_as_its_weight_says() -> None:
         (
             'gear',
             {'distribution': 'uniform', 'low': 1, 'high': 5},
-            'gear does not take any number: use {distribution: choice',
+            'random.vary.gear.step: gear takes whole numbers: give step: 1',
+        ),
+        (
+            'control_start_s',
+            {'distribution': 'uniform', 'low': 0.5, 'high': 0.7, 'step': 0.015},
+            'low is 0.5: give a multiple of the step, 0.015',
+        ),
+        (
+            'control_start_s',
+            {'distribution': 'uniform', 'low': 0.5, 'high': 0.7},
+            'control_start_s.step: control_start_s takes multiples of 10 ms: give step: 0.01',
+        ),
+        (
+            'clutch',
+            {'distribution': 'uniform', 'low': 0.5, 'high': 0.7},
+            'clutch takes no number: use {distribution: choice',
         ),
         ('gear', {'distribution': 'choice', 'values': [1, 9]}, 'gear.values is 9: it must be at'),
         ('gear', {'distribution': 'choice', 'values': []}, 'gear.values: give a list'),
