@@ -23,8 +23,8 @@ from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
-SERIAL = 'serial'
-"""Column `path` of a run that was simulated alone."""
+SERIAL, VECTORISED = 'serial', 'vectorised'
+"""Column `path`: of a run that was simulated step by step, and of one among many at once."""
 WALL_CLOCK = ('update_time_median_us', 'update_time_p99_us')
 """Metrics that differ each time; those of missed steps and lateness do not without a graph."""
 CRITERION = 'criterion.'

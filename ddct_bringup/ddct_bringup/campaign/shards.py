@@ -1,17 +1,21 @@
 """The unit of work: the runs of a fixed range of indices, which become one file."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ddct_bringup.batch.run_batch import batchable, run_batch
 from ddct_bringup.campaign.code import require_code
 from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
-from ddct_bringup.campaign.rows import result_row, scored_headless
+from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import FOREIGN_FAILURES
 
 _MOST_RUNS = 2000
 _LEAST_SHARDS = 50
@@ -50,8 +54,35 @@ def compute_shard(job: ShardJob) -> bytes:
         return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
 
 
-def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> Iterable[dict[str, Any]]:
-    """Yield a row for every run, in their order; one that fails has a row with its reason."""
+def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, Any]]:
+    """
+    Return a row for every run, in their order; one that fails has a row with its reason.
+
+    What is linear is computed at once, all else step by step.
+    """
+    found = _vectorised(runs, limits)
+    rows = []
     for run in runs:
-        entry = scored_headless(run.settings, run.controller, limits)
-        yield {INDEX: run.index, **result_row(entry, run.varied)}
+        entry, path = found.get(run.index), VECTORISED
+        if entry is None:
+            entry, path = scored_headless(run.settings, run.controller, limits), SERIAL
+        rows.append({INDEX: run.index, **result_row(entry, run.varied, path)})
+    return rows
+
+
+def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]:
+    """Return the entries of the runs that can be computed at once, by index."""
+    suited = []
+    for run in runs:
+        try:
+            controller = make_controller(run.controller, run.settings)
+        except FOREIGN_FAILURES:
+            continue  # step by step it says why
+        if not batchable(run.settings, controller):
+            suited.append((run, controller))
+    results = run_batch([(run.settings, controller) for run, controller in suited], limits)
+    return {
+        run.index: {'controller': run.controller.name, **vars(result)}
+        for (run, _), result in zip(suited, results, strict=True)
+        if result is not None
+    }

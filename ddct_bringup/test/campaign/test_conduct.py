@@ -11,12 +11,14 @@ import pyarrow.parquet as parquet
 import pytest
 from in_this_process import OneByOne, in_this_process
 
-from ddct_bringup.campaign import conduct
+from ddct_bringup.campaign import conduct, shards
 from ddct_bringup.campaign.code import code_digest
 from ddct_bringup.campaign.columns import COMPARED, METRICS
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.replay import differences
 from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.verdict.limits_file import limits_of_text, packaged_limits
@@ -220,6 +222,23 @@ def test_a_manifest_that_is_damaged_is_told(tmp_path: Path) -> None:
     (tmp_path / MANIFEST).write_text('{"schema_version": 1}', encoding='utf-8')
     with pytest.raises(DdctError, match='manifest.json: cannot be read'):
         Manifest.read(tmp_path)
+
+
+def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / 'wild.yaml').write_text(WILD, encoding='utf-8')
+    kinds = {'controllers': ['wild.yaml', 'pi'], 'architecture': 'base'}
+    grid = {'clutch': ['linear', 'stick_slip'], 'wear_gain': [0.7, 1.0], 'duration_s': [1.2]}
+    made = Campaign(spec_of({**kinds, 'grid': grid}, tmp_path))
+    runs = [made.run(index) for index in range(made.runs)]
+    rows = compute_rows(runs, packaged_limits())
+    assert [row['path'] for row in rows] == ['serial'] * 4 + ['vectorised'] * 2 + ['serial'] * 2
+    assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
+    monkeypatch.setattr(shards, 'batchable', lambda settings, controller: 'not now')
+    again = compute_rows(runs, packaged_limits())
+    assert {row['path'] for row in again} == {'serial'}
+    assert [differences(row, other) for row, other in zip(rows, again, strict=True)] == [[]] * 8
 
 
 def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
