@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -41,7 +42,7 @@ class Trajectory:
         signals = self.__dict__.get('signals', {})
         if name in signals:
             return signals[name]
-        if any(signal.name == name for signal in all_signals()):
+        if name in _signal_names():
             return None
         raise AttributeError(f'there is no signal {name}')
 
@@ -81,6 +82,11 @@ class Trajectory:
             else:
                 digest.update(repr(value).encode())
         return digest.hexdigest()
+
+
+@cache
+def _signal_names() -> frozenset[str]:
+    return frozenset(signal.name for signal in all_signals())
 
 
 def _column(signal: Signal, values: Sequence[Any]) -> Any:

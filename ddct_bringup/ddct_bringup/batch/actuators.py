@@ -35,8 +35,9 @@ class Actuators:
         self._before = int(periods.max()) + 1
         self._asked = np.empty((self._before + steps, len(parameters)))
         self._asked[: self._before] = delayed
-        self._later = self._before - periods
-        self._columns = np.arange(len(parameters))
+        alike = bool((periods == periods[0]).all())
+        self._later = self._before - (int(periods[0]) if alike else periods)
+        self._columns = slice(None) if alike else np.arange(len(parameters))
 
     def ask(self, step: int, requests: np.ndarray) -> None:
         """Take the requests of step k in, (R,) in N m, cut off below zero."""

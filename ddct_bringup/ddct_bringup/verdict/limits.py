@@ -1,6 +1,7 @@
 """What a run is judged by: the rules of the states, and the limits of the criteria."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 
@@ -58,12 +59,20 @@ class Limits:
 
     def of(self, criterion: str, scenario: str) -> Limit | None:
         """Return the strictest limit of a criterion for a scenario, None without one."""
-        found = [
-            limit
-            for limit in self.limits
-            if limit.criterion == criterion and limit.holds_for(scenario)
-        ]
-        return min(found, key=_value, default=None)
+        asked = criterion, scenario
+        if asked not in self._strictest:
+            found = [
+                limit
+                for limit in self.limits
+                if limit.criterion == criterion and limit.holds_for(scenario)
+            ]
+            self._strictest[asked] = min(found, key=_value, default=None)
+        return self._strictest[asked]
+
+    @cached_property
+    def _strictest(self) -> dict[tuple[str, str], Limit | None]:
+        """What `of` has found so far: many runs ask the same."""
+        return {}
 
 
 def _value(limit: Limit) -> float:

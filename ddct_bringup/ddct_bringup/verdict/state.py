@@ -63,16 +63,17 @@ def turns_of(values: np.ndarray, swing: float) -> list[int]:
     turns: list[int] = []
     low = high = 0
     direction = 0
-    for index, value in enumerate(values.tolist()):
-        if value > values[high]:
+    numbers = values.tolist()
+    for index, value in enumerate(numbers):
+        if value > numbers[high]:
             high = index
-        if value < values[low]:
+        if value < numbers[low]:
             low = index
-        if direction >= 0 and values[high] - value >= swing:
+        if direction >= 0 and numbers[high] - value >= swing:
             if direction > 0 or high > 0:
                 turns.append(high)
             direction, low = -1, index
-        elif direction <= 0 and value - values[low] >= swing:
+        elif direction <= 0 and value - numbers[low] >= swing:
             if direction < 0 or low > 0:
                 turns.append(low)
             direction, high = 1, index
