@@ -2,9 +2,9 @@
 `make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
-times do not. Also measured: the headless loop, with a clutch that sticks as well, each
-controller's update, H-infinity synthesis, the quadratic programs of predictive control, a
-whole step of `mpc_preview`, and the verdict.
+times do not. Also measured: the headless loop, with a clutch that sticks as well, beside
+python-control, and many runs at once; each controller's update, H-infinity synthesis, the
+quadratic programs of predictive control, a whole step of `mpc_preview`, and the verdict.
 """
 
 import argparse
@@ -18,10 +18,14 @@ from pathlib import Path
 from typing import Any
 
 from bare_chain import WIRING
+from batch import measure as measure_batch
+from batch import print_table as print_batch
 from exported_mpc import measure as measure_exported
 from exported_mpc import print_table as print_exported
 from mpc_step import measure as measure_mpc_step
 from mpc_step import print_table as print_mpc_step
+from python_control import measure as measure_python_control
+from python_control import print_table as print_python_control
 from qp import measure as measure_qp
 from qp import print_table as print_qp
 from stick_slip import measure as measure_stick_slip
@@ -70,6 +74,10 @@ def main() -> int:
             f'headless {name}: {step_us:.1f} us per step ({PERIOD_US / step_us:.0f}x real time), '
             f'of which its update {update_us:.1f} us'
         )
+    batch = measure_batch()
+    print_batch(batch)
+    python_control = measure_python_control()
+    print_python_control(python_control)
     stick_slip = measure_stick_slip()
     print_stick_slip(stick_slip)
     synthesis = measure_synthesis()
@@ -86,6 +94,8 @@ def main() -> int:
         figures = {
             **results,
             'headless_us': headless,
+            'batch_us': batch,
+            'python_control': python_control,
             'stick_slip': stick_slip,
             'synthesis': synthesis,
             'quadratic_programs': programs,
