@@ -3,7 +3,7 @@
   const {maps: data, ramp, replay} = JSON.parse(document.getElementById('data').textContent);
   if (!data) return;
   const SVG = 'http://www.w3.org/2000/svg';
-  const HEIGHT = 300, LEFT = 62, RIGHT = 8, TOP = 6, BOTTOM = 44;
+  const HEIGHT = 300, LEFT = 62, RIGHT = 8, TOP = 6, BOTTOM = 44, LINE = 13;
   const STEP = 6;
   const HATCHES = [['rising'], ['falling'], ['level'], ['upright'], ['rising', 'falling'], ['level', 'upright']];
   const UNDEFINED = 'no value';
@@ -15,7 +15,7 @@
   const words = [...new Set(data.maps.flatMap((map) => map.panels.flatMap((panel) => panel.state)))]
     .filter((state) => state !== 'engaged').sort();
   const spoken = (state) => state.replace('_', ' ');
-  const number = (value) => String(value).replace('-', '\u2212');
+  const number = (value, digits = 12) => String(Number(value.toPrecision(digits))).replace('-', '\u2212');
 
   function element(name, attributes = {}, text = '') {
     const made = document.createElementNS(SVG, name);
@@ -67,7 +67,7 @@
     const word = lost ? (runs > 1 ? `${count} of ${runs} ${invalid ? 'invalid' : 'failed'}` : spoken(state)) : value === null ? UNDEFINED : '';
     const index = lost || share || !panel.rows ? panel.index[place] : panel.rows[quantity.key][place] ?? panel.index[place];
     const at = map.keys.map((key, axis) => `${key} ${number(panel.at[axis][place])}`);
-    const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(Number(value.toPrecision(4)))}`;
+    const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(value, 4)}`;
     const came = runs > 1 ? `${failed} of ${runs} runs failed${invalid ? `, ${invalid} invalid` : ''}` : spoken(state);
     return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
   }
@@ -124,25 +124,30 @@
 
   function tile(cell, width, height, quantity) {
     const box = {x: cell.x - width / 2, y: cell.y - height / 2, width, height};
-    const rect = listening(element('rect', {...box, class: 'cell'}), cell);
+    const rect = listening(element('rect', {...box, class: 'cell', 'stroke-width': Math.min(width, height) < LINE ? 0 : 1}), cell);
     if (cell.state) return [rect, hatched(cell.state, box)];
     rect.setAttribute('fill', colourOf(cell.value, quantity));
     return [rect];
   }
 
-  // The value of a cell, or the word of all neighbours in a row that share it, where there is room.
+  // The word of all neighbours in a row that share it, where there is room; rows too low for text have
+  // it now and then. Values stand in the cells where there is room for all of them.
   function captions(cells, width, height, quantity) {
+    const every = height < LINE ? Math.ceil(3 * LINE / height) : 1;
     const shown = [];
     [...cells].sort((a, b) => a.y - b.y || a.x - b.x).forEach((cell) => {
       const last = shown.at(-1);
       const near = last && last.y === cell.y && cell.x - last.to < 1.5 * width;
       if (cell.word && cell.alone && near && last.text === cell.word) last.to = cell.x;
-      else shown.push({text: cell.word || number(Number(cell.value.toPrecision(3))), lost: Boolean(cell.state), fill: cell.state ? '' : colourOf(cell.value, quantity), y: cell.y, from: cell.x, to: cell.x});
+      else shown.push({text: cell.word || number(cell.value, 3), colour: cell.state ? '' : colourOf(cell.value, quantity), y: cell.y, from: cell.x, to: cell.x});
     });
-    return shown.filter(({text, from, to}) => text.length * 5.8 + 4 <= to - from + width && height >= 13)
-      .map(({text, lost, fill, y, from, to}) => element('text', {
+    const row = ({y}) => Math.floor((y - TOP) / height);
+    const fits = ({text, from, to}) => text.length * 5.8 + 4 <= to - from + width;
+    const valued = every === 1 && shown.filter((each) => each.colour).every(fits);
+    return shown.filter((each) => (each.colour ? valued : fits(each) && row(each) % every === every >> 1))
+      .map(({text, colour, y, from, to}) => element('text', {
         x: (from + to) / 2, y: y + 3.5, 'text-anchor': 'middle', 'font-size': 10, 'pointer-events': 'none',
-        ...(lost ? {class: 'word'} : {style: `fill:${inkOn(fill)}`}),
+        ...(colour ? {style: `fill:${inkOn(colour)}`} : {class: 'word'}),
       }, text));
   }
 
@@ -158,12 +163,12 @@
   function axes(svg, map, x, upward, up, width, height) {
     const bottom = height - BOTTOM;
     svg.append(element('path', {d: `M${LEFT} ${TOP}V${bottom}H${width - RIGHT}`, fill: 'none', style: 'stroke:var(--soft)'}));
-    const label = (at, y, text, anchor) => element('text', {x: at, y, 'text-anchor': anchor, class: 'axis-text', 'font-size': 11}, number(text));
-    const longest = Math.max(...x.ticks.map((tick) => String(tick).length));
+    const label = (at, y, text, anchor) => element('text', {x: at, y, 'text-anchor': anchor, class: 'axis-text', 'font-size': 11}, text);
+    const longest = Math.max(...x.ticks.map((tick) => number(tick, 4).length));
     const every = map.cells ? Math.ceil((longest * 7 + 6) / x.step) : 1;
-    x.ticks.filter((_, at) => at % every === 0).forEach((tick) => svg.append(label(x.place(tick), bottom + 15, tick, 'middle')));
-    const rows = map.cells ? Math.ceil(13 / upward.step) : 1;
-    upward.ticks.filter((_, at) => at % rows === 0).forEach((tick) => svg.append(label(LEFT - 6, up(tick) + 4, tick, 'end')));
+    x.ticks.filter((_, at) => at % every === 0).forEach((tick) => svg.append(label(x.place(tick), bottom + 15, number(tick, 4), 'middle')));
+    const rows = map.cells ? Math.ceil(LINE / upward.step) : 1;
+    upward.ticks.filter((_, at) => at % rows === 0).forEach((tick) => svg.append(label(LEFT - 6, up(tick) + 4, number(tick, 4), 'end')));
     svg.append(label((LEFT + width - RIGHT) / 2, height - 8, map.keys[0], 'middle'));
     if (map.keys[1]) {
       const title = element('text', {transform: `translate(12 ${(TOP + bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle', class: 'axis-text', 'font-size': 11}, map.keys[1]);
@@ -174,8 +179,8 @@
   function legend(map, quantity) {
     const present = words.filter((word) => map.panels.some((panel) => panel.state.includes(word)));
     const lacking = map.panels.some((panel, group) => panel.index.some((_, at) => cellOf(map, {...panel, group}, at, quantity).state === UNDEFINED));
-    document.getElementById('low').textContent = number(Number(quantity.low.toPrecision(4)));
-    document.getElementById('high').textContent = number(Number(quantity.high.toPrecision(4)));
+    document.getElementById('low').textContent = number(quantity.low, 4);
+    document.getElementById('high').textContent = number(quantity.high, 4);
     document.querySelector('.ramp').style.background = `linear-gradient(to right, ${ramp.join(',')})`;
     document.getElementById('states').replaceChildren(...[...present, ...(lacking ? [UNDEFINED] : [])].map((word) => {
       const item = document.createElement('span');

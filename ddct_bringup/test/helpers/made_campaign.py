@@ -25,7 +25,11 @@ def make_campaign(
     state_of: Callable[[CampaignRun], str] = lambda run: ENGAGED,
     **cells: Any,
 ) -> Path:
-    """Write manifest and results of the runs of a specification; a metric of each is its index."""
+    """
+    Write manifest and results of the runs of a specification.
+
+    The first metric of a run is its index, the next twice that, and so on.
+    """
     campaign = Campaign(spec_of(content, folder))
     schema = schema_of(campaign.spec)
     rows = []
@@ -34,7 +38,7 @@ def make_campaign(
         state = state_of(run)
         rows.append(
             dict.fromkeys(schema.names)
-            | dict.fromkeys(METRICS, float(index))
+            | {name: float(place * index) for place, name in enumerate(METRICS, 1)}
             | {'index': index, 'controller': run.controller.name, 'path': 'serial'}
             | {'valid': state != INVALID, 'reason': '', 'verdict_limits': 'no_limit'}
             | {'verdict_state': state, **run.varied, **cells}

@@ -1,0 +1,62 @@
+"""The maps of a campaign's page in a real browser, on a narrow screen and on paper."""
+
+from pathlib import Path
+
+import pytest
+from headless_chromium import PRINT, chromium, visit
+from made_campaign import GRID, make_campaign
+
+from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
+    ),
+]
+WORDS = "[...document.querySelectorAll('.map text.word')].map((each) => each.textContent)"
+UNPAINTED = """[...document.querySelectorAll('.map rect')].filter((cell) =>
+  !cell.hasAttribute('fill') && !cell.nextElementSibling?.getAttribute('d')).length"""
+TAP = """(() => {
+  const cell = document.querySelector('.map rect');
+  cell.dispatchEvent(new Event('click'));
+  return document.querySelector('.detail').textContent;
+})()"""
+OTHER_QUANTITY = """(() => {
+  const choice = document.getElementById('quantity');
+  const before = document.getElementById('high').textContent;
+  choice.value = 0;
+  choice.dispatchEvent(new Event('change'));
+  return [before, document.getElementById('high').textContent];
+})()"""
+
+
+@pytest.fixture(scope='module')
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder in which a worn clutch stalls the engine, and one run is invalid."""
+
+    def state(run):
+        worn = run.varied['wear_gain'] == 0.8
+        return INVALID if run.index == 11 else 'stalled' if worn else ENGAGED
+
+    made = make_campaign(tmp_path_factory.mktemp('campaigns') / 'wear', GRID, state)
+    write_campaign_page(made)
+    return made
+
+
+def test_maps_name_what_failed_tell_of_a_tapped_run_and_go_on_paper(campaign: Path) -> None:
+    overflow = 'document.documentElement.scrollWidth - innerWidth'
+    cells = "document.querySelectorAll('.map rect').length"
+    scripts = [overflow, cells, UNPAINTED, WORDS, TAP, OTHER_QUANTITY, PRINT]
+    seen = visit(campaign / PAGE, width=390, scheme='dark', scripts=scripts)
+    assert seen.errors == []
+    assert {request.partition(':')[0] for request in seen.requests} <= {'file', 'data'}
+    wider, drawn, unpainted, words, told, (before, after), paper = seen.values
+    assert wider <= 0
+    assert (drawn, unpainted) == (12, 0)
+    assert sorted(words) == ['invalid', *['stalled'] * 4]
+    assert 'pi, wear_gain 0.8, vehicle.mass_kg 1300: stalled' in told
+    assert f'ddct campaign replay {campaign} --index 0 --out replay-0' in told
+    assert (before, after) == ('60', '10')
+    assert paper.startswith(b'%PDF')
