@@ -68,7 +68,8 @@
     const index = lost || share || !panel.rows ? panel.index[place] : panel.rows[quantity.key][place] ?? panel.index[place];
     const at = map.keys.map((key, axis) => `${key} ${number(panel.at[axis][place])}`);
     const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(value, 4)}`;
-    const came = runs > 1 ? `${failed} of ${runs} runs failed${invalid ? `, ${invalid} invalid` : ''}` : spoken(state);
+    const interval = panel.intervals?.[place].map((end) => number(100 * end, 3)).join(' to ');
+    const came = runs > 1 ? `${failed} of ${runs} runs failed (95 % interval ${interval} %)${invalid ? `, ${invalid} invalid` : ''}` : spoken(state);
     return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
   }
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.campaign_report.outcome import FAILED
+from ddct_bringup.campaign_report.outcome import FAILED, failed_share
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -84,6 +84,7 @@ def _panel(
 ) -> dict[str, Any]:
     """Return the cells or points of one group, column by column."""
     outcomes = [results.outcomes[rows] for rows in parts]
+    repeated = any(len(rows) > 1 for rows in parts)
     telling = [_telling(*each) for each in zip(parts, outcomes, strict=True)]
     states, index = results.columns['verdict_state'], results.columns['index']
     worst = {figure.key: _worst(results, figure.key, parts) for figure in quantities}
@@ -92,11 +93,12 @@ def _panel(
         'runs': [len(rows) for rows in parts],
         'failed': [int(np.sum(each == FAILED)) for each in outcomes],
         'invalid': [int(np.sum(each == INVALID)) for each in outcomes],
+        'intervals': [failed_share(each).interval() for each in outcomes] if repeated else None,
         'state': [str(states[row]) for row in telling],
         'index': [int(index[row]) for row in telling],
         'values': {key: [value for value, _ in found] for key, found in worst.items()},
         'rows': {key: [row for _, row in found] for key, found in worst.items()}
-        if any(len(rows) > 1 for rows in parts)
+        if repeated
         else None,
     }
 

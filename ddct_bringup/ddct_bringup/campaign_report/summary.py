@@ -1,5 +1,6 @@
 """Put the summary of a campaign together: the content of `summary.json`."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,13 +11,15 @@ from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD, failed_shar
 from ddct_bringup.campaign_report.quantities import quantities_in
 from ddct_bringup.campaign_report.results import CONTROLLER, Group, Results
 from ddct_bringup.campaign_report.tail import ONE_IN, tail_of
-from ddct_bringup.verdict.state import STATES
+from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Figure
 
 Summary = dict[str, Any]
 """As the page on campaigns describes it."""
 SCHEMA_VERSION = 1
 """Of `summary.json`."""
+MOST_REASONS = 5
+"""That are given of why runs are invalid, the most frequent ones."""
 NO_SAMPLE = 'the runs are spread over a grid and are no random sample: no confidence interval'
 
 
@@ -57,7 +60,22 @@ def _failed(results: Results, group: Group) -> Summary:
         'interval': list(counts.interval()) if sample else None,
         'no_interval': '' if sample else NO_SAMPLE,
         'states': {state: int(np.sum(states == state)) for state in STATES if state in states},
+        'reasons': _reasons(results, group),
     }
+
+
+def _reasons(results: Results, group: Group) -> list[Summary]:
+    """Return why runs are invalid: each reason with how many runs, and the first of them."""
+    rows = [row for row in group.rows.tolist() if results.outcomes[row] == INVALID]
+    reasons = [str(results.columns['reason'][row]) for row in rows]
+    return [
+        {
+            'reason': reason,
+            'runs': runs,
+            'index': int(results.columns['index'][rows[reasons.index(reason)]]),
+        }
+        for reason, runs in Counter(reasons).most_common(MOST_REASONS)
+    ]
 
 
 def _first_failure(results: Results, group: Group, key: str) -> Summary:

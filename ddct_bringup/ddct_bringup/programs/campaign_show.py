@@ -11,6 +11,7 @@ from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write
 from ddct_bringup.campaign_report.tables import summary_tables
 from ddct_bringup.campaign_report.words import RULES, replay_command
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser
 from ddct_plant.program.table import print_table
@@ -61,7 +62,12 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _csv(folder: Path) -> str:
-    """Return every row of a campaign."""
+    """Return every row of a campaign, the control characters of its words made visible."""
+    table = read_table(folder, Manifest.read(folder))
+    for place, field in enumerate(table.schema):
+        if pa.types.is_string(field.type):
+            words = [printable(each) for each in table[field.name].to_pylist()]
+            table = table.set_column(place, field, pa.array(words, field.type))
     sink = pa.BufferOutputStream()
-    arrow_csv.write_csv(read_table(folder, Manifest.read(folder)), sink)
+    arrow_csv.write_csv(table, sink)
     return sink.getvalue().to_pybytes().decode()

@@ -13,7 +13,7 @@ from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, nominal_values
 from ddct_bringup.programs.campaign import main
-from ddct_bringup.verdict.state import ENGAGED
+from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 RANDOM = {
     'controllers': ['pi'],
@@ -63,6 +63,14 @@ def test_show_writes_json_and_csv_and_then_no_table_to_standard_output(
     header, *rows = capsys.readouterr().out.splitlines()
     assert header.startswith('"index","controller","path","wear_gain"')
     assert len(rows) == 12
+
+
+def test_words_of_a_row_cannot_control_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = make_campaign(tmp_path / 'evil', GRID, lambda run: INVALID, reason='\x1b[31mred')
+    assert main(['show', str(made), '--csv', '-']) == 0
+    assert '"\\x1b[31mred"' in capsys.readouterr().out
 
 
 def test_the_interval_of_random_samples_is_shown(

@@ -54,7 +54,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         worn = run.varied['wear_gain'] == 0.8
         return INVALID if run.index == 11 else 'not_engaged' if worn else ENGAGED
 
-    made = make_campaign(tmp_path_factory.mktemp('campaigns') / 'wear', GRID, state)
+    made = make_campaign(tmp_path_factory.mktemp('campaigns') / 'wear', GRID, state, reason=EVIL)
     write_campaign_page(made)
     return made
 
@@ -94,6 +94,8 @@ def test_the_summary_says_what_failed(folder: Path) -> None:
 
 def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) -> None:
     assert '1 of 12 runs is invalid' in page.text
+    assert f'1 run, such as run 11: {EVIL}' in page.text
+    assert not {'evil', 'onload'} & page.names
     assert '2 not engaged' in page.text
     data = json.loads(page.scripts[0])
     states = [state for panel in data['maps']['maps'][0]['panels'] for state in panel['state']]

@@ -81,3 +81,12 @@ def test_a_varied_word_makes_groups_of_its_own():
     ]
     assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
     assert groups[1]['failed']['states'] == {'stalled': 1}
+
+
+def test_invalid_runs_say_why_the_most_frequent_reason_first():
+    results = made_results([INVALID, ENGAGED, INVALID, INVALID], {'wear_gain': [1.0] * 4})
+    results.columns['reason'][:] = ['once', '', 'twice', 'twice']
+    assert summary_of(results)['groups'][0]['failed']['reasons'] == [
+        {'reason': 'twice', 'runs': 2, 'index': 2},
+        {'reason': 'once', 'runs': 1, 'index': 0},
+    ]

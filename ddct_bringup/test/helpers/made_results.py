@@ -24,6 +24,9 @@ def made_results(
         'index': np.arange(runs),
         'controller': np.array(controllers or ['pi'] * runs, dtype=object),
         'valid': np.array([state != 'invalid' for state in states]),
+        'reason': np.array(
+            ['it broke' if state == 'invalid' else '' for state in states], dtype=object
+        ),
         'verdict_state': np.array(states, dtype=object),
         **{key: _column(values) for key, values in varied.items()},
         **{key: np.array(values, dtype=float) for key, values in (quantities or {}).items()},
