@@ -178,12 +178,12 @@
   }
 
   function legend(map, quantity) {
-    const present = words.filter((word) => map.panels.some((panel) => panel.state.includes(word)));
-    const lacking = map.panels.some((panel, group) => panel.index.some((_, at) => cellOf(map, {...panel, group}, at, quantity).state === UNDEFINED));
+    const drawn = new Set(map.panels.flatMap((panel, group) => (
+      panel.index.map((_, at) => cellOf(map, {...panel, group}, at, quantity).state))));
     document.getElementById('low').textContent = number(quantity.low, 4);
     document.getElementById('high').textContent = number(quantity.high, 4);
     document.querySelector('.ramp').style.background = `linear-gradient(to right, ${ramp.join(',')})`;
-    document.getElementById('states').replaceChildren(...[...present, ...(lacking ? [UNDEFINED] : [])].map((word) => {
+    document.getElementById('states').replaceChildren(...[...words, UNDEFINED].filter((word) => drawn.has(word)).map((word) => {
       const item = document.createElement('span');
       item.className = 'item';
       const svg = element('svg', {viewBox: '0 0 26 14', 'aria-hidden': 'true'});
