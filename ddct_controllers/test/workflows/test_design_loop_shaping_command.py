@@ -48,8 +48,12 @@ def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
     assert main([*OWN, '--name', 'calm', '--out', str(tmp_path / 'new')]) == 0
     path = tmp_path / 'new' / 'calm.yaml'
     assert f'bringup --controller {path}' in capsys.readouterr().out
-    names = {'calm.yaml', 'calm_nyquist.png', 'calm_nichols.png', 'calm_step.png'}
-    assert {file.name for file in path.parent.iterdir()} == names
+    charts = {
+        f'calm_{chart}.{ending}'
+        for chart in ('nyquist', 'nichols', 'step')
+        for ending in ('png', 'svg', 'csv')
+    }
+    assert {file.name for file in path.parent.iterdir()} == {'calm.yaml', *charts}
     designed = load_designed(str(path))
     assert designed.provenance['specifications']['rise_time_s'] == 0.6
     assert designed.provenance['sampled_loop']['rise_time_s'] <= 0.6

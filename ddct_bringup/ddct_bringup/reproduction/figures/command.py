@@ -2,26 +2,25 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.reproduction.figures import gallery
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
-from ddct_bringup.reproduction.figures.run_figures import RUN_FIGURES
+from ddct_bringup.reproduction.figures.run_figures import run_figures
 from ddct_bringup.reproduction.figures.scenario_figures import SCENARIO_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure_order
-from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.chart_files import figure_files, save_figure
+from ddct_controllers.design.drawing.chart_style import chart_style
+from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.output_file import write_text
 
-FIGURES = (
-    *LOOP_SHAPING_FIGURES,
-    *H_INFINITY_FIGURES,
-    *RUN_FIGURES,
-    *SCENARIO_FIGURES,
-)
+FIGURES = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES, *SCENARIO_FIGURES)
+"""Those without runs of a controller that can be chosen."""
 _PICTURE = 'a photograph or a scheme: nothing to compute'
 _DIAGRAM = 'a block diagram: nothing to compute'
 _NOT_DRAWN = {
@@ -34,14 +33,16 @@ _NOT_DRAWN = {
     '4.1': 'explains the horizons: nothing to compute',
 }
 _DESCRIPTION = """\
-Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png, with
-a page index.html that shows them in order and tells what agrees with the thesis and what
-does not, and of the others why they are not drawn. With --only the page shows just
-those."""
+Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png and
+.svg, with their data in .csv, and a page index.html that shows them in order and tells what
+agrees with the thesis and what does not, and of the others why they are not drawn. With
+--only the page shows just those. --controllers draws further controllers into each figure
+of runs: 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
 _EXAMPLES = """\
 examples:
   ddct reproduce figures --out figures
-  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite"""
+  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite
+  ddct reproduce figures --out figures --only 2.26 --controllers mpc3,mine.yaml --overwrite"""
 _PAGE = 'index.html'
 
 
@@ -56,6 +57,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument('--out', required=True, metavar='DIR', help='folder, created if absent')
     parser.add_argument('--only', metavar='N,N...', help='numbers such as 2.10,3.5')
     parser.add_argument(
+        '--controllers', metavar='A,B,...', help='further controllers, names or files'
+    )
+    parser.add_argument(
         '--overwrite', action='store_true', help='replace earlier figures in the folder'
     )
     parser.set_defaults(run=run)
@@ -63,7 +67,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Draw into the folder and return the exit code."""
-    figures = collect_figures()
+    figures = collect_figures(_own(options.controllers))
     numbers = {figure.number for figure in figures}
     not_drawn = figures_not_drawn()
     if options.only:
@@ -71,28 +75,49 @@ def run(options: argparse.Namespace) -> int:
         figures = [figure for figure in figures if figure.number in wanted]
         not_drawn = {}
     folder = Path(options.out)
-    pictures = [folder / gallery.picture_name(figure.number) for figure in figures]
-    _make_room(folder, [*pictures, folder / _PAGE], gallery.GENERATOR, options.overwrite)
+    files = [
+        file
+        for figure in figures
+        for file in figure_files(folder, gallery.file_name(figure.number))
+    ]
+    _make_room(folder, [*files, folder / _PAGE], gallery.GENERATOR, options.overwrite)
     drawn: dict[ThesisFigure, str] = {}
-    for count, (figure, picture) in enumerate(zip(figures, pictures, strict=True), start=1):
+    for count, figure in enumerate(figures, start=1):
         progress = f'{count}/{len(figures)} {figure.heading}'
         print(f'ddct reproduce figures: {progress}', file=sys.stderr, flush=True)
         with chart_style():
             chart, drawn[figure] = figure.draw()
-            save_chart(chart, picture)
+            save_figure(chart, folder, gallery.file_name(figure.number))
     write_text(str(folder / _PAGE), gallery.gallery_page(drawn, not_drawn))
     print(f'{len(drawn)} figures in {folder}: open {folder / _PAGE}')
     return 0
 
 
-def collect_figures() -> list[ThesisFigure]:
-    """Return every figure that can be drawn, in order."""
-    return sorted(FIGURES, key=lambda figure: figure_order(figure.number))
+def collect_figures(own: Sequence[str] = ()) -> list[ThesisFigure]:
+    """
+    Return every figure that can be drawn, in order.
+
+    `own` are further controllers, names or files, in those of runs.
+    """
+    figures = (*FIGURES, *run_figures(own))
+    return sorted(figures, key=lambda figure: figure_order(figure.number))
 
 
 def figures_not_drawn() -> dict[str, str]:
     """Return, for every figure that cannot be drawn, the reason by its number, in order."""
     return {number: _NOT_DRAWN[number] for number in sorted(_NOT_DRAWN, key=figure_order)}
+
+
+def _own(controllers: str | None) -> list[str]:
+    """Return the controllers to add; raise the errors of `controller_spec` before any work."""
+    chosen = [name.strip() for name in (controllers or '').split(',') if name.strip()]
+    if controllers is not None and not chosen:
+        raise ParameterError('--controllers is empty: name at least one, or leave it out')
+    labels = [controller_spec(name).name for name in chosen]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ParameterError(f'--controllers names {label} twice: name each once')
+    return chosen
 
 
 def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:

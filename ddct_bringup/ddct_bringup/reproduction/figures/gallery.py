@@ -36,6 +36,7 @@ figure { margin: 1.5rem 0; }
 img { display: block; width: 100%; height: auto; }
 figcaption { overflow-wrap: break-word; }
 figcaption b { display: block; margin: .4rem 0; }
+.files { display: flex; gap: 1rem; margin-top: .5rem; font-size: .9rem; }
 .absent { margin: .5rem 0; color: var(--faint); }
 sub, sup { line-height: 0; font-size: .75em; }
 @media (min-width: 52rem) {
@@ -44,7 +45,7 @@ sub, sup { line-height: 0; font-size: .75em; }
 @media print {
   :root { --paper: #fff; --ink: #000; --faint: #444; --line: #999; }
   body { max-width: none; padding: 0; font-size: 9pt; }
-  nav { display: none; }
+  nav, .files { display: none; }
   figure { display: grid; grid-template-columns: 12cm 1fr; gap: .5cm; break-inside: avoid;
     margin: .3cm 0; }
   img { filter: none; }
@@ -59,9 +60,9 @@ _INTRODUCTION = (
 )
 
 
-def picture_name(number: str) -> str:
-    """Return the file name of a figure, such as figure_2_10.png."""
-    return f'figure_{number.replace(".", "_")}.png'
+def file_name(number: str) -> str:
+    """Return the name of a figure's files without the ending, such as figure_2_10."""
+    return f'figure_{number.replace(".", "_")}'
 
 
 def gallery_page(drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]) -> str:
@@ -120,12 +121,14 @@ def _entries(
 
 
 def _picture(figure: ThesisFigure, remark: str) -> str:
-    name = picture_name(figure.number)
+    name = file_name(figure.number)
     return (
         f'<figure id="figure-{figure.number}">'
-        f'<a href="{name}"><img src="{name}" alt="{html.escape(figure.heading)}" loading="lazy" '
-        'width="1040" height="650"></a>'
+        f'<a href="{name}.svg"><img src="{name}.png" alt="{html.escape(figure.heading)}" '
+        'loading="lazy" width="1040" height="650"></a>'
         f'<figcaption><b>Figure {figure.number}: {_text(figure.title)}.</b> {_text(remark)}'
+        f'<span class="files"><a href="{name}.svg">SVG</a> '
+        f'<a href="{name}.csv">data as CSV</a></span>'
         '</figcaption></figure>'
     )
 

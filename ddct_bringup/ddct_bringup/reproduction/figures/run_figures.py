@@ -1,5 +1,6 @@
 """Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -12,6 +13,7 @@ from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_o
 from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
+from ddct_controllers.registry import controller_label
 from ddct_plant.base.units import rpm_from_rad_s
 
 _FIRST_S = 0.5
@@ -46,32 +48,32 @@ def thesis_label(controller: str) -> str:
     return controller.replace('hinf', 'H∞').upper()
 
 
-def _runs(group: RunGroup) -> dict[str, Trajectory]:
+def _runs(group: RunGroup, own: Sequence[str]) -> dict[str, Trajectory]:
     """Return the runs by legend text."""
     return {
-        _legend(name, wear, group): thesis_run(name, group.architecture, wear)
-        for name in group.controllers
+        _legend(chosen, wear, group): thesis_run(chosen, group.architecture, wear)
+        for chosen in (*group.controllers, *own)
         for wear in group.wear_gains
     }
 
 
-def _styles(group: RunGroup) -> dict[str, dict[str, Any]]:
+def _styles(group: RunGroup, own: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Return how the lines are drawn by legend text."""
     runs = {
-        _legend(name, wear, group): controller_style(name, repeat)
-        for name in group.controllers
+        _legend(chosen, wear, group): controller_style(controller_label(chosen), repeat)
+        for chosen in (*group.controllers, *own)
         for repeat, wear in enumerate(group.wear_gains)
     }
     return {**runs, 'reference': REFERENCE_LINE}
 
 
-def _legend(controller: str, wear_gain: float, group: RunGroup) -> str:
-    worn = len(group.wear_gains) > 1
-    return thesis_label(controller) + (f' (K_usura = {wear_gain:g})' if worn else '')
+def _legend(chosen: str, wear_gain: float, group: RunGroup) -> str:
+    name = thesis_label(chosen) if chosen in group.controllers else controller_label(chosen)
+    return name + (f' (K_usura = {wear_gain:g})' if len(group.wear_gains) > 1 else '')
 
 
-def _draw(axes: Axes, group: RunGroup, quantity: str) -> str:
-    runs = _runs(group)
+def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str:
+    runs = _runs(group, own)
     signals = {name: (run, signal(run, quantity)) for name, run in runs.items()}
     if quantity == 'w_d':
         last = list(runs.values())[-1]
@@ -81,7 +83,7 @@ def _draw(axes: Axes, group: RunGroup, quantity: str) -> str:
         for name, (run, values) in signals.items()
     }
     end_s = max(time[-1] for time, _ in lines.values())
-    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _styles(group))
+    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _styles(group, own))
     return (
         f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)
@@ -132,13 +134,19 @@ def _names(controllers: tuple[str, ...]) -> str:
     return f'{several} and PI' if 'pi' in controllers else several
 
 
-def _figure(group: RunGroup, quantity: str, number: str) -> ThesisFigure:
-    title = f'{quantity}, {_names(group.controllers)}, {_ARCHITECTURES[group.architecture]}'
-    return ThesisFigure(number, title, partial(_draw, group=group, quantity=quantity))
-
-
-RUN_FIGURES = tuple(
-    _figure(group, quantity, number)
-    for group in RUN_GROUPS
-    for quantity, number in zip(_LABELS, group.numbers, strict=False)
-)
+def run_figures(own: Sequence[str] = ()) -> list[ThesisFigure]:
+    """Return the figures of all groups; `own` are further controllers in each, names or files."""
+    return [
+        ThesisFigure(
+            number,
+            f'{quantity}, {_names(group.controllers)}, {_ARCHITECTURES[group.architecture]}',
+            partial(
+                _draw,
+                group=group,
+                quantity=quantity,
+                own=[chosen for chosen in own if chosen not in group.controllers],
+            ),
+        )
+        for group in RUN_GROUPS
+        for quantity, number in zip(_LABELS, group.numbers, strict=False)
+    ]

@@ -1,7 +1,9 @@
 """Figures of the thesis that need no run: what their lines hold, and what the command writes."""
 
+import csv
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,15 +15,18 @@ from ddct_bringup.reproduction.figures.gallery import gallery_page
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
+from ddct_bringup.reproduction.runs import thesis_run
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.design.drawing.chart_style import typeset
 from ddct_controllers.design.loop_shaping.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
+from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
+TRANSFER_FUNCTION = Path(__file__).parents[4] / 'docs' / 'templates' / 'transfer_function.yaml'
 WITHOUT_RUN = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
 
 
@@ -191,12 +196,44 @@ def test_command_writes_pictures_and_a_page_that_links_them(tmp_path, capsys):
     page = (tmp_path / 'new' / 'index.html').read_text(encoding='utf-8')
     pictures = re.findall(r'<img src="([^"]+)"', page)
     assert pictures == ['figure_2_2.png', 'figure_2_10.png']
+    files = {'index.html'}
     for picture in pictures:
         assert (tmp_path / 'new' / picture).read_bytes().startswith(b'\x89PNG')
-    assert sorted(path.name for path in (tmp_path / 'new').iterdir()) == sorted(
-        (*pictures, 'index.html')
-    )
+        files |= {picture, picture.replace('.png', '.svg'), picture.replace('.png', '.csv')}
+    assert {path.name for path in (tmp_path / 'new').iterdir()} == files
     assert 'reproduce figures: 2/2 Figure 2.10: ' in capsys.readouterr().err
+
+
+def test_command_draws_a_controller_of_ones_own_into_the_figures_of_runs(tmp_path, capsys):
+    own = tmp_path / 'gentle.yaml'
+    own.write_text(TRANSFER_FUNCTION.read_text(encoding='utf-8'), encoding='utf-8')
+    name = load_spec(str(own)).name
+    chosen = ('--only', '4.8', '--controllers', f'{own},pi')
+    assert run_command('--out', tmp_path / 'new', *chosen) == 0
+    rows = list(csv.reader((tmp_path / 'new' / 'figure_4_8.csv').read_text().splitlines()))
+    columns = dict(zip(rows[0], np.array(rows[1:], dtype=float).T, strict=True))
+    assert list(columns) == ['Time, s', *(f'{each}: A_x, m/s²' for each in ('MPC4', name, 'pi'))]
+    for shown, controller in (('MPC4', 'mpc4'), (name, str(own)), ('pi', 'pi')):
+        run = thesis_run(controller, 'detailed', 1.0)
+        np.testing.assert_allclose(
+            columns[f'{shown}: A_x, m/s²'], run.vehicle_accel[50:], rtol=1e-8, atol=1e-12
+        )
+    assert f'{name} ' in (tmp_path / 'new' / 'index.html').read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize(
+    ('controllers', 'complaint'),
+    [
+        ('', '--controllers is empty'),
+        ('nobody', "unknown controller 'nobody'"),
+        ('pi,pi', '--controllers names pi twice'),
+    ],
+)
+def test_command_refuses_controllers_that_cannot_be_drawn(
+    tmp_path, refusal, controllers, complaint
+):
+    assert complaint in refusal('--out', tmp_path, '--only', '4.8', '--controllers', controllers)
+    assert not list(tmp_path.iterdir())
 
 
 def test_command_replaces_figures_only_when_asked(tmp_path, refusal):
@@ -273,7 +310,9 @@ def test_gallery_typesets_symbols_and_escapes_text():
 
 def test_gallery_needs_nothing_but_the_pictures_beside_it():
     page = gallery(['2.3'], {'2.4': 'a scheme'})
-    assert re.findall(r'(?:src|href)="([^#"]+)"', page) == ['figure_2_3.png'] * 2
+    assert set(re.findall(r'(?:src|href)="([^#"]+)"', page)) == {
+        f'figure_2_3.{ending}' for ending in ('png', 'svg', 'csv')
+    }
     assert not re.search(r'https?:|<script|@import|url\(', page)
     for query in ('prefers-color-scheme: dark', 'print', 'min-width'):
         assert f'@media {query}' in page or f'@media ({query}' in page

@@ -101,7 +101,8 @@ def save_chart(figure: Figure, path: Path) -> None:
         text.set_text(typeset(text.get_text()))
     temporary = path.with_name(f'.partial-{path.name}')
     try:
-        figure.savefig(temporary)
+        # Without the date the same figure is the same file.
+        figure.savefig(temporary, metadata={'Date': None} if path.suffix == '.svg' else None)
         temporary.replace(path)
     except OSError as error:
         raise DdctError(f'{path}: cannot be written ({error.strerror})') from error

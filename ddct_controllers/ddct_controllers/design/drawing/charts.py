@@ -1,6 +1,5 @@
 """Charts of a design, drawn on axes that the caller gives: Nichols, Nyquist, step, magnitude."""
 
-import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -19,16 +18,13 @@ from ddct_controllers.design.drawing.chart_style import (
     VERMILLION,
     line_styles,
 )
+from ddct_controllers.design.drawing.nichols_grid import TURN_DEG, draw_nichols_grid, draw_turns
 from ddct_controllers.design.loop_shaping.nichols import (
     NicholsCurve,
     constant_m_curve,
     constant_s_curve,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-
-_GRID_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
-"""Levels of |T| of the chart's grid."""
-_TURN_DEG = 360.0
 
 
 def draw_nichols(
@@ -46,19 +42,17 @@ def draw_nichols(
     With specifications it has their constant-|S| and constant-|T| curves, which L should not
     enter. `styles` are the keywords of each line.
     """
-    for level in _GRID_DB:
-        grid = constant_m_curve(10.0 ** (level / 20.0))
-        _closed_curve(axes, grid, phase_deg, color='#c4c4c4', linewidth=0.7)
+    draw_nichols_grid(axes, phase_deg, magnitude_db)
     if specifications:
         s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
         for name, curve, colour in (
             (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
             (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
         ):
-            _closed_curve(axes, curve, phase_deg, name, color=colour, linestyle='--')
+            draw_turns(axes, curve, phase_deg, name, color=colour, linestyle='--')
     for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
-    critical = np.arange(-180.0, phase_deg[0] - 1.0, -_TURN_DEG)
+    critical = np.arange(-180.0, phase_deg[0] - 1.0, -TURN_DEG)
     axes.plot(critical, 0.0 * critical, '+', color=BLACK, markersize=11, markeredgewidth=2)
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.set(xlim=phase_deg, ylim=magnitude_db)
@@ -117,22 +111,3 @@ def label_time_axis(axes: Axes, quantity: str, range_s: tuple[float, float]) -> 
 def decibel(values: np.ndarray) -> np.ndarray:
     """Return 20 log10 |values|."""
     return 20.0 * np.log10(np.abs(values))
-
-
-def _closed_curve(
-    axes: Axes,
-    curve: NicholsCurve,
-    phase_deg: tuple[float, float],
-    label: str | None = None,
-    **style: Any,
-) -> None:
-    """Draw a curve that repeats every turn wherever the range of the phase has it."""
-    first, last = (math.floor(phase_deg[0] / _TURN_DEG), math.ceil(phase_deg[1] / _TURN_DEG))
-    phase, magnitude = (
-        np.append(values, values[0]) for values in (curve.phase_deg, curve.magnitude_db)
-    )
-    jumps = np.flatnonzero(np.abs(np.diff(phase)) > 0.5 * _TURN_DEG) + 1
-    phase, magnitude = np.insert(phase, jumps, np.nan), np.insert(magnitude, jumps, np.nan)
-    for turn in range(first + 1, last + 1):
-        axes.plot(phase + turn * _TURN_DEG, magnitude, label=label, **style)
-        label = None

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
+from ddct_controllers.design.drawing.chart_files import save_figure
 from ddct_controllers.design.drawing.chart_style import (
     BLACK,
     BOUND_LINE,
@@ -16,7 +17,6 @@ from ddct_controllers.design.drawing.chart_style import (
     chart_style,
     line_styles,
     new_chart,
-    save_chart,
 )
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.loop_shaping.nichols import nichols_curve
@@ -32,7 +32,7 @@ def write_design_charts(
     folder: Path, designed: DesignedController, specifications: TimeSpecifications
 ) -> None:
     """
-    Draw NAME_nyquist.png, NAME_nichols.png and NAME_step.png; raise DdctError on failure.
+    Write NAME_nyquist, NAME_nichols and NAME_step as .png, .svg and .csv, or raise DdctError.
 
     The loop is shown as designed, continuous without delay, which the thesis judges, and as run:
     sampled with hold and delay.
@@ -54,7 +54,7 @@ def write_design_charts(
         _draw_bounds(axes, specifications)
         draw_step_response(axes, responses)
         for chart, figure in (('nyquist', nyquist), ('nichols', nichols), ('step', step)):
-            save_chart(figure, folder / f'{designed.name}_{chart}.png')
+            save_figure(figure, folder, f'{designed.name}_{chart}')
 
 
 def _draw_nyquist(

@@ -15,6 +15,8 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_plant.base.checks import require_number
 
 _CURVE_POINTS = 720
+_SMALLEST_SIZE = 1e-4
+"""Of |T| on a curve of constant phase."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,13 @@ class Contour:
 def constant_m_curve(level: float) -> NicholsCurve:
     """Return where |T| = |L/(1 + L)| is `level` (an M-circle), from L = T/(1 - T)."""
     closed = require_number('level of |T|', level, above=0.0) * _unit_circle()
+    return nichols_curve(closed / (1.0 - closed), unwrap=False)
+
+
+def constant_n_curve(phase_deg: float) -> NicholsCurve:
+    """Return where arg T = arg(L/(1 + L)) is `phase_deg`, from L = T/(1 - T); it is not closed."""
+    sizes = np.geomspace(_SMALLEST_SIZE, 1.0 / _SMALLEST_SIZE, _CURVE_POINTS)
+    closed = sizes * np.exp(1j * math.radians(phase_deg))
     return nichols_curve(closed / (1.0 - closed), unwrap=False)
 
 

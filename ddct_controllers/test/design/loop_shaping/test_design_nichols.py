@@ -11,6 +11,7 @@ from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS
 from ddct_controllers.design.loop_shaping.nichols import (
     NicholsCurve,
     constant_m_curve,
+    constant_n_curve,
     constant_s_curve,
     contours,
     nichols_curve,
@@ -28,6 +29,13 @@ def test_every_point_of_the_curves_has_their_level(level):
     on_m, on_s = loop_values(constant_m_curve(level)), loop_values(constant_s_curve(level))
     assert np.abs(on_m / (1.0 + on_m)) == pytest.approx(level, rel=1e-9)
     assert 1.0 / np.abs(1.0 + on_s) == pytest.approx(level, rel=1e-9)
+
+
+@pytest.mark.parametrize('phase_deg', [-30.0, -90.0, -150.0, -210.0, -330.0])
+def test_every_point_of_a_curve_of_constant_phase_has_it(phase_deg):
+    loop = loop_values(constant_n_curve(phase_deg))
+    off = np.angle(loop / (1.0 + loop) * np.exp(-1j * math.radians(phase_deg)))
+    assert np.abs(off).max() < 1e-6
 
 
 def test_curves_above_1_close_around_the_critical_point():

@@ -1,0 +1,105 @@
+"""The grid of a Nichols chart: the closed loop's magnitude and phase on its contours."""
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ddct_controllers.design.loop_shaping.nichols import (
+    NicholsCurve,
+    constant_m_curve,
+    constant_n_curve,
+)
+
+TURN_DEG = 360.0
+_MAGNITUDES_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
+"""Levels of |T|."""
+_PHASES_DEG = (-30.0, -60.0, -90.0, -120.0, -150.0, -210.0, -240.0, -270.0, -300.0, -330.0)
+"""Levels of arg T."""
+_LINE: dict[str, Any] = {'color': '#c4c4c4', 'linewidth': 0.7, 'zorder': 1.2}
+_PHASE_LINE = _LINE | {'linestyle': (0, (2, 2))}
+_TEXT: dict[str, Any] = {
+    'color': '#6e6e6e',
+    'fontsize': 7.5,
+    'clip_on': True,
+    'zorder': 1.5,
+    'horizontalalignment': 'center',
+    'verticalalignment': 'center',
+    'bbox': {'facecolor': 'white', 'edgecolor': 'none', 'pad': 0.6},
+}
+_LABEL = 'closed loop: |T| in dB, arg T in °'
+_INSET = 0.045
+"""Of a label from the edge of the chart, as a share of its height or width."""
+
+
+def draw_nichols_grid(
+    axes: Axes, phase_deg: tuple[float, float], magnitude_db: tuple[float, float]
+) -> None:
+    """Draw the contours within the range of the chart, each with its value."""
+    axes.plot([], [], label=_LABEL, **_LINE)
+    bottom = magnitude_db[0] + _INSET * (magnitude_db[1] - magnitude_db[0])
+    for level in _PHASES_DEG:
+        curve = constant_n_curve(level)
+        draw_turns(axes, curve, phase_deg, closed=False, **_PHASE_LINE)
+        order = np.argsort(curve.magnitude_db)
+        at = np.interp(bottom, curve.magnitude_db[order], curve.phase_deg[order])
+        _label(axes, at, bottom, f'{level:.0f}°', phase_deg)
+    top = magnitude_db[1] - _INSET * (magnitude_db[1] - magnitude_db[0])
+    for level in _MAGNITUDES_DB:
+        curve = constant_m_curve(10.0 ** (level / 20.0))
+        draw_turns(axes, curve, phase_deg, **_LINE)
+        _label(axes, *_place(level, curve, top), f'{level:.0f} dB', phase_deg)
+
+
+def draw_turns(
+    axes: Axes,
+    curve: NicholsCurve,
+    phase_deg: tuple[float, float],
+    label: str | None = None,
+    *,
+    closed: bool = True,
+    **style: Any,
+) -> None:
+    """Draw a curve that repeats every turn wherever the range of the phase has it."""
+    phase, magnitude = curve.phase_deg, curve.magnitude_db
+    if closed:
+        phase, magnitude = (np.append(values, values[0]) for values in (phase, magnitude))
+    jumps = np.flatnonzero(np.abs(np.diff(phase)) > 0.5 * TURN_DEG) + 1
+    phase, magnitude = np.insert(phase, jumps, np.nan), np.insert(magnitude, jumps, np.nan)
+    for turn in _turns(phase_deg):
+        axes.plot(phase + turn * TURN_DEG, magnitude, label=label, **style)
+        label = None
+
+
+def _place(level_db: float, curve: NicholsCurve, top_db: float) -> tuple[float, float]:
+    """
+    Return phase and magnitude of a level's label.
+
+    A closed contour has it at its highest point. One below 0 dB crosses the whole chart and has
+    it near phase 0, that of 0 dB near the top.
+    """
+    if level_db > 0.0:
+        highest = int(np.argmax(curve.magnitude_db))
+        return -0.5 * TURN_DEG, float(curve.magnitude_db[highest])
+    if level_db == 0.0:
+        near = int(
+            np.argmin(np.abs(curve.magnitude_db - top_db) + (curve.phase_deg < -180.0) * 1e3)
+        )
+    else:
+        near = int(np.argmin(np.abs(curve.phase_deg + _INSET * TURN_DEG)))
+    return float(curve.phase_deg[near]), float(curve.magnitude_db[near])
+
+
+def _label(
+    axes: Axes, at_deg: float, at_db: float, text: str, phase_deg: tuple[float, float]
+) -> None:
+    for turn in _turns(phase_deg):
+        if phase_deg[0] < at_deg + turn * TURN_DEG < phase_deg[1]:
+            axes.text(at_deg + turn * TURN_DEG, at_db, text.replace('-', '−'), **_TEXT)
+
+
+def _turns(phase_deg: tuple[float, float]) -> range:
+    """Return the turns, in which the phase of a curve is from -360 to 0, that the range has."""
+    first, last = math.floor(phase_deg[0] / TURN_DEG), math.ceil(phase_deg[1] / TURN_DEG)
+    return range(first + 1, last + 1)

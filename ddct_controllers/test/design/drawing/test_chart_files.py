@@ -1,0 +1,86 @@
+"""A figure's files: its data with headings and units, the same file for the same figure."""
+
+import csv
+import re
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from ddct_controllers.design.drawing.chart_files import figure_data, figure_files, save_figure
+from ddct_controllers.design.drawing.chart_style import chart_style, new_chart
+from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
+from ddct_controllers.design.loop_shaping.nichols import nichols_curve
+
+TIME = np.linspace(0.0, 1.0, 5)
+
+
+def two_panels():
+    figure, (left, right) = new_chart('w_d and its rate', panels=2)
+    left.set(title='speed', xlabel='Time, s', ylabel='w_d, rpm')
+    left.plot(TIME, TIME**2, label='pi')
+    left.plot(TIME, TIME**3, label='ls8')
+    left.plot(TIME[:2], TIME[:2], label='short')
+    left.plot(TIME, TIME)
+    left.axhline(1.0, label='limit')
+    right.set(title='rate', xlabel='Time, s', ylabel='dw_d/dt, rpm/s')
+    right.plot(TIME, 2.0 * TIME, label='pi')
+    return figure
+
+
+def test_the_data_are_the_labelled_lines_under_headings_with_units(tmp_path):
+    with chart_style():
+        save_figure(two_panels(), tmp_path, 'both')
+    rows = list(csv.reader((tmp_path / 'both.csv').read_text(encoding='utf-8').splitlines()))
+    assert rows[0] == [
+        'speed: pi and ls8: Time, s',
+        'speed: pi: w_d, rpm',
+        'speed: ls8: w_d, rpm',
+        'speed: short: Time, s',
+        'speed: short: w_d, rpm',
+        'rate: Time, s',
+        'rate: pi: dw_d/dt, rpm/s',
+    ]
+    assert rows[3] == ['0.5', '0.25', '0.125', '', '', '0.5', '1']
+
+
+def test_the_same_figure_gives_the_same_files(tmp_path):
+    with chart_style():
+        for name in ('first', 'second'):
+            save_figure(two_panels(), tmp_path, name)
+    first, second = (figure_files(tmp_path, name) for name in ('first', 'second'))
+    assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
+    assert first[1].read_text(encoding='utf-8').startswith('<?xml')
+    assert sorted(tmp_path.iterdir()) == sorted([*first, *second])
+
+
+def test_a_reference_across_the_panel_is_no_data():
+    figure, (axes,) = new_chart('step')
+    draw_step_response(axes, {'pi': (TIME, TIME)})
+    headings = [heading for heading, _ in figure_data(figure)]
+    assert len(headings) == 2
+    assert headings[0] == 'Time, s'
+
+
+def grid_labels() -> dict[str, tuple[float, float]]:
+    """Return phase and magnitude of the open loop where each label of the grid stands."""
+    figure, (axes,) = new_chart('Nichols')
+    draw_nichols(axes, {'L': nichols_curve(1.0 / (1j * np.geomspace(0.1, 10.0, 50)))})
+    texts = [each for each in axes.get_children() if isinstance(each, Text) and each.get_text()]
+    return {each.get_text(): each.get_position() for each in texts}
+
+
+@pytest.mark.parametrize('unit', [' dB', '°'])
+def test_each_contour_of_the_nichols_grid_has_its_value_where_the_closed_loop_has_it(unit):
+    labels = {
+        text: at for text, at in grid_labels().items() if re.fullmatch(f'−?\\d+{unit}', text)
+    }
+    assert len(labels) >= 9
+    for text, (phase_deg, magnitude_db) in labels.items():
+        value = float(text.removesuffix(unit).replace('−', '-'))
+        loop = 10.0 ** (magnitude_db / 20.0) * np.exp(1j * np.radians(phase_deg))
+        closed = loop / (1.0 + loop)
+        if unit == ' dB':
+            assert 20.0 * np.log10(abs(closed)) == pytest.approx(value, abs=0.1)
+        else:
+            assert np.degrees(np.angle(closed)) % 360.0 == pytest.approx(value % 360.0, abs=1.0)
