@@ -75,7 +75,7 @@ def add_columns_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--columns',
         metavar='FILE',
-        help='which column of a CSV log is what, in which unit',
+        help='column map of a CSV log: which column holds which quantity',
     )
 
 

@@ -47,7 +47,7 @@ examples:
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
-others: it stands there with its reason and its logs, and the exit code is 1. When no run is
+others: DIR has its reason and its logs, and the exit code is 1. When no run is
 valid DIR is not touched, and what was recorded stays in DIR.partial.
 """
 

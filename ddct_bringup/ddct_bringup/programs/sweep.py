@@ -45,8 +45,8 @@ examples:
   ddct sweep --over controllers.pi.proportional_gain=0.05,0.1,0.2 --controllers pi --json -
   ddct sweep --over wear_gain=0.6:1.4:9 --over load.slope_rad=0:0.1:5 --controllers pi,ls8
 
-Runs are headless, on all cores, and judged as by `ddct score`. What belongs to a key moves with
-it, as by --set. A run that fails is a row with its reason; the exit code is then 1.
+Runs are headless, on all cores, and judged as by `ddct score`. Values that belong together
+move together, as with --set. A run that fails is a row with its reason, and the exit code is 1.
 """
 
 
@@ -163,7 +163,7 @@ def _parser() -> argparse.ArgumentParser:
         '--metrics',
         default=','.join(figure.key for figure in TABLE_5_1),
         metavar='A,B,...',
-        help='of table and figure, by their names in scores.json; default: %(default)s',
+        help='metrics for table and figure, named as in scores.json; default: %(default)s',
     )
     parser.add_argument('--json', metavar='FILE', help="also write the rows; '-' is stdout")
     parser.add_argument('--figure', metavar='FILE', help='also draw them: a .png or .svg file')

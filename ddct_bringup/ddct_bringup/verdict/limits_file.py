@@ -39,7 +39,7 @@ def add_limits_option(parser: argparse.ArgumentParser) -> None:
         '--limits',
         type=Path,
         metavar='FILE',
-        help='what runs are judged by, see docs/use/verdict.md; default: the packaged limits',
+        help='limits to judge runs by, see docs/use/verdict.md; default: the packaged ones',
     )
 
 

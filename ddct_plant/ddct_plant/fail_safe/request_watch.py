@@ -48,7 +48,7 @@ class RequestWatch:
     """
     Notice that requests have stopped for longer than the timeout in s.
 
-    It stays so until the node is started again: who has been silent is not obeyed unasked.
+    It ignores later requests until the node is started again.
     """
 
     def __init__(self, timeout_s: float) -> None:

@@ -22,7 +22,7 @@ Derive the driveline parameters from the nine printed coefficients of P2 and P3
 P1 and the zero pair of P2 are checks. A residual is computed less printed, in
 half-units of the last printed digit; std follows from the rounding alone, and
 lowest and highest are the ends of what the printed digits allow.
-With --from it is the driveline of a measured car instead, from the speeds and torques
+With --from it finds the driveline of a measured car instead, from the speeds and torques
 of a log, with intervals and a prediction of data that took no part."""
 _EXAMPLES = """\
 examples:

@@ -42,7 +42,7 @@ def add_log_options(parser: ProgramParser) -> None:
     group.add_argument(
         '--columns',
         metavar='FILE',
-        help='which column of a CSV log is what, in which unit; default: those of score '
+        help='column map: which column holds which quantity; default: those of score '
         '--signals-csv',
     )
     group.add_argument(

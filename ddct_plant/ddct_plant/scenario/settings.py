@@ -26,7 +26,7 @@ class RunSettings(OptionGroup):
     )
     seed: int = option(
         0,
-        'seed of the random numbers, which are those of `sensors` alone',
+        'seed of the random numbers of `sensors`; without sensors it changes nothing',
         at_least=0,
         at_most=2**31 - 1,
     )
