@@ -1,0 +1,46 @@
+"""README and the pages on scores name what the programs write."""
+
+import dataclasses
+import re
+from pathlib import Path
+
+from support.documented import ROOT
+
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.scoring import entry_without_score
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.state import STATES
+from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, WITHIN
+from ddct_controllers.registry import controller_names
+
+USE = ROOT / 'docs' / 'use'
+
+
+def named(page: Path, heading: str) -> list[str]:
+    """Return the names in the first column of the tables below a heading."""
+    text = page.read_text(encoding='utf-8').partition(f'\n## {heading}\n')[2]
+    rows = re.findall(r'^\| (`.*?) \|', text.partition('\n## ')[0], re.MULTILINE)
+    return [name for row in rows for name in re.findall(r'`(\w+)`', row)]
+
+
+def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
+    page = USE / 'metrics_and_symbols.md'
+    metrics = [field.name for field in dataclasses.fields(Metrics)]
+    assert sorted(named(page, 'Metrics of scores.json')) == sorted(metrics)
+    others = entry_without_score('bag', None, 'why').keys() - {'metrics'}
+    assert sorted(named(page, 'Other keys of a run')) == sorted(others)
+
+
+def test_every_state_and_every_word_on_limits_is_on_the_page() -> None:
+    page = USE / 'metrics_and_symbols.md'
+    assert named(page, 'States') == list(STATES)
+    assert sorted(named(page, 'Words on limits')) == sorted([BEYOND, WITHIN, NO_LIMIT])
+    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
+    assert all(f'`{word}`' in readme for word in (*STATES, BEYOND, WITHIN, NO_LIMIT))
+
+
+def test_the_numbers_of_controllers_and_criteria_are_right() -> None:
+    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
+    assert f'with {len(controller_names())} such controllers' in readme
+    verdict = (USE / 'verdict.md').read_text(encoding='utf-8')
+    assert f'[{len(CRITERIA)} criteria](metrics_and_symbols.md#criteria)' in verdict
