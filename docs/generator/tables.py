@@ -23,11 +23,15 @@ from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
 from ddct_controllers.design.loop_shaping.report import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_controllers.registry import controller_names
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.margins_command import margins_table
 from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
@@ -74,6 +78,12 @@ def plant_tables() -> Mapping[str, Table]:
     return paper_tables(plant_on_paper(load_scenario('thesis')))
 
 
+def sampled_loops() -> Table:
+    """Return the margins of every linear controller in the scenario `thesis`, new clutch."""
+    settings = RunSettings(load_scenario('thesis'))
+    return margins_table(frequency_evidence(controller_names(), settings), settings)
+
+
 def studies_and_charts() -> Mapping[str, Table]:
     """Return every study, and draw the charts of those that have one into `images`."""
     studies = {name: study() for name, study in STUDIES.items()}
@@ -95,6 +105,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,
+    'margins': lambda: {'sampled_loops': sampled_loops()},
     'calibration': calibration_tables,
     'launches': lambda: {'new_clutch': launch_table()},
     'sensors': lambda: {'in_thesis': sensor_table()},

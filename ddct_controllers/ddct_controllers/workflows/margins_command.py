@@ -63,22 +63,28 @@ def run(options: argparse.Namespace) -> int:
             'choose a controller that has a linear_model, or all'
         )
     if options.json != '-':
-        scenario = settings.scenario
-        changed = scenario_title(scenario.name, changed_values(scenario))
-        title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
-        headers = (
-            *('controller', 'stable'),
-            *(figure.heading for figure in LOOP_FIGURE_OF.values()),
-            *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
-        )
-        rows = [_row(entry, settings.wear_gain) for entry in linear]
-        print_table(Table(title, headers, rows))
+        print_table(margins_table(evidence, settings))
         others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
         if others:
             print(f'Not linear, without a frequency response: {", ".join(others)}')
     if options.json:
         write_json(options.json, evidence)
     return 0
+
+
+def margins_table(evidence: Evidence, settings: RunSettings) -> Table:
+    """Return a row of figures for each linear controller of `frequency_evidence`."""
+    scenario = settings.scenario
+    changed = scenario_title(scenario.name, changed_values(scenario))
+    headers = (
+        *('controller', 'stable'),
+        *(figure.heading for figure in LOOP_FIGURE_OF.values()),
+        *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
+    )
+    rows = [
+        _row(entry, settings.wear_gain) for entry in evidence['controllers'] if entry['linear']
+    ]
+    return Table(f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}', headers, rows)
 
 
 def _row(entry: Evidence, wear_gain: float) -> list[str]:
