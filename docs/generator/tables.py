@@ -32,6 +32,7 @@ from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from generator.feedforward_tables import feedforward_tables
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
@@ -105,6 +106,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,
+    'feedforward': feedforward_tables,
     'margins': lambda: {'sampled_loops': sampled_loops()},
     'calibration': calibration_tables,
     'launches': lambda: {'new_clutch': launch_table()},

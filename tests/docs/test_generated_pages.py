@@ -1,5 +1,6 @@
 """What is generated in the pages is what the code gives; long tables have tests of their own."""
 
+import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
+from generator.tables import TABLES as COMPUTED
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
@@ -57,6 +59,14 @@ def test_a_table_that_stands_on_two_pages_is_refused(docs: Path) -> None:
     (docs / 'none.md').write_text(MARKED.format('first'), encoding='utf-8')
     with pytest.raises(DdctError, match='first of trial stands twice'):
         fill_pages('trial', TABLES, docs)
+
+
+def test_every_mark_is_of_a_kind_that_one_command_writes() -> None:
+    texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]
+    marks = [mark for text in texts for mark in re.findall(r'<!-- (.*?) -->', text)]
+    kinds = {mark.partition(':')[0] for mark in marks} - {'end'}
+    assert kinds == set(COMPUTED)
+    assert marks.count('end') == len(marks) / 2
 
 
 def test_the_tables_of_options_are_what_the_code_declares() -> None:
