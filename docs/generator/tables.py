@@ -36,6 +36,9 @@ from generator.feedforward_tables import feedforward_tables
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
+from generator.robustness_charts import draw_robustness
+from generator.robustness_map import kept_maps
+from generator.robustness_tables import robustness_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 
@@ -95,6 +98,13 @@ def studies_and_charts() -> Mapping[str, Table]:
     return studies
 
 
+def robustness_tables_and_charts() -> Mapping[str, Table]:
+    """Return the tables of the maps that `docs/robustness.py` has kept, and draw the maps."""
+    maps = kept_maps()
+    draw_robustness(maps)
+    return robustness_tables(maps)
+
+
 def _drawn() -> dict[ThesisFigure, str]:
     with chart_style():
         return {figure: figure.draw()[1] for figure in collect_figures()}
@@ -109,6 +119,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'feedforward': feedforward_tables,
     'margins': lambda: {'sampled_loops': sampled_loops()},
     'calibration': calibration_tables,
+    'robustness': robustness_tables_and_charts,
     'launches': lambda: {'new_clutch': launch_table()},
     'sensors': lambda: {'in_thesis': sensor_table()},
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),

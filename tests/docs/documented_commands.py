@@ -27,6 +27,10 @@ NOT_RUN_HERE = {
         'waits for a viewer; tests/live gives it one'
     ),
     'ddct live': 'serves until Ctrl-C; tests/live stops it',
+    'ddct campaign docs/examples/robustness': (
+        'takes minutes; test_robustness_page.py makes some of its runs again'
+    ),
+    'python docs/robustness.py': 'takes the folders of those campaigns',
     'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""
