@@ -23,10 +23,8 @@ from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.topics import (
     DIAGNOSTICS,
-    ENGINE_REQUEST,
     JOINT_STATES,
     RUN_INFO,
-    SENSED_SLIP,
     Topic,
     all_topics,
     recorded_topics,
@@ -114,10 +112,7 @@ def recording_of(records: BagRecords) -> Recording:
     facts = _facts(records)
     messages = _decode(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
-    run = facts.kind(
-        two_input=ENGINE_REQUEST.resolved_name in messages,
-        sensed=SENSED_SLIP.resolved_name in messages,
-    )
+    run = facts.kind_of_bag(messages)
     last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}

@@ -14,7 +14,6 @@ from ddct_bringup.bag.ticks import complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.files.input_file import mcap_of
-from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_SLIP
 
 REPAIRED_KEY = 'repaired'
 """Custom data of a repaired bag has this key, with 'true'."""
@@ -104,10 +103,7 @@ def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int
     stamps: dict[str, list[int]] = defaultdict(list)
     for topic, stamp, _ in records.messages:
         stamps[topic].append(stamp)
-    run = facts.kind(
-        two_input=ENGINE_REQUEST.resolved_name in records.topics,
-        sensed=SENSED_SLIP.resolved_name in records.topics,
-    )
+    run = facts.kind_of_bag(records.topics)
     count = complete_ticks(stamps, tick_topics(run, replies=run.lockstep))
     if not count:
         raise DdctError('it holds no complete tick')

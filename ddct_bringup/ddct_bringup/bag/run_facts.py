@@ -1,7 +1,7 @@
 """What a recording says about its run, kept as text in the bag's custom data."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -9,7 +9,7 @@ from ddct_plant.base.checks import require_name, require_number
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
-from ddct_plant.graph.topics import RunKind
+from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_TOPICS, RunKind
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names: they go into tables, labels and names of files."""
@@ -58,8 +58,15 @@ class RunFacts:
         return self.mode == 'lockstep'
 
     def kind(self, *, two_input: bool, sensed: bool) -> RunKind:
-        """Return what decides which topics the run has; the bag's own say what is asked for."""
+        """Return what decides which topics the run has."""
         return RunKind(self.lockstep, two_input, self.clutch, sensed)
+
+    def kind_of_bag(self, topics: Container[str]) -> RunKind:
+        """Return the same of a bag that has these topics, by resolved name."""
+        return self.kind(
+            two_input=ENGINE_REQUEST.resolved_name in topics,
+            sensed=any(topic.resolved_name in topics for topic in SENSED_TOPICS),
+        )
 
     def to_custom_data(self) -> dict[str, str]:
         """Return the facts as text; numbers as JSON, which gives them back to the last bit."""

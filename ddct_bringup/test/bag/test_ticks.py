@@ -1,11 +1,20 @@
 """Which ticks of a recording count as complete, and what is wrong with the others."""
 
 import pytest
+from made_run import made_facts
 
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.graph.topics import CLOCK, SLIP, TOPICS, RunKind, recorded_topics, tick_names
+from ddct_plant.graph.topics import (
+    CLOCK,
+    SENSED_TOPICS,
+    SLIP,
+    TOPICS,
+    RunKind,
+    recorded_topics,
+    tick_names,
+)
 
 LOCKSTEP, REALTIME = RunKind(), RunKind(lockstep=False)
 
@@ -84,6 +93,16 @@ def test_engine_torque_request_is_needed_once_it_was_recorded():
     assert '/engine/torque_request' in tick_topics(two_input, replies=True)
     with pytest.raises(DdctError, match='no message on /engine/torque_request'):
         check_ticks(stamps_of(5), two_input)
+
+
+@pytest.mark.parametrize('lacking', SENSED_TOPICS, ids=lambda topic: topic.name)
+def test_one_topic_of_sensors_asks_for_the_others(lacking):
+    names = [topic.resolved_name for topic in SENSED_TOPICS if topic is not lacking]
+    run = made_facts().kind_of_bag({'/driveline/joint_states', names[0]})
+    stamps = {**stamps_of(5), **{name: stamps_of(5)['/clutch/slip'] for name in names}}
+    with pytest.raises(DdctError, match=f'no message on {lacking.resolved_name}'):
+        check_ticks(stamps, run)
+    assert made_facts().kind_of_bag({'/driveline/joint_states'}) == LOCKSTEP
 
 
 def test_a_lock_step_recording_holds_no_wall_clock_topic():

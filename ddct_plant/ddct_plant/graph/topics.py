@@ -346,6 +346,10 @@ TOPICS = tuple(each for each in tuple(globals().values()) if isinstance(each, To
 """All of the above: `run_info`, then the topics of each tick, `recorder/ack` last of them."""
 
 
+SENSED_TOPICS = tuple(topic for topic in TOPICS if topic.when is _sensed)
+"""Those of the sensors."""
+
+
 def all_topics() -> tuple[Topic, ...]:
     """Return the table."""
     return TOPICS
