@@ -4,7 +4,8 @@
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, with a clutch that sticks as well, beside
 python-control, and many runs at once; each controller's update, H-infinity synthesis, the
-quadratic programs of predictive control, a whole step of `mpc_preview`, and the verdict.
+quadratic programs of predictive control, a whole step of `mpc_preview`, the verdict, and
+campaigns.
 """
 
 import argparse
@@ -20,6 +21,8 @@ from typing import Any
 from bare_chain import WIRING
 from batch import measure as measure_batch
 from batch import print_table as print_batch
+from campaign import measure as measure_campaign
+from campaign import print_table as print_campaign
 from exported_mpc import measure as measure_exported
 from exported_mpc import print_table as print_exported
 from mpc_step import measure as measure_mpc_step
@@ -90,6 +93,8 @@ def main() -> int:
     print_exported(exported)
     verdict_ms = measure_verdict()
     print(f'metrics and verdict of one run: {verdict_ms:.2f} ms (goal {VERDICT_GOAL_MS:g} ms)')
+    campaign = measure_campaign()
+    print_campaign(campaign)
     if options.json:
         figures = {
             **results,
@@ -102,6 +107,7 @@ def main() -> int:
             'mpc_step': mpc_step,
             'exported_mpc': exported,
             'verdict_ms': verdict_ms,
+            'campaign': campaign,
         }
         write_json(options.json, figures)
     return (

@@ -149,7 +149,7 @@ def test_without_dask_a_scheduler_cannot_be_asked(
 @pytest.mark.parametrize(
     ('options', 'words'),
     [
-        (['--workers', '0'], '--workers is 0: give 1 or more'),
+        (['--workers', '0'], 'workers is 0: give 1 or more'),
         (['--resume'], 'there is nothing to go on with'),
         (['--limits', 'absent.yaml'], 'limits absent.yaml: cannot be read'),
     ],

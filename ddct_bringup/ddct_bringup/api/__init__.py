@@ -8,7 +8,7 @@ Arguments are called as the options of `ddct bringup`. What cannot be used raise
 `ParameterError`, which is one. Nothing is printed; what a scenario moved by itself is warned of.
 """
 
-from ddct_bringup.api.campaigns import CampaignResults, read_campaign
+from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign
 from ddct_bringup.api.figures import figure
 from ddct_bringup.api.runs import Run, compare, load, run, table
 from ddct_bringup.api.sweeps import sweep
@@ -28,6 +28,7 @@ __all__ = [
     'Option',
     'ParameterError',
     'Run',
+    'campaign',
     'compare',
     'controller_names',
     'figure',

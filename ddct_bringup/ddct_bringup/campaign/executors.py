@@ -10,7 +10,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import Protocol
 
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 CONNECT_S = 10.0
 """How long a scheduler may take to answer."""
@@ -42,7 +42,9 @@ class LocalWorkers:
     """Processes of this machine, each with one thread for its numerics."""
 
     def __init__(self, count: int | None = None) -> None:
-        """Take as many as there are cores, unless told."""
+        """Take as many as there are cores, unless told; raise ParameterError for less than one."""
+        if count is not None and count < 1:
+            raise ParameterError(f'workers is {count}: give 1 or more')
         self.count = count or len(os.sched_getaffinity(0))
         self._pool: ProcessPoolExecutor | None = None
 

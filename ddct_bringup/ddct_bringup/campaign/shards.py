@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.registry import make_controller
+from ddct_controllers.interface import THESIS, Controller
+from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.errors import FOREIGN_FAILURES
 
 _MOST_RUNS = 2000
@@ -73,9 +75,10 @@ def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, 
 def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]:
     """Return the entries of the runs that can be computed at once, by index."""
     suited = []
+    shared: dict[str, Controller] = {}
     for run in runs:
         try:
-            controller = make_controller(run.controller, run.settings)
+            controller = _controller(run, shared)
         except FOREIGN_FAILURES:
             continue  # step by step it says why
         if not batchable(run.settings, controller):
@@ -86,3 +89,19 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
         for (run, _), result in zip(suited, results, strict=True)
         if result is not None
     }
+
+
+def _controller(run: CampaignRun, shared: dict[str, Controller]) -> Controller:
+    """Return the controller of a run: one of ours that no run changes is made once."""
+    spec = run.controller
+    if spec.computed_from != THESIS or spec.name not in _our_names():
+        return make_controller(spec, run.settings)
+    key = repr((spec.name, run.settings.scenario.controllers.get(spec.name)))
+    if key not in shared:
+        shared[key] = make_controller(spec, run.settings)
+    return shared[key]
+
+
+@cache
+def _our_names() -> frozenset[str]:
+    return frozenset(own_controller_names())

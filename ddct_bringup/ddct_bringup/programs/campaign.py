@@ -10,7 +10,6 @@ from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
 from ddct_bringup.programs import campaign_replay, campaign_show
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
-from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
 from ddct_plant.program.stop_signals import stop_signals
 
@@ -44,8 +43,6 @@ def main(argv: list[str] | None = None) -> int:
 
 def _campaign(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
-    if options.workers is not None and options.workers < 1:
-        raise ParameterError(f'--workers is {options.workers}: give 1 or more')
     campaign = Campaign(read_spec(options.spec))
     with stop_signals() as stops:
         results = carry_out(

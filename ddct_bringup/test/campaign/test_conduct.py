@@ -22,7 +22,7 @@ from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.verdict.limits_file import limits_of_text, packaged_limits
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files import output_file
 
 SPEC: dict[str, Any] = {
@@ -112,6 +112,15 @@ def test_what_an_interruption_left_is_completed_without_loss_or_duplicates(
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
     missing = RUNS - len(done) + 1
     assert len(again.computed) == missing
+
+
+def test_a_refused_sample_ends_the_campaign_before_anything_is_written(tmp_path: Path) -> None:
+    grid = {'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]}
+    with pytest.raises(
+        ParameterError, match=r'run 2 \(duration_s 1\.0, control_start_s 2\.4, veh'
+    ):
+        carried_out(tmp_path / 'out', grid=grid)
+    assert not (tmp_path / 'out').exists()
 
 
 def test_planning_can_be_interrupted(tmp_path: Path) -> None:
