@@ -1,8 +1,8 @@
 """Control architectures of the thesis: how open loop and feedback make one torque request."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from numbers import Real
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,7 @@ from ddct_plant.scenario.settings import RunSettings
 _FEEDBACK_OFF = Command(0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class TorqueRequest:
+class TorqueRequest(NamedTuple):
     """What the clutch is asked over one period, before saturation, and what it is made of."""
 
     torque: float
@@ -148,7 +147,9 @@ class Architecture:
             raise DdctError(
                 f'{self._name}: it gave an engine torque at step {step}: set its commands_engine'
             )
-        return Command(clutch, command.status, engine)
+        given = command.clutch_torque, command.engine_torque
+        plain = type(command) is Command and clutch is given[0] and engine is given[1]
+        return command if plain else Command(clutch, command.status, engine)
 
 
 def _is_status(status: object) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -56,8 +56,7 @@ PhaseEvent = tuple[float, str]
 """Scenario time in s, and one of PHASE_CHANGES."""
 
 
-@dataclass(frozen=True, slots=True)
-class DrivelineOutputs:
+class DrivelineOutputs(NamedTuple):
     """The signals of a tick; joints in the order engine, primary shaft, wheel, driveshaft."""
 
     joint_position: list[float]

@@ -1,7 +1,6 @@
 """Engine, load, actuator, clutch and driveline of a run, wired as the graph wires their nodes."""
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import DrivelineOutputs
@@ -71,8 +70,7 @@ class StickSlip:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class PlantSight:
+class PlantSight(NamedTuple):
     """The plant at t_k, and what control is told of it."""
 
     now: DrivelineOutputs
