@@ -5,6 +5,7 @@ from typing import Any
 
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
 from ddct_bringup.report.tables.verdict_table import value_text
+from ddct_plant.program.table import UNDEFINED
 
 RULES = {
     'failed': 'The verdict of a valid run has another state than engaged. A criterion beyond its '
@@ -36,13 +37,13 @@ def replay_command(folder: str, index: int | str) -> str:
 
 def share_text(failed: dict[str, Any]) -> str:
     """Return the share of failed engagements in percent."""
-    return '–' if failed['share'] is None else f'{100.0 * failed["share"]:.1f} %'
+    return UNDEFINED if failed['share'] is None else f'{100.0 * failed["share"]:.1f} %'
 
 
 def interval_text(failed: dict[str, Any]) -> str:
     """Return the ends of its interval, or a dash."""
     if failed['interval'] is None:
-        return '–'
+        return UNDEFINED
     lower, upper = (100.0 * end for end in failed['interval'])
     return f'{lower:.1f} to {upper:.1f} %'
 

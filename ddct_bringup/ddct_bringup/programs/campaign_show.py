@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from textwrap import fill
 
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
@@ -23,8 +24,7 @@ examples:
   ddct campaign show campaigns/wear --csv rows.csv       also every row as CSV
 
 Writes {SUMMARY} and {PAGE} into DIR.
-CVaR: {RULES['CVaR']}
-{RULES['rank']}
+{fill(f'CVaR: {RULES["CVaR"]} {RULES["rank"]}', 96)}
 """
 
 
