@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
 
-from ddct_controllers.registry import controller_spec
+from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, OptionGroup, Options, close_name, group_of, options_of
 from ddct_plant.scenario.scenario import Scenario
@@ -41,6 +41,8 @@ def option_of(where: str, key: str) -> Option | None:
     section, _, rest = key.partition('.')
     if section == CONTROLLERS:
         name, _, option = rest.partition('.')
+        if name not in controller_names():  # that of a file or an object, or of nobody
+            return None
         return (controller_spec(name).options or {}).get(option)
     if key == SCENARIO or key in sections() or key.removesuffix(FILE_KEY) in sections():
         return None

@@ -1,6 +1,5 @@
 """What `--over` says: a key, and the values that it takes one after the other."""
 
-import dataclasses
 import math
 import re
 from dataclasses import dataclass
@@ -8,13 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.registry import controller_names, controller_spec
+from ddct_bringup.campaign.keys import SCENARIO, option_of
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import Option, close_name, group_of, options_of
 from ddct_plant.base.printable import printable
 from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
 
 MOST = 10_000
 """Values of one key, and points of a sweep; a campaign is made for more."""
@@ -34,15 +30,11 @@ class Axis:
     unit: str = ''
 
     def __post_init__(self) -> None:
-        """Refuse a key that nothing has, and values that are none, too many or equal."""
+        """Refuse values that are none, too many or equal."""
         if (problem := self._problem()) is not None:
             raise ParameterError(f'--over {printable(self.key)}: {problem}')
 
     def _problem(self) -> str | None:
-        first = self.key.partition('.')[0]
-        known = [*options_of(RunSettings), *(field.name for field in dataclasses.fields(Scenario))]
-        if first not in known:
-            return f'there is no such key: {close_name(first, known)}'
         if not 1 <= len(self.values) <= MOST:
             return f'{len(self.values)} values: give 1 to {MOST}'
         for value in self.values:
@@ -74,8 +66,14 @@ def axis_of(text: str) -> Axis:
 
 
 def axis(key: str, values: Any) -> Axis:
-    """Return the axis of a key; whole numbers become what the key takes."""
-    described = _described(key)
+    """
+    Return the axis of a key; whole numbers become what the key takes.
+
+    Raise ParameterError for a key that there is not, or that a sweep cannot vary.
+    """
+    if key == SCENARIO:
+        raise ParameterError(f'--over {key}: give one by --scenario, or a campaign')
+    described = option_of('--over', key)
     if described is not None and described.kind is float:
         values = [float(value) if type(value) is int else value for value in values]
     return Axis(key, tuple(values), described.unit if described else '')
@@ -119,25 +117,3 @@ def _value(text: str, key: str) -> Any:
     if not math.isfinite(number):
         raise ParameterError(f'--over {printable(key)}: {text} is not finite: give a number')
     return number
-
-
-def _described(key: str) -> Option | None:
-    """Return what a key of the settings, a scenario or a controller is, None if not known."""
-    *folders, leaf = key.split('.')
-    if not folders and leaf in options_of(RunSettings):
-        return options_of(RunSettings)[leaf]
-    if folders[:1] == ['controllers'] and len(folders) == 2:
-        named = folders[1]
-        return (
-            (controller_spec(named).options or {}).get(leaf)
-            if named in controller_names()
-            else None
-        )
-    group: type = Scenario
-    for folder in folders:
-        fields = {field.name: field for field in dataclasses.fields(group)}
-        inner = group_of(fields[folder]) if folder in fields else None
-        if inner is None:
-            return None
-        group = inner
-    return options_of(group).get(leaf)

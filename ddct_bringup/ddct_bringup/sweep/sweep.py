@@ -58,14 +58,14 @@ class Sweep:
                 f'--over gives {len(self.points)} points: at most {MOST}, `ddct campaign` is '
                 'made for more'
             )
-        for settings in self.settings:
-            if not settings.lockstep:
-                raise ParameterError(
-                    f'mode is {settings.mode}, but a sweep needs no graph: leave the mode out'
-                )
+        first = self.settings[0]
+        if not first.lockstep:
+            raise ParameterError(
+                f'mode is {first.mode}, but a sweep needs no graph: leave the mode out'
+            )
         for controller in self.controllers:
             try:
-                RunPlan(self.settings[0], controller, 'headless')
+                RunPlan(first, controller, 'headless')
             except ParameterError:
                 raise
             except DdctError:

@@ -94,7 +94,9 @@ BAD = {
     'out of range': (['--over', 'wear_gain=1:4:3'], 'wear_gain is 4: it must be at most 3'),
     'no whole gear': (['--over', 'gear=1:2:3'], 'gear is 1.5: give a whole number'),
     'a key of the graph': (['--over', 'wear_gain=1,2', '--mode', 'realtime'], 'mode is realtime'),
-    'mode varied': (['--over', 'mode=lockstep,realtime'], 'mode is realtime'),
+    'mode varied': (['--over', 'mode=lockstep,realtime'], 'unknown key mode'),
+    'scenario varied': (['--over', 'scenario=thesis,launch'], 'give one by --scenario'),
+    'a list in one': (['--over', 'engine.time_s=1,2'], 'engine.time_s is 1.0: give a list'),
     'a key twice': (['--over', 'gear=1,2', '--over', 'gear=3'], 'names gear twice'),
     'too many points': (
         ['--over', 'wear_gain=1:2:999', '--over', 'load.slope_rad=0:0.1:11'],
@@ -123,6 +125,29 @@ def test_a_mistake_is_one_line_before_anything_runs(options, words, capsys):
     assert line.startswith('ddct sweep: ')
     assert words in line
     assert not printed.out
+
+
+class Gained(api.Controller):
+    options = {'gain': api.Option(0.1, 'torque per slip error', 'N m/rpm', at_least=0.0)}
+
+    def __init__(self, context):
+        self.gain = context.gains['gain']
+
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return api.Command(-self.gain * measurement.slip_error_rpm)
+
+
+def test_an_option_of_ones_own_controller_can_be_swept():
+    mine = chosen_from(Gained, 'mine')
+    rows = api.sweep([mine], {'controllers.mine.gain': [0.05, 0.2]}, duration=SHORT_S)
+    alone = api.run(mine, set={'controllers.mine.gain': 0.2}, duration=SHORT_S)
+    assert rows['slip_final_rpm'][1] == alone.metrics['slip_final_rpm']
+    assert rows['slip_final_rpm'][0] != rows['slip_final_rpm'][1]
+    with pytest.raises(api.ParameterError, match=r'controllers\.none: there is no such'):
+        api.sweep([mine], {'controllers.none.gain': [0.1]})
 
 
 class Diverging(api.Controller):
