@@ -4,8 +4,8 @@
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, with a clutch that sticks as well, beside
 python-control, and many runs at once; each controller's update, H-infinity synthesis, the
-quadratic programs of predictive control, a whole step of `mpc_preview`, the verdict, and
-campaigns.
+quadratic programs of predictive control, a whole step of `mpc_preview`, the verdict,
+campaigns, and how soon a report is drawn.
 """
 
 import argparse
@@ -27,6 +27,8 @@ from exported_mpc import measure as measure_exported
 from exported_mpc import print_table as print_exported
 from mpc_step import measure as measure_mpc_step
 from mpc_step import print_table as print_mpc_step
+from page import measure as measure_page
+from page import print_table as print_page
 from python_control import measure as measure_python_control
 from python_control import print_table as print_python_control
 from qp import measure as measure_qp
@@ -95,6 +97,8 @@ def main() -> int:
     print(f'metrics and verdict of one run: {verdict_ms:.2f} ms (goal {VERDICT_GOAL_MS:g} ms)')
     campaign = measure_campaign()
     print_campaign(campaign)
+    page = measure_page()
+    print_page(page)
     if options.json:
         figures = {
             **results,
@@ -108,6 +112,7 @@ def main() -> int:
             'exported_mpc': exported,
             'verdict_ms': verdict_ms,
             'campaign': campaign,
+            'report_page': page,
         }
         write_json(options.json, figures)
     return (
