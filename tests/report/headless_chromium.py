@@ -20,6 +20,9 @@ WITHIN_S = 60.0
 PRINT = 'print'
 """A script that prints the page, and returns the PDF file."""
 
+PICTURE = 'picture'
+"""A script that returns the whole page as a PNG file."""
+
 _NAMES = ('chromium', 'chromium-browser', 'google-chrome')
 _OPTIONS = (
     '--headless',
@@ -84,6 +87,13 @@ async def _visit(
             if script == PRINT:
                 printed = await tab.call('Page.printToPDF', preferCSSPageSize=True)
                 result.values.append(base64.b64decode(printed['data']))
+            elif script == PICTURE:
+                layout = await tab.call('Page.getLayoutMetrics')
+                clip = {**layout['cssContentSize'], 'scale': 1}
+                taken = await tab.call(
+                    'Page.captureScreenshot', captureBeyondViewport=True, clip=clip
+                )
+                result.values.append(base64.b64decode(taken['data']))
             else:
                 result.values.append(await tab.evaluate(script))
         return result
