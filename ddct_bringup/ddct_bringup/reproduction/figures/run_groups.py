@@ -32,64 +32,64 @@ _FEW_GOOD = 'few controllers with good results'
 RUN_GROUPS = (
     RunGroup(
         *(('2.11', '2.13', '2.14'), 'feedforward', _FIRST_THREE, _OSCILLATING),
-        verdict='Agrees, except that w_d is near the reference with LS3 only',
+        verdict='Ours agree, except that w_d is near the reference with LS3 only',
     ),
     RunGroup(
         *(('2.12', '2.15', '2.16'), 'feedforward', _LAST_SIX, _OSCILLATING),
-        verdict='The oscillations agree; w_d trails behind the reference, less with more gain',
+        verdict='The oscillations agree; w_d lags behind the reference, less with more gain',
     ),
     RunGroup(
         *(('2.17', '2.18', '2.19'), 'feedforward_tanh', _FIRST_THREE, _NOT_GOOD),
-        verdict='Agrees: it changes little',
+        verdict='Ours agree: the reference changes little',
     ),
     RunGroup(
         *(('2.20', '2.21', '2.22'), 'feedforward_tanh', _LAST_SIX, _NOT_GOOD),
-        verdict='Agrees: A_x varies more than with the reference of CRF',
+        verdict='Ours agree: A_x varies more than with the reference of CRF',
     ),
     RunGroup(
         *(('2.23', '2.24', '2.25'), 'detailed', (*_FIRST_THREE, 'pi'), _FEW_GOOD),
-        verdict='Agrees: LS1 swings far below zero, LS2 and LS3 oscillate more than the PI',
+        verdict='Ours agree: LS1 goes far below zero, LS2 and LS3 oscillate more than the PI',
     ),
     RunGroup(
         *(('2.26', '2.27', '2.28'), 'detailed', (*_LAST_SIX, 'pi'), _FEW_GOOD),
-        verdict='Agrees: LS8 and LS9 are faster than the PI, at the cost of w_sr',
+        verdict='Ours agree: LS8 and LS9 are faster than the PI, at the cost of w_sr',
     ),
     RunGroup(
         *(('3.10',), 'base', ('hinf2',), 'the only one that tracks the reference here'),
-        verdict='It tracks',
+        verdict='Ours agree: it tracks',
     ),
     RunGroup(
         *(('3.11', '3.12', '3.13'), 'feedforward', _H_INFINITY),
         thesis_says='the faster to zero, the larger the oscillations',
-        verdict='Agrees',
+        verdict='Ours agree',
     ),
     RunGroup(
         *(('3.14', '3.15', '3.16'), 'feedforward_tanh', _H_INFINITY),
         thesis_says='no better with this reference',
-        verdict='Agrees for H∞1 and H∞3; H∞2 oscillates half as much in w_sr',
+        verdict='Ours agree for H∞1 and H∞3; H∞2 oscillates half as much in w_sr',
     ),
     RunGroup(
         *(('3.17', '3.18', '3.19'), 'detailed', (*_H_INFINITY, 'pi')),
         thesis_says='oscillations reduced, only H∞2 very bad in w_sr and A_x',
-        verdict='Agrees',
+        verdict='Ours agree',
     ),
     RunGroup(
         *(('4.3', '4.4', '4.5'), 'detailed', ('mpc1', 'mpc2', 'mpc3')),
         thesis_says='oscillations smaller than in the previous chapters',
-        verdict='Not here: w_d is nearer to the reference, and the oscillations are larger; in '
-        'Table 5.1 itself MPC3 oscillates more than H∞1',
+        verdict='Ours do not agree: w_d is nearer to the reference, and the oscillations are '
+        'larger; in Table 5.1 itself MPC3 oscillates more than H∞1',
         compared=('ls8', 'hinf1'),
     ),
     RunGroup(
         *(('4.6', '4.7', '4.8'), 'detailed', ('mpc4',)),
         thesis_says='excellent, no oscillations in w_sr and A_x',
-        verdict='Agrees: oscillations all but vanish. w_d is within 10 rpm of zero after 0.46 s, '
-        'but stays above it, so t_a is not defined',
+        verdict='Ours agree: oscillations nearly vanish. w_d is within 10 rpm of zero after '
+        '0.46 s, but stays above it, so t_a is not defined',
         compared=('mpc3',),
     ),
     RunGroup(
         *(('5.1',), 'feedforward', ('hinf2',), 'good response whatever the wear'),
-        verdict='Agrees: w_d goes to zero at both ends',
+        verdict='Ours agree: w_d goes to zero at both ends',
         wear_gains=(0.7, 1.3),
     ),
 )

@@ -100,8 +100,8 @@ def _draw_tanh(axes: Axes) -> str:
     quantity = 'Slip speed reference, rpm'
     draw_over_time(axes, quantity, (0.0, _LAST_S), lines, {"CRF's": REFERENCE_LINE})
     return (
-        'Goes to zero more smoothly than that of CRF, at a time that can be chosen, as the thesis '
-        'says. It prints no formula: steepness and end are ours.'
+        'It goes to zero more smoothly than that of CRF, at a time that can be chosen, as the '
+        'thesis says. It prints no formula: steepness and end are ours.'
     )
 
 
