@@ -33,11 +33,11 @@ _NOT_DRAWN = {
     '4.1': 'explains the horizons: nothing to compute',
 }
 _DESCRIPTION = """\
-Draw the figures of the thesis that can be computed as figure_<chapter>_<number>.png and
-.svg, with their data in .csv, and a page index.html that shows them in order and tells what
-agrees with the thesis and what does not, and of the others why they are not drawn. With
---only the page shows just those. --controllers draws further controllers into each figure
-of runs: 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
+Draw the figures of the thesis that can be computed, as figure_<chapter>_<number>.png and
+.svg, with their data in .csv. The page index.html shows them in order. It says what agrees
+with the thesis and what does not, and why the other figures are not drawn. With --only the
+page shows just those. --controllers draws further controllers into each figure of runs:
+2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
 _EXAMPLES = """\
 examples:
   ddct reproduce figures --out figures

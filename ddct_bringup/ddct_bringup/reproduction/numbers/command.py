@@ -42,10 +42,9 @@ examples:
   ddct reproduce numbers --json numbers.json
   ddct reproduce numbers --json -                  as JSON on standard output, alone
 
-The exit code is 0 when every claim holds: what is called reproduced is within its
-tolerance, what is called calibrated is too or is listed as a miss, and every erratum
-differs from the print and is the value given as ours. A prediction may miss, but not
-be without a value."""
+The exit code is 0 when every claim holds. A reproduced number is within its tolerance.
+A calibrated number is too, or is listed as a miss. An erratum differs from the print
+and has the value given as ours. A prediction may miss, but must have a value."""
 _SHOWN_COMPLAINTS = 3
 
 

@@ -49,9 +49,9 @@ STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
 }
 """Every study by its name."""
 _DESCRIPTION = """\
-Chapter 4 and what it leaves to future work: closed-loop studies of the predictive
-controllers in the frozen thesis scenario, each a table. Then every controller in
-every packaged scenario, judged, each table with a chart."""
+Study the predictive controllers of Chapter 4, and of what it leaves to future work, in
+the closed loop of the frozen thesis scenario. Then judge every controller in every
+packaged scenario. Each study is a table, those of the scenarios with a chart."""
 _EPILOG = """\
 examples:
   ddct reproduce studies                                every study
@@ -68,7 +68,9 @@ def add_parser(subparsers: Any) -> None:
         description=_DESCRIPTION,
         epilog=_EPILOG,
     )
-    parser.add_argument('--study', action='append', metavar='NAME', help='may be repeated')
+    parser.add_argument(
+        '--study', action='append', metavar='NAME', help='only this study; may be repeated'
+    )
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
     parser.add_argument(
         '--charts', metavar='DIR', help='draw the charts of studies that have one: STUDY.png'
