@@ -14,11 +14,12 @@ from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.design.drawing.line_looks import controller_look
 
-pytestmark = pytest.mark.browser
-
-pytestmark = pytest.mark.skipif(
-    chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
-)
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
+    ),
+]
 CHARTS = 8
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
 COUNT_PAINTED = """[...document.querySelectorAll('.chart')].map((place) => {
