@@ -96,7 +96,7 @@ def _step_matrices(drivelines: Sequence[DrivelineParameters], nodes: np.ndarray)
     `nodes` (R, 11, 6) give C_f within a period by the values of the actuators.
     """
     first, places = distinct(drivelines)
-    steps = step_matrix(stacked([drivelines[index] for index in first]))[places, :4]
-    transition, held, points = steps[:, :, :4], steps[:, :, 7:9], steps[:, :, 9:]
-    matrices = np.concatenate([transition, held, points @ nodes], axis=-1)
+    steps = step_matrix(stacked([drivelines[index] for index in first]), angles=False)[places]
+    # Up to there it takes the four states, C_m and C_load; what follows are the nodes of C_f.
+    matrices = np.concatenate([steps[:, :, :6], steps[:, :, 6:] @ nodes], axis=-1)
     return np.ascontiguousarray(matrices.transpose(1, 2, 0))

@@ -10,7 +10,7 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.lti import hold_inputs, lift_piecewise_linear
-from ddct_plant.models.driveline_model import matrices_with_angles
+from ddct_plant.models.driveline_model import matrices_with_angles, states_and_torques
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 
@@ -160,14 +160,14 @@ class Driveline:
         self._torques = (engine_torque, clutch_torque[-1], load_torque)
 
 
-def step_matrix(parameters: DrivelineParameters) -> np.ndarray:
+def step_matrix(parameters: DrivelineParameters, *, angles: bool = True) -> np.ndarray:
     """
-    Return the (..., 7, 20) map to the next states and angles.
+    Return the (..., 7, 20) map to the next states and angles, (..., 4, 17) without the angles.
 
     It takes states and angles (7,), C_m, C_load and the C_f nodes. Parameters that are arrays,
     (...), give a stack. Raise ParameterError where a number is not finite.
     """
-    a, b = matrices_with_angles(parameters)
+    a, b = matrices_with_angles(parameters) if angles else states_and_torques(parameters)
     _require_finite(a, b)
     engine, clutch, load = b[..., 0:1], b[..., 1:2], b[..., 2:3]
     _, held = hold_inputs(a, np.concatenate([engine, load], axis=-1), PERIOD_S)

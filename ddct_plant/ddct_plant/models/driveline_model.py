@@ -17,12 +17,12 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     c_sa/(J_p tau), an erratum: the half-shaft would not push back with the torque it is pushed
     with. Equation (1.4) leaves out c_prim, which the matrix has.
     """
-    a, b = _states_and_torques(parameters)
+    a, b = states_and_torques(parameters)
     c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / parameters.total_ratio, -1.0, 0.0]]
     return StateSpace(a, b, np.array(c), np.zeros((2, 3)))
 
 
-def _states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
+def states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
     """Return a (..., 4, 4) and b (..., 4, 3); parameters that are arrays, (...), give stacks."""
     p = parameters
     tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
@@ -59,7 +59,7 @@ def matrices_with_angles(parameters: DrivelineParameters) -> tuple[np.ndarray, n
 
     Parameters that are arrays, (...), give stacks.
     """
-    driven, torques = _states_and_torques(parameters)
+    driven, torques = states_and_torques(parameters)
     stack = driven.shape[:-2]
     a, b = np.zeros((*stack, 7, 7)), np.zeros((*stack, 7, 3))
     a[..., :4, :4], b[..., :4, :] = driven, torques
