@@ -7,8 +7,9 @@ from pathlib import Path
 from headless_chromium import PICTURE, visit
 from PIL import Image
 
-WIDTH_PX = 1280
-BETWEEN_PX = 12
+WIDTH_PX, HEIGHT_PX = 1280, 9000
+"""So high that nothing scrolls: taking the picture then moves nothing."""
+BETWEEN_PX = 16
 PLACES = """['#summary details', '#signals', '#signals figure'].map((name) => {
   const {top, bottom} = document.querySelector(name).getBoundingClientRect();
   return [Math.floor(top + scrollY), Math.ceil(bottom + scrollY)];
@@ -18,12 +19,12 @@ PLACES = """['#summary details', '#signals', '#signals figure'].map((name) => {
 def main() -> None:
     """Put the summary and the first row of charts below each other."""
     page, target = sys.argv[1:]
-    seen = visit(Path(page), width=WIDTH_PX, scripts=[PLACES, PICTURE])
+    seen = visit(Path(page), width=WIDTH_PX, height=HEIGHT_PX, scripts=[PLACES, PICTURE])
     (further, _), (signals, _), (_, charts) = seen.values[0]
     whole = Image.open(io.BytesIO(seen.values[1])).convert('RGB')
     parts = [
         whole.crop((0, top, whole.width, bottom))
-        for top, bottom in ((0, further), (signals - BETWEEN_PX, charts + BETWEEN_PX))
+        for top, bottom in ((0, further), (signals - BETWEEN_PX, charts))
     ]
     picture = Image.new('RGB', (whole.width, sum(part.height for part in parts)), 'white')
     picture.paste(parts[0], (0, 0))
