@@ -17,6 +17,7 @@ from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers import registry
+from ddct_controllers.design.drawing.line_looks import controller_look
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -144,6 +145,8 @@ def test_a_figure_has_a_line_per_run_in_each_chart(worn):
     assert [axes.get_ylabel() for axes in charts] == ['w_d, rpm', 'C_m, N m']
     labels = [line.get_label() for line in charts[0].lines]
     assert labels == ['ls8, wear 0.7', 'pi, wear 1']
+    colours = [line.get_color() for axes in charts for line in axes.lines]
+    assert colours == [controller_look(name).light for name in ('ls8', 'pi')] * 2
     drawn = np.asarray(charts[1].lines[0].get_ydata())
     assert drawn.tolist() == worn.trajectory.engine_torque.tolist()
     with pytest.raises(api.ParameterError, match='unknown quantity w_x: did you mean w_'):
