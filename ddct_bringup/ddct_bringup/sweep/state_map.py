@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -31,7 +32,7 @@ STATE_COLOURS: Mapping[str, str] = {
     INVALID: BLACK,
 }
 """Pale where the clutch engaged, the darker the worse."""
-_MOST_TICKS = 8
+_MOST_TICKS, _MOST_COLUMNS = 8, 5
 
 
 def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequence[str]]) -> None:
@@ -50,14 +51,16 @@ def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequen
     axes.grid(visible=False)
 
 
-def state_legend(figure: Figure, states: set[str]) -> None:
-    """Say below the figure which colour is which of the states that it has."""
-    handles = [
+def state_legend(figure: Figure, states: set[str], marks: Sequence[Artist] = ()) -> None:
+    """Say below the figure which colour is which of the states that it has; then other marks."""
+    handles: list[Artist] = [
         Patch(facecolor=STATE_COLOURS[state], edgecolor='#7f7f7f', label=state.replace('_', ' '))
         for state in STATES
         if state in states
     ]
-    figure.legend(handles=handles, loc='outside lower center', ncols=len(handles))
+    handles += marks
+    columns = min(len(handles), _MOST_COLUMNS)
+    figure.legend(handles=handles, loc='outside lower center', ncols=columns)
 
 
 def places_of(axis: Axis) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
 
 from ddct_bringup.sweep.state_map import (
     draw_states,
@@ -28,13 +29,18 @@ from ddct_plant.program.table import Figure
 
 _WIDTH_IN, _PANEL_IN, _LANE_IN = 8.0, 2.3, 0.32
 _MAP_IN, _ACROSS = 3.0, 3
-_LEGEND_COLUMNS = 4
-_CROSS = 'not engaged; at the edge: no value, or far off'
+_LEGEND_COLUMNS = 6
+_MARK = {'linestyle': 'none', 'markersize': 7.0, 'markeredgewidth': 1.8, 'zorder': 5}
+_CROSS: dict[str, Any] = {**_MARK, 'marker': 'x'}
+_RING: dict[str, Any] = {**_MARK, 'marker': 'o', 'markerfacecolor': 'none'}
+_MARKS_OF_RUNS = ((_CROSS, 'other than engaged'), (_RING, 'engaged, no value'))
 _MARGIN = 0.08
 """Above and below the values shown, of their range."""
 _FARTHEST = 4.0
-"""Of a value of a run that is not engaged from those of engaged runs, of their range, to be shown
-at itself: one that runs away would leave no room for the others."""
+"""
+Of a value of a run that is not engaged from those of engaged runs, of their range or half their
+size, to be shown at itself: one that runs away would leave no room for the others.
+"""
 
 
 def write_sweep_figure(
@@ -65,49 +71,47 @@ def _lines(
     places = places_of(sweep.axes[0])
     for axes, figure in zip(panels, metrics, strict=False):
         _draw_metric(axes, places, by_name, figure)
-    panels[0].plot([], [], 'x', color=GREY, markeredgewidth=1.8, label=_CROSS)
-    panels[0].legend(ncols=_LEGEND_COLUMNS, loc='lower center', bbox_to_anchor=(0.5, 1.0))
+    names = panels[0].get_legend_handles_labels()
+    drawing.legend(*names, ncols=_LEGEND_COLUMNS, loc='outside upper center')
     _draw_lanes(panels[-1], places, by_name)
     label_values(sweep.axes[0], panels[-1].xaxis)
-    state_legend(drawing, {run.state for runs in by_name.values() for run in runs})
+    marks = [Line2D([], [], color=GREY, label=meaning, **mark) for mark, meaning in _MARKS_OF_RUNS]
+    state_legend(drawing, {run.state for runs in by_name.values() for run in runs}, marks)
     return drawing
 
 
 def _draw_metric(
     axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[SweptRun]], figure: Figure
 ) -> None:
-    """Draw lines through engaged runs; a cross marks another, at the edge if it is far beyond."""
+    """
+    Draw lines through engaged runs; a cross marks another, at the edge if it is far beyond.
+
+    An engaged run without a value is a ring at the lower edge.
+    """
     axes.set_ylabel(figure.heading)
     values = {
         name: np.array([_number(run.entry['metrics'][figure.key]) for run in runs])
         for name, runs in by_name.items()
     }
-    good = {
-        name: np.array([run.state == ENGAGED for run in runs]) & np.isfinite(values[name])
-        for name, runs in by_name.items()
+    engaged = {
+        name: np.array([run.state == ENGAGED for run in runs]) for name, runs in by_name.items()
     }
     low, high = _range(
-        np.concatenate([values[name][good[name]] for name in by_name]),
+        np.concatenate([values[name][engaged[name]] for name in by_name]),
         np.concatenate(list(values.values())),
     )
     axes.set_ylim(low, high)
-    for name in by_name:
+    for name, each in values.items():
         style = {'marker': 'o', **controller_style(name), 'markersize': 4.0, 'markevery': None}
-        axes.plot(places, values[name], color=style['color'], linewidth=0.6, alpha=0.5)
-        drawn = np.where(good[name], values[name], np.nan)
-        axes.plot(places, drawn, label=name, **style)
-        bad = ~good[name]
-        at = np.clip(np.nan_to_num(values[name][bad], nan=low), low, high)
-        axes.plot(
-            places[bad],
-            at,
-            'x',
-            color=style['color'],
-            markersize=7,
-            markeredgewidth=1.8,
-            clip_on=False,
-            zorder=5,
-        )
+        axes.plot(places, each, color=style['color'], linewidth=0.6, alpha=0.5)
+        axes.plot(places, np.where(engaged[name], each, np.nan), label=name, **style)
+        at = np.clip(np.nan_to_num(each, nan=low), low, high)
+        for mark, chosen in (
+            (_CROSS, ~engaged[name]),
+            (_RING, engaged[name] & ~np.isfinite(each)),
+        ):
+            if chosen.any():  # an empty line beyond the clip would have the layout collapse
+                axes.plot(places[chosen], at[chosen], color=style['color'], clip_on=False, **mark)
 
 
 def _draw_lanes(axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[SweptRun]]) -> None:
@@ -149,12 +153,12 @@ def _number(value: Any) -> float:
     return np.nan if value is None else float(value)
 
 
-def _range(good: np.ndarray, every: np.ndarray) -> tuple[float, float]:
+def _range(engaged: np.ndarray, every: np.ndarray) -> tuple[float, float]:
     """Return what a panel shows: the values of engaged runs, and of others near them."""
-    every = every[np.isfinite(every)]
-    if len(good):
-        low, high = np.min(good), np.max(good)
-        far = _FARTHEST * ((high - low) or 0.5 * abs(high))
+    every, engaged = every[np.isfinite(every)], engaged[np.isfinite(engaged)]
+    if len(engaged):
+        low, high = np.min(engaged), np.max(engaged)
+        far = _FARTHEST * max(high - low, 0.5 * abs(high))
         every = every[(every >= low - far) & (every <= high + far)]
     if not len(every):
         return 0.0, 1.0

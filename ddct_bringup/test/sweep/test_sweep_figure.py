@@ -14,7 +14,7 @@ from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
-from ddct_controllers.design.drawing.chart_style import controller_style
+from ddct_controllers.design.drawing.chart_style import chart_style, controller_style, save_chart
 
 TIME = TABLE_5_1[:1]
 
@@ -28,7 +28,8 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
     ]
     places = sweep.points * len(controllers)
     swept = [SweptRun(place, entry) for place, entry in zip(places, entries, strict=True)]
-    return sweep_figure(sweep, swept, TIME)
+    with chart_style():
+        return sweep_figure(sweep, swept, TIME)
 
 
 @pytest.fixture(scope='module')
@@ -56,7 +57,25 @@ def test_each_other_run_has_a_cross_within_the_panel(panel):
     low, high = panel.get_ylim()
     np.testing.assert_allclose(crosses.get_xdata(), [0.6, 1.2, 1.4])
     np.testing.assert_allclose(crosses.get_ydata(), [high, 2.5, low])
-    assert high < 4.0
+    assert high < 8.0
+
+
+def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
+    runs = [(ENGAGED, 1.0), (ENGAGED, None), (NOT_ENGAGED, 1.5)]
+    panel = drawn(['wear_gain=0.8,1,1.2'], ['pi'], runs).axes[0]
+    (ring,) = [
+        line
+        for line in panel.lines
+        if line.get_markerfacecolor() == 'none' and len(line.get_xdata())
+    ]
+    assert ring.get_xdata().tolist() == [1.0]
+    assert ring.get_ydata().tolist() == [panel.get_ylim()[0]]
+    assert by_marker(panel, 'x').get_xdata().tolist() == [1.2]
+
+
+@pytest.mark.filterwarnings('error')
+def test_the_layout_holds_where_no_run_needs_a_mark(tmp_path):
+    save_chart(drawn(['wear_gain=0.9,1'], ['pi'], [(ENGAGED, 1.0)] * 2), tmp_path / 'x.png')
 
 
 def cells(axes: Any) -> list[list[str]]:
@@ -71,8 +90,9 @@ def test_the_lanes_show_every_state_in_its_own_colour():
     states = [*STATES, *reversed(STATES)]
     figure = drawn(['wear_gain=0.6:1.2:7'], ['pi', 'ls8'], [(state, 1.0) for state in states])
     assert cells(figure.axes[-1]) == [list(STATES), list(reversed(STATES))]
-    legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert legend == [state.replace('_', ' ') for state in STATES]
+    legend = [text.get_text() for text in figure.legends[-1].get_texts()]
+    states_said = [state.replace('_', ' ') for state in STATES]
+    assert legend == [*states_said, 'other than engaged', 'engaged, no value']
 
 
 def test_a_map_has_the_first_key_across_and_the_second_up():
