@@ -3,21 +3,23 @@
 import re
 from itertools import product
 
+import numpy as np
 import pytest
 from generator.pages import DOCS, as_markdown, shown_tables
 from generator.robustness_charts import DRAWN_FROM, LABELS, pictures, robustness_figure
 from generator.robustness_map import LETTERS, RECORD, SPECS, StateMap, kept_maps
-from generator.robustness_tables import ranges_text, robustness_tables
+from generator.robustness_tables import NOMINAL_DELAY_S, ranges_text, robustness_tables
 from PIL import Image
 
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.reproduction.values.closed_loop_values import WORN
 from ddct_bringup.verdict.limits_file import packaged_limits
-from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED, RUNAWAY
+from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY
 
 AGAIN = 'run: python docs/robustness.py DELAY MASS, after the campaigns that the page shows'
 PAGE = (DOCS / 'thesis' / 'robustness_map.md').read_text(encoding='utf-8')
-STRIDE = 331
+STRIDE = 97
 """Between the runs that are made again: no multiple of a line, so that all wear gains occur."""
 
 
@@ -61,6 +63,31 @@ def test_a_figure_has_the_plane_of_each_controller_and_plant(maps: dict[str, Sta
         for clutch, name in product(found.values('clutch'), found.spec.controllers)
     ]
     assert [array.tolist() for array in shown] == planes
+
+
+def test_only_hinf2_is_engaged_at_both_wear_gains_of_table_5_2(maps: dict[str, StateMap]) -> None:
+    found = maps['delay']
+    wears = found.values('wear_gain')
+    for architecture in found.values('architecture'):
+        lines = {
+            name: found.line(name, architecture, 'linear', NOMINAL_DELAY_S)
+            for name in found.spec.controllers
+        }
+        at_both = [
+            name
+            for name, line in lines.items()
+            if {line[wears.index(worn)] for worn in WORN} == {ENGAGED}
+        ]
+        assert at_both == ['hinf2']
+
+
+def test_the_page_counts_the_runs_that_diverge(maps: dict[str, StateMap]) -> None:
+    diverged = maps['delay'].states == INVALID
+    places = {tuple(place) for place in np.argwhere(diverged)[:, [0, 2]].tolist()}
+    found = maps['delay']
+    mpc4, linear = found.spec.controllers.index('mpc4'), found.values('clutch').index('linear')
+    assert places == {(mpc4, linear)}
+    assert f'{diverged.sum()} runs\n  of the map over delay' in PAGE
 
 
 def test_ranges_are_told_by_their_ends_and_gaps_part_them() -> None:
