@@ -1,1 +1,1 @@
-"""What comes out of a campaign: how often, how badly and from where on engagements fail."""
+"""Out of a campaign: how often and how badly engagements fail, and where failure begins."""

@@ -1,4 +1,4 @@
-"""From where on engagement fails: the first value on the way out from the nominal one."""
+"""Where failure begins: the first value on the way out from the nominal one."""
 
 from dataclasses import dataclass
 

@@ -17,7 +17,7 @@ from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
 
 
 def summary_tables(summary: Summary) -> list[Table]:
-    """Return how often, from where on, and how badly."""
+    """Return how often, where failure begins, and how badly."""
     return [_failed(summary), *_first_failures(summary), _quantities(summary)]
 
 
@@ -55,7 +55,7 @@ def _first_failures(summary: Summary) -> list[Table]:
         for found in [group['first_failures'][place]]
     ]
     headers = 'varied', 'controller', 'nominal', 'fails below at', '', 'fails above at', ''
-    return [Table('From where on engagement fails', headers, rows)] if rows else []
+    return [Table('Where failure begins', headers, rows)] if rows else []
 
 
 def _quantities(summary: Summary) -> Table:

@@ -1,4 +1,4 @@
-"""From where on engagement fails, on the way out from the nominal value to both sides."""
+"""Where failure begins, on the way out from the nominal value to both sides."""
 
 import numpy as np
 from made_results import made_results
