@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from support.documented import PAGES, ROOT
+from support.documented import PAGES, ROOT, links
 
 READ = (*PAGES, ROOT / 'CONTRIBUTING.md')
 MOST_WORDS = 1500
@@ -52,3 +52,8 @@ def test_links_to_headings_arrive(page: Path) -> None:
         and anchor not in anchors((page.parent / target).resolve() if target else page)
     ]
     assert lost == []
+
+
+def test_the_list_of_pages_has_every_page() -> None:
+    listed = set(links(ROOT / 'docs' / 'README.md'))
+    assert [str(page) for page in PAGES if page not in listed and page.parent.name != 'docs'] == []
