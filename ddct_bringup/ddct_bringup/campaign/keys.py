@@ -7,6 +7,7 @@ from functools import cache
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, OptionGroup, Options, close_name, group_of, options_of
+from ddct_plant.scenario.csv_profiles import FACTOR, FACTOR_OPTION
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -44,6 +45,8 @@ def option_of(where: str, key: str) -> Option | None:
         if name not in controller_names():  # that of a file or an object, or of nobody
             return None
         return (controller_spec(name).options or {}).get(option)
+    if rest == FACTOR and section in sections():
+        return FACTOR_OPTION
     if key == SCENARIO or key in sections() or key.removesuffix(FILE_KEY) in sections():
         return None
     raise ParameterError(f'{where}: unknown key {key}: {close_name(key, (*known, SCENARIO))}')

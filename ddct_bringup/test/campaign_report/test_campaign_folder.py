@@ -87,10 +87,20 @@ def test_the_interval_of_random_samples_is_shown(
 def test_nominal_values_are_those_of_the_scenario_and_the_settings_without_variation() -> None:
     content = {
         'controllers': ['pi'],
-        'grid': {'wear_gain': [0.5], 'vehicle.mass_kg': [2000.0], 'actuator.delay_s': [0.02]},
+        'grid': {
+            'wear_gain': [0.5],
+            'vehicle.mass_kg': [2000.0],
+            'actuator.delay_s': [0.02],
+            'engine.factor': [1.2],
+        },
     }
     found = nominal_values(spec_of(content, Path()))
-    assert found == {'wear_gain': 1.0, 'vehicle.mass_kg': 1500.0, 'actuator.delay_s': 0.01}
+    assert found == {
+        'wear_gain': 1.0,
+        'vehicle.mass_kg': 1500.0,
+        'actuator.delay_s': 0.01,
+        'engine.factor': 1.0,
+    }
 
 
 def complaint(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:

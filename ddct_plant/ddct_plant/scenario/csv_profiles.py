@@ -1,13 +1,13 @@
-"""Profiles that a scenario takes from CSV files; what is loaded holds their points itself."""
+"""Profiles from CSV files and profiles times a factor; what is loaded holds the points itself."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import REQUIRED, OptionGroup, close_name, options_of
+from ddct_plant.base.options import REQUIRED, Option, OptionGroup, close_name, options_of
 from ddct_plant.base.profile import TIME, value_name
 from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
@@ -28,6 +28,9 @@ _PROFILES: tuple[type[OptionGroup], ...] = (
     SlipProfile,
 )
 _FILE = 'csv'
+FACTOR = 'factor'
+"""Key of a profile, which is in no scenario that has been loaded."""
+FACTOR_OPTION = Option(1.0, 'by which the values of a profile are multiplied')
 _REQUIRED = (_FILE, 'time', 'value', 'unit')
 _DEFAULTS: Mapping[str, Any] = {'time_unit': 's', 'start_s': 0.0}
 
@@ -41,6 +44,7 @@ def with_points(
     A section may say `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
     `start_s`, the file's time in s at scenario time 0. The file is relative to `folder`, that of
     the scenario; one that `--set` names, as `set_keys` tell, is relative to the working directory.
+    A section with `factor` has its values multiplied by that.
     Raise ParameterError that names file, line and column.
     """
     content, given = dict(content), set(set_keys)
@@ -49,12 +53,24 @@ def with_points(
         section = content.get(name)
         if not isinstance(section, Mapping):
             continue
-        section = _as_set(dict(section), name, value_name(group), given)
-        content[name] = section
+        section, value = dict(section), value_name(group)
+        factor = FACTOR_OPTION.checked(
+            f'{name}.{FACTOR}', section.pop(FACTOR, FACTOR_OPTION.default)
+        )
+        section = _as_set(section, name, value, given)
         if _FILE in section:
             base = Path() if f'{name}.{_FILE}' in given else folder
-            content[name] = _points(section, group, base)
+            section = _points(section, group, base)
+        content[name] = section if factor == 1.0 else _scaled(section, value, factor)
     return content
+
+
+def _scaled(section: dict[str, Any], value: str, factor: float) -> dict[str, Any]:
+    """Return a section with its values multiplied; leave to the scenario what are no numbers."""
+    points = section.get(value)
+    if not isinstance(points, Sequence) or not all(type(each) in (int, float) for each in points):
+        return section
+    return section | {value: [factor * each for each in points]}
 
 
 def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> dict[str, Any]:

@@ -140,3 +140,27 @@ def test_a_slope_profile_and_a_constant_slope_do_not_go_together(folder):
     text = f'{HEAD}{SPEC}slope: {{time_s: [0.0], slope_rad: [0.1]}}\n'
     with pytest.raises(ParameterError, match='slope has points, and load.slope_rad is 0.2 rad'):
         load(folder, text, ['load.slope_rad=0.2'])
+
+
+def test_a_factor_multiplies_the_values_of_a_profile(folder):
+    plain = load_scenario('thesis').engine
+    scaled = load_scenario('thesis', ['engine.factor=1.5']).engine
+    assert scaled.time_s == plain.time_s
+    assert scaled.torque_n_m == tuple(1.5 * torque for torque in plain.torque_n_m)
+    of_file = load(folder, HEAD + SPEC.replace('N m}', 'N m, factor: 0.5}')).engine
+    assert of_file.torque_n_m == (50.0, 75.0)
+    uphill = ['slope.time_s=[0.0]', 'slope.slope_rad=[0.1]', 'slope.factor=-1']
+    assert load_scenario('thesis', uphill).slope.slope_rad == (-0.1,)
+
+
+@pytest.mark.parametrize(
+    ('change', 'reason'),
+    [
+        ('engine.factor=much', r"engine.factor is 'much': give a number"),
+        ('engine.factor=-1', r'engine.torque_n_m.* is -.*: it must be at least 0'),
+        ('load.factor=2', 'unknown key load.factor'),
+    ],
+)
+def test_a_factor_that_cannot_be_used_is_named(change, reason):
+    with pytest.raises(ParameterError, match=reason):
+        load_scenario('thesis', [change])
