@@ -9,7 +9,6 @@ from pathlib import Path
 from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.progress import Progress
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import ShardJob, compute_shard, shard_ranges
 from ddct_bringup.run.folder_lock import held
@@ -17,6 +16,7 @@ from ddct_bringup.run.output_folder import MARKER, mark_folder, require_ours_or_
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
+from ddct_plant.program.progress import Progress
 
 RESULTS = 'results.parquet'
 SHARDS = 'shards'

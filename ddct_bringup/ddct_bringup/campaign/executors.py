@@ -1,9 +1,7 @@
 """Who computes shards: processes of this machine, or a Dask cluster."""
 
-import ctypes
 import multiprocessing
 import os
-import signal
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -11,12 +9,12 @@ from contextlib import contextmanager
 from typing import Protocol
 
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.workers import begin_worker
 
 CONNECT_S = 10.0
 """How long a scheduler may take to answer."""
 LOST_S = 30.0
 """How long a cluster may be without any worker."""
-_SET_PARENT_DEATH_SIGNAL = 1
 _ONE_THREAD = dict.fromkeys(('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
 """So that sums are taken in one order, and workers do not wait for one another."""
 
@@ -53,7 +51,7 @@ class LocalWorkers:
         self.close()
         # A new interpreter: a copy of this process would keep its threads' locks and its BLAS.
         context = multiprocessing.get_context('spawn')
-        self._pool = ProcessPoolExecutor(self.count, context, _begin)
+        self._pool = ProcessPoolExecutor(self.count, context, begin_worker)
         return self._pool
 
     def require_alive(self) -> None:
@@ -134,10 +132,3 @@ def workers_of(count: int | None, scheduler: str | None) -> Iterator[Workers]:
             if value is not None:
                 os.environ[name] = value
         workers.close()
-
-
-def _begin() -> None:
-    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)

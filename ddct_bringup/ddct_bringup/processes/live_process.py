@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from ddct_bringup.processes.node_process import end_with_parent
 from ddct_bringup.processes.node_processes import POLL_S
 from ddct_bringup.processes.ros_domain import own_domain
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.stop_signals import end_with_parent
 
 DEFAULT_PORT = 8765
 """Where Foxglove looks for a server unless it is told another port."""

@@ -1,7 +1,6 @@
 """One node of a graph as a process: how it is started, what it prints, whether it still runs."""
 
 import contextlib
-import ctypes
 import os
 import signal
 import subprocess
@@ -11,6 +10,7 @@ from pathlib import Path
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
 from ddct_plant.program.pulse import FAREWELL, PULSE_FD
+from ddct_plant.program.stop_signals import end_with_parent
 
 START_S = 60.0
 """How long a node may take to start before it counts as hung."""
@@ -18,7 +18,6 @@ LEAVE_S = 2.0
 """How long a node whose work is over may take to leave the graph before it is ended."""
 MOST_ELAPSED_S = 1.0
 """Time between two looks counts up to this: when we were stopped, nobody's silence shows."""
-_SET_PARENT_DEATH_SIGNAL = 1
 _ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 """What we send."""
 _PIPE_BYTES = 1 << 16
@@ -124,8 +123,3 @@ class NodeProcess:
     def _all_words(self) -> bytes:
         # Not by seek and read: the node writes at the file position that we share with it.
         return os.pread(self._printed, os.fstat(self._printed).st_size, 0)
-
-
-def end_with_parent() -> None:
-    """Let the kernel end this node should the supervisor itself be killed (Linux)."""
-    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGTERM)

@@ -7,7 +7,6 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from ddct_bringup.campaign.processes import in_processes
 from ddct_bringup.campaign.rows import RunBase, scored_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import Entry
@@ -15,6 +14,7 @@ from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.settings import RunSettings
 
 

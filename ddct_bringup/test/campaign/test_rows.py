@@ -1,16 +1,12 @@
 """A run among many is settled, scored and judged as the same run alone; a failed one says why."""
 
-import os
-import signal
-
 import pytest
 
 from ddct_bringup import api
-from ddct_bringup.campaign.processes import in_processes
 from ddct_bringup.campaign.rows import WALL_CLOCK, RunBase, result_row, scored_headless
 from ddct_bringup.verdict.limits_file import packaged_limits
 from ddct_controllers.from_python import chosen_from
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -69,22 +65,3 @@ def test_a_run_that_fails_is_invalid_with_its_reason_and_without_figures():
     assert row['engagement_time_s'] is row['slip_final_rpm'] is None
     sound = scored_headless(BASE.at({}), 'pi', packaged_limits())
     assert row.keys() == result_row(sound, {'wear_gain': 1.0}).keys()
-
-
-def test_results_come_in_order_whatever_the_number_of_workers():
-    for workers in (1, 2, 3):
-        with in_processes(lambda index: index**2, 40, workers) as results:
-            assert list(results) == [index**2 for index in range(40)]
-
-
-def test_work_is_done_in_other_processes():
-    with in_processes(lambda _: os.getpid(), 4, 2) as results:
-        assert os.getpid() not in set(results)
-
-
-def test_a_killed_worker_is_told_in_a_line():
-    with (
-        pytest.raises(DdctError, match='killed'),
-        in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,
-    ):
-        list(results)

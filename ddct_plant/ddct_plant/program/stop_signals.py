@@ -1,11 +1,13 @@
-"""What SIGINT and SIGTERM do for a while: end work in an orderly way, or the process at once."""
+"""What SIGINT and SIGTERM do for a while, and what ends a process whose parent is gone."""
 
+import ctypes
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
+_SET_PARENT_DEATH_SIGNAL = 1
 
 
 @contextmanager
@@ -21,6 +23,11 @@ def ends_at_once() -> Iterator[None]:
     """Let the kernel end the process by either signal, were it to hang in foreign code."""
     with _handled(signal.SIG_DFL):
         yield
+
+
+def end_with_parent(by: signal.Signals = signal.SIGTERM) -> None:
+    """Let the kernel send this process a signal when its parent ends, be it killed (Linux)."""
+    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, by)
 
 
 @contextmanager

@@ -1,7 +1,5 @@
 """Every controller in every packaged scenario, new and worn: what its verdict says."""
 
-from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from typing import Any
 
@@ -19,6 +17,7 @@ from ddct_bringup.reproduction.studies.study import (
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
 from ddct_plant.program.table import Column
+from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
 
@@ -77,10 +76,8 @@ def cases_of(scenario: str, clutch: str) -> list[Case]:
 
 def _engagements(scenario: str, clutch: str) -> Study:
     title = f'Every controller in {scenario}, clutch {clutch}'
-    with ProcessPoolExecutor() as pool:
-        found: Iterable[tuple[tuple[str, ...], Slip]] = pool.map(
-            engagement, cases_of(scenario, clutch), chunksize=8
-        )
+    cases = cases_of(scenario, clutch)
+    with in_processes(lambda index: engagement(cases[index]), len(cases)) as found:
         rows, slips = zip(*found, strict=True)
     return Study(
         title,

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.stop_signals import end_with_parent
 
-_SET_PARENT_DEATH_SIGNAL = 1
 _SET_THREADS = (
     'openblas_set_num_threads',
     'scipy_openblas_set_num_threads',
@@ -66,12 +66,17 @@ _work: Callable[[int], Any]
 
 
 def _begin(work: Callable[[int], Any]) -> None:
-    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
     global _work
     _work = work
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    begin_worker()
     one_numeric_thread()
+
+
+def begin_worker() -> None:
+    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    end_with_parent(signal.SIGKILL)
 
 
 def one_numeric_thread() -> None:

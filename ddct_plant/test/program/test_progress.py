@@ -2,7 +2,7 @@
 
 import io
 
-from ddct_bringup.campaign.progress import Progress
+from ddct_plant.program.progress import Progress
 
 
 class Terminal(io.StringIO):
