@@ -51,8 +51,7 @@ def add_parser(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
 
 
 def _replay(options: argparse.Namespace) -> int:
-    if options.json:
-        require_place('--json', options.json)
+    require_place('--json', options.json)
     manifest = Manifest.read(options.folder)
     limits = load_limits(options.limits)
     manifest.require_limits(limits, options.folder)

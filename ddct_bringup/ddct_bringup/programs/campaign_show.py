@@ -15,7 +15,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser
-from ddct_plant.program.table import print_table
+from ddct_plant.program.table import print_tables
 
 _EPILOG = f"""\
 examples:
@@ -43,16 +43,14 @@ def _show(options: argparse.Namespace) -> int:
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
     for option in ('json', 'csv'):
-        if getattr(options, option):
-            require_place(f'--{option}', getattr(options, option))
+        require_place(f'--{option}', getattr(options, option))
     summary = write_campaign_page(options.folder)
     if options.json:
         write_json(options.json, summary)
     if options.csv:
         write_text(options.csv, _csv(options.folder))
     if STDOUT not in (options.json, options.csv):
-        for table in summary_tables(summary):
-            print_table(table)
+        print_tables(summary_tables(summary))
         for reason in dict.fromkeys(each['failed']['no_interval'] for each in summary['groups']):
             if reason:
                 print(f'no interval: {reason}')

@@ -65,8 +65,7 @@ def _compare(argv: list[str]) -> int:
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bags')
     require_chart_library()
-    if options.json:
-        require_place('--json', options.json)
+    require_place('--json', options.json)
     limits = load_limits(options.limits)
     names = controllers_of(options.controllers)
     settings = settings_of(options, [controller_label(name) for name in names])

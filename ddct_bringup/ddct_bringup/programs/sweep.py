@@ -63,8 +63,7 @@ def _sweep(argv: list[str]) -> int:
     if not options.over:
         raise ParameterError('--over is missing: give KEY=START:STOP:COUNT')
     metrics = _metrics(options.metrics)
-    if options.json:
-        require_place('--json', options.json)
+    require_place('--json', options.json)
     if options.figure:
         _require_picture(options.figure, len(options.over))
     sweep = _planned(options)

@@ -1,6 +1,5 @@
 """`failed_run.json`: the note in the folder of a run that failed, with or without a bag."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.printable import printable
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_text import parse_json
-from ddct_plant.files.output_file import write_text
+from ddct_plant.files.output_file import write_json
 
 NOTE_FILE = 'failed_run.json'
 
@@ -30,8 +29,8 @@ def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> N
 
     Raise DdctError when that fails.
     """
-    text = json.dumps({'reason': reason, 'run': dict(custom_data)}, indent=2) + '\n'
-    write_text(str(folder / NOTE_FILE), text, 'choose another output folder')
+    note = {'reason': reason, 'run': dict(custom_data)}
+    write_json(str(folder / NOTE_FILE), note, 'choose another output folder')
 
 
 def failed_run(folder: Path) -> FailedRun | None:

@@ -7,8 +7,8 @@ from dataclasses import asdict
 from ddct_controllers.check.checks import check_controller
 from ddct_controllers.check.outcome import FAIL, Outcome
 from ddct_plant.base.printable import printable
-from ddct_plant.files.output_file import STDOUT, require_place, write_json
-from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.files.output_file import require_place
+from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
@@ -34,16 +34,12 @@ def _check(argv: list[str]) -> int:
     add_scenario_options(parser, set_example='controllers.mine.gain=0.2')
     parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
     options = parser.parse_args(argv)
-    if options.json:
-        require_place('--json', options.json)
+    require_place('--json', options.json)
     settings = RunSettings(scenario_of(options, options.overrides))
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
     outcomes = check_controller(options.controller, settings)
-    if options.json != STDOUT:
-        _print(outcomes)
-    if options.json:
-        checks = [asdict(each) for each in outcomes]
-        write_json(options.json, {'controller': options.controller, 'checks': checks})
+    report = {'controller': options.controller, 'checks': [asdict(each) for each in outcomes]}
+    show_and_write(options.json, report, lambda: _print(outcomes))
     failed = [each.name for each in outcomes if each.state == FAIL]
     if failed:
         complain(PROGRAM, f'{options.controller} fails: {", ".join(failed)}')

@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,9 @@ from ddct_controllers.from_file.controller_file import require_name
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.files.output_file import STDOUT, write_text
+from ddct_plant.program.command_line import show_and_write
+from ddct_plant.program.table import Table, print_tables
 
 
 def add_design_options(parser: argparse.ArgumentParser) -> None:
@@ -45,11 +47,7 @@ def free_name(options: argparse.Namespace) -> str:
 
 def show(options: argparse.Namespace, tables: Iterable[Table], record: Mapping[str, Any]) -> None:
     """Print the tables unless standard output is for the JSON, and write that if asked for."""
-    if options.json != STDOUT:
-        for table in tables:
-            print_table(table)
-    if options.json:
-        write_json(options.json, record)
+    show_and_write(options.json, record, partial(print_tables, tables))
 
 
 def write_design(

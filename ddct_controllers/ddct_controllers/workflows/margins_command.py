@@ -12,8 +12,7 @@ from ddct_controllers.registry import (
 )
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import write_json
-from ddct_plant.program.command_line import complain
+from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
@@ -62,14 +61,15 @@ def run(options: argparse.Namespace) -> int:
             f'{options.controller} is not linear: it has no frequency response; '
             'choose a controller that has a linear_model, or all'
         )
-    if options.json != '-':
-        print_table(margins_table(evidence, settings))
-        others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
-        if others:
-            print(f'Not linear, without a frequency response: {", ".join(others)}')
-    if options.json:
-        write_json(options.json, evidence)
+    show_and_write(options.json, evidence, lambda: _show(evidence, settings))
     return 0
+
+
+def _show(evidence: Evidence, settings: RunSettings) -> None:
+    print_table(margins_table(evidence, settings))
+    others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
+    if others:
+        print(f'Not linear, without a frequency response: {", ".join(others)}')
 
 
 def margins_table(evidence: Evidence, settings: RunSettings) -> Table:

@@ -14,8 +14,9 @@ from ddct_controllers.workflows.plant_on_paper import (
     plant_on_paper,
 )
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.output_file import STDOUT, require_place, write_bytes, write_json, write_text
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.files.output_file import require_place, write_bytes, write_json, write_text
+from ddct_plant.program.command_line import show_and_write
+from ddct_plant.program.table import Table, print_tables
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 
 _DESCRIPTION = """\
@@ -59,11 +60,7 @@ def run(options: argparse.Namespace) -> int:
             )
         require_place('--export', file)
     paper = plant_on_paper(scenario_of(options, options.overrides))
-    if options.json != STDOUT:
-        for table in paper_tables(paper).values():
-            print_table(table)
-    if options.json:
-        write_json(options.json, paper)
+    show_and_write(options.json, paper, lambda: print_tables(paper_tables(paper).values()))
     for file in options.export:
         _export(file, paper)
     return 0

@@ -11,25 +11,26 @@ from ddct_plant.base.errors import DdctError
 
 STDOUT = '-'
 """The file name that stands for standard output."""
+_ADVICE = 'give another file'
 
 
-def require_place(option: str, target: str) -> None:
-    """Raise DdctError where `target`, given with `option`, cannot be a file: before long work."""
-    path = Path(target)
-    if target == STDOUT:
+def require_place(option: str, target: str | None) -> None:
+    """Raise DdctError before long work where `target`, if `option` gave one, can be no file."""
+    if not target or target == STDOUT:
         return
+    path = Path(target)
     if path.is_dir():
         raise DdctError(f'{option} {target} is a folder: name a file in it')
     if not path.parent.is_dir():
         raise DdctError(f'{option} {target}: there is no folder {path.parent}: make it first')
 
 
-def write_json(target: str, content: Any) -> None:
+def write_json(target: str, content: Any, advice: str = _ADVICE) -> None:
     """Write `content` as JSON like `write_text`; NaN and infinity raise ValueError."""
-    write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n')
+    write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n', advice)
 
 
-def write_text(target: str, text: str, advice: str = 'give another file') -> None:
+def write_text(target: str, text: str, advice: str = _ADVICE) -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
@@ -42,7 +43,7 @@ def write_text(target: str, text: str, advice: str = 'give another file') -> Non
         write_bytes(target, text.encode(), advice)
 
 
-def write_bytes(target: str, content: bytes, advice: str = 'give another file') -> None:
+def write_bytes(target: str, content: bytes, advice: str = _ADVICE) -> None:
     """Write `content` to the file `target` like `write_text`."""
     path = Path(target).resolve()
     try:

@@ -5,14 +5,13 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import write_json
 from ddct_plant.identification.checks import IdentificationCheck, check_identification
 from ddct_plant.identification.coefficients import FITTED, SYMBOLS_AND_UNITS, PrintedCoefficients
 from ddct_plant.identification.fit import Identification, identify_driveline
 from ddct_plant.identification.log_command import add_log_options, identify_log
 from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
 from ddct_plant.models.printed import CLUTCH_TO_SLIP, CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP
-from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 
 PROGRAM = 'ddct identify'
@@ -62,10 +61,7 @@ def _run(argv: list[str]) -> int:
     identification = identify_driveline(p2)
     checks = check_identification(identification, p2)
     content = _content(identification, _ranges(identification, p2), checks)
-    if options.json != '-':
-        _print_tables(content)
-    if options.json:
-        write_json(options.json, content)
+    show_and_write(options.json, content, lambda: _print_tables(content))
     failed = [check.name for check in checks if not check.passed]
     if failed:
         advice = '; leave out --as-printed' if options.as_printed else ''

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from ddct_plant.base.checks import require_name
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
+from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.log_check import Prediction, predict
 from ddct_plant.identification.log_fit import PARAMETERS, KnownLoad, LogFit, fit_log
@@ -18,7 +18,7 @@ from ddct_plant.identification.log_stretches import LOAD, SPEEDS, TORQUES, stret
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
 from ddct_plant.measured.log import MeasuredLog, read_log
 from ddct_plant.models.load import RoadLoad
-from ddct_plant.program.command_line import ProgramParser
+from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.options import add_scenario_options
@@ -72,8 +72,7 @@ def identify_log(options: argparse.Namespace) -> int:
     if not 0.1 <= options.hold_out <= 0.9:
         raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
     for option, file in (('--out', options.out), ('--json', options.json)):
-        if file:
-            require_place(option, file)
+        require_place(option, file)
     if options.out:
         require_name('the name of --out, which names the scenario,', Path(options.out).stem)
     base = base_scenario(options, options.overrides)
@@ -84,10 +83,7 @@ def identify_log(options: argparse.Namespace) -> int:
         fit = fit_log(fitted, base.driveline, known_load, options.fix)
     predictions = predict(fit, stretches_of(held_out, known_load))
     content = _content(fit, predictions, fitted, held_out)
-    if options.json != STDOUT:
-        _print(content)
-    if options.json:
-        write_json(options.json, content)
+    show_and_write(options.json, content, lambda: _print(content))
     if options.out:
         scenario = scenario_of(base, Path(options.out).stem, fit, fitted)
         write_text(options.out, scenario_to_yaml(scenario))

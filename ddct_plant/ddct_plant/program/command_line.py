@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.printable import printable
+from ddct_plant.files.output_file import STDOUT, write_json
 
 USAGE = 2
 """Exit code after options that do not make sense, as argparse gives it."""
@@ -107,6 +108,14 @@ def run_subcommands(
         return options.run(options)
 
     return run_program(parser.prog, chosen, argv)
+
+
+def show_and_write(target: str | None, content: Any, show: Callable[[], None]) -> None:
+    """Let `show` print, unless `--json` wants standard output; write `content` as it wants it."""
+    if target != STDOUT:
+        show()
+    if target:
+        write_json(target, content)
 
 
 def complain(name: str, text: object) -> None:

@@ -117,6 +117,12 @@ def print_table(table: Table) -> None:
     print()
 
 
+def print_tables(tables: Iterable[Table]) -> None:
+    """Print one table after the other."""
+    for table in tables:
+        print_table(table)
+
+
 def drawn_by_rich(table: Table, *, ruled: bool = False) -> RichTable:
     """Return a table as rich draws it; with a rule below its headers, cells may wrap."""
     drawn = RichTable(

@@ -19,7 +19,7 @@ from ddct_bringup.reproduction.calibration.tables import all_tables, check_table
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.table import print_tables
 from ddct_plant.scenario.file import load_scenario
 
 NAME = 'ddct reproduce calibration'
@@ -81,10 +81,12 @@ def run(options: argparse.Namespace) -> int:
     quiet = STDOUT in (options.json, options.write)
     if options.quick:
         record = check_frozen(load_scenario('thesis'), _progress)
-        _print_tables(check_tables(record), quiet)
+        tables = check_tables(record)
     else:
         record = calibrate(_progress)
-        _print_tables(list(all_tables(record).values()), quiet)
+        tables = list(all_tables(record).values())
+    if not quiet:
+        print_tables(tables)
     if options.json:
         write_json(options.json, record)
     _require_tolerances(record)
@@ -110,12 +112,6 @@ def _make_ensemble(options: argparse.Namespace) -> None:
 
 def _progress(text: str) -> None:
     print(f'{NAME}: {text}', file=sys.stderr, flush=True)
-
-
-def _print_tables(tables: list[Table], quiet: bool) -> None:
-    if not quiet:
-        for table in tables:
-            print_table(table)
 
 
 def _require_tolerances(record: Record) -> None:

@@ -18,8 +18,8 @@ from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import STDOUT, write_json
-from ddct_plant.program.table import print_table
+from ddct_plant.program.command_line import show_and_write
+from ddct_plant.program.table import print_tables
 
 Source = Callable[[], Mapping[str, Value | None]]
 """Returns values by the ids of the gate's file, None for what has no value."""
@@ -63,10 +63,8 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
     rows = judge(thesis_numbers(), compute(SOURCES, _progress))
-    if options.json != STDOUT:
-        _print(rows)
-    if options.json:
-        write_json(options.json, {'numbers': [row.as_dict() for row in rows]})
+    content = {'numbers': [row.as_dict() for row in rows]}
+    show_and_write(options.json, content, lambda: _print(rows))
     _require_all(rows)
     return 0
 
@@ -97,8 +95,7 @@ def _progress(name: str) -> None:
 def _print(rows: Sequence[GateRow]) -> None:
     tables = page_tables(rows) | chapter_tables(rows, reasons=False)
     last = [tables.pop(name) for name in ('errata', 'summary', 'facts')]
-    for table in (*tables.values(), *last):
-        print_table(table)
+    print_tables((*tables.values(), *last))
 
 
 def _require_all(rows: Sequence[GateRow]) -> None:
