@@ -58,7 +58,7 @@ def _weighting() -> np.ndarray:
 
 def vibration_dose(weighted: np.ndarray) -> np.ndarray:
     """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
-    return trapezoid(weighted**4, dx=PERIOD_S) ** 0.25
+    return trapezoid(_fourth_power(weighted), dx=PERIOD_S) ** 0.25
 
 
 def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
@@ -69,10 +69,15 @@ def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, n
     """
     before = np.zeros((*weighted.shape[:-1], 1))
     squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
-    fourths = cumulative_trapezoid(weighted**4, dx=PERIOD_S, initial=0.0)
+    fourths = cumulative_trapezoid(_fourth_power(weighted), dx=PERIOD_S, initial=0.0)
     means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
     doses = fourths[..., periods:] - fourths[..., :-periods]
     return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
+
+
+def _fourth_power(values: np.ndarray) -> np.ndarray:
+    """Return a^4; numpy's power of 4 takes many times as long."""
+    return np.square(np.square(values))
 
 
 def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:

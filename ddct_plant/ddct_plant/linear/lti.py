@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.cascade import Factor, realise_cascade
+from ddct_plant.linear.exponentials import exponentials
 
 _REAL = 1e-9
 """Imaginary part, relative to the magnitude, below which a root counts as real."""
@@ -243,6 +244,8 @@ def lift_zoh_dense(
 
 
 def _exponential(matrix: np.ndarray) -> np.ndarray:
+    if matrix.ndim > 2:
+        return exponentials(matrix)
     # Only here: most of the graph's nodes do without scipy, whose import would double their start.
     from scipy.linalg import expm
 
