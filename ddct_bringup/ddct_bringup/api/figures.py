@@ -11,7 +11,7 @@ from ddct_controllers.design.drawing.chart_style import chart_style, look_style
 from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import close_name
+from ddct_plant.base.options import require_known
 
 _WIDTH_IN, _CHART_IN = 8.0, 2.6
 
@@ -45,6 +45,5 @@ def figure(
 
 def _quantity(run: Run, key: str) -> Quantity:
     known = {quantity.key: quantity for quantity in quantities_of(run.trajectory)}
-    if key not in known:
-        raise ParameterError(f'unknown quantity {key}: {close_name(key, known)}')
+    require_known([key], known, 'quantity')
     return known[key]

@@ -32,7 +32,7 @@ from ddct_controllers.registry import (
 )
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import close_name, options_of
+from ddct_plant.base.options import options_of, require_known
 from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
@@ -225,9 +225,7 @@ def base_from(
             f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}"
         )
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
-    known = options_of(RunSettings)
-    if unknown := sorted(given.keys() - known.keys()):
-        raise ParameterError(f'unknown option {unknown[0]}: {close_name(unknown[0], known)}')
+    require_known(sorted(given), options_of(RunSettings), 'option')
     return RunBase(
         str(scenario),
         {key: plain(changes[key]) for key in changes},

@@ -13,7 +13,7 @@ from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import OptionGroup, close_name, option
+from ddct_plant.base.options import OptionGroup, option, require_known
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
@@ -138,10 +138,7 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
 
 
 def _run(content: Mapping[str, Any]) -> MeasuredRun:
-    known = [field.name for field in fields(MeasuredRun)]
-    for key in content:
-        if key not in known:
-            raise DdctError(f'unknown key run.{key}: {close_name(key, known, "run.")}')
+    require_known(content, [field.name for field in fields(MeasuredRun)], prefix='run.')
     return MeasuredRun(**content)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from ddct_bringup.campaign.distributions import Distribution, distribution_of
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Option, close_name
+from ddct_plant.base.options import Option, require_known
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
 from ddct_plant.files.schema_version import require_schema_version
@@ -104,9 +104,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
 def _mapping(what: str, content: Any, known: tuple[str, ...], prefix: str = '') -> dict[str, Any]:
     if not isinstance(content, Mapping):
         raise ParameterError(f'{what} is {content!r}: give keys and values')
-    for key in content:
-        if key not in known:
-            raise ParameterError(f'unknown key {prefix}{key}: {close_name(key, known, prefix)}')
+    require_known(content, known, prefix=prefix)
     return dict(content)
 
 

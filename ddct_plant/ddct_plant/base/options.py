@@ -198,6 +198,17 @@ def with_values(group: Group, values: Mapping[str, Any]) -> Group:
     return dataclasses.replace(group, **given)
 
 
+def require_known(
+    names: Iterable[object], known: Iterable[str], what: str = 'key', prefix: str = ''
+) -> None:
+    """Raise ParameterError for the first name that is not known, with what may be meant."""
+    known = list(known)
+    for name in names:
+        if name not in known:
+            hint = close_name(name, known, prefix)
+            raise ParameterError(f'unknown {what} {prefix}{name}: {hint}')
+
+
 def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:
     """Return what may have been meant by `name`, or else everything that is known."""
     known = list(known)

@@ -9,7 +9,7 @@ from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import close_name
+from ddct_plant.base.options import require_known
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.graph.node import GraphNode
 
@@ -62,9 +62,7 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
 
 def require_declared(node: GraphNode) -> None:
     """Raise ParameterError for a parameter that was given to the node and that it has not."""
-    for name in node.undeclared_parameters():
-        hint = close_name(name, node.own_parameters())
-        raise ParameterError(f'unknown parameter {name}: {hint}')
+    require_known(node.undeclared_parameters(), node.own_parameters(), 'parameter')
 
 
 def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[str]) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Group, OptionGroup, close_name, group_of
+from ddct_plant.base.options import Group, OptionGroup, group_of, require_known
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
@@ -214,9 +214,7 @@ def _build(group: type[Group], content: Any) -> Group:
     if not isinstance(content, Mapping):
         raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
     fields = {field.name: field for field in dataclasses.fields(group)}
-    for key in content:
-        if key not in fields:
-            raise ParameterError(f'unknown key {prefix}{key}: {close_name(key, fields, prefix)}')
+    require_known(content, fields, prefix=prefix)
     for name, field in fields.items():
         required = (
             field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
