@@ -11,12 +11,14 @@ from ddct_bringup.reproduction.numbers.gate import judge
 from ddct_bringup.reproduction.numbers.gate_tables import page_tables
 from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
 from ddct_bringup.reproduction.studies.command import STUDIES
+from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.report import (
+    Record,
     design_record,
-    printed_record,
+    loop_record,
     uncertainty_record,
 )
 from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
@@ -29,6 +31,8 @@ from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.margins_command import margins_table
 from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import plant_on_paper
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -71,10 +75,21 @@ def h_infinity_tables() -> Mapping[str, Table]:
         for name, recipe in SYNTHESISED.items()
     ]
     printed = {
-        name: printed_record(controller, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS)
-        for name, controller in H_INFINITY_CONTROLLERS.items()
+        name: _both_loops(controller) for name, controller in H_INFINITY_CONTROLLERS.items()
     }
     return design_tables(records, uncertainty_record()) | {'printed': loop_table(printed)}
+
+
+def _both_loops(controller: FactoredTransferFunction) -> Record:
+    """Return both loops of a printed controller, judged by the weights that the thesis prints."""
+    sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))
+    return {
+        name: loop_record(loop, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS)
+        for name, loop in (
+            ('continuous_loop', continuous_loop(controller)),
+            ('sampled_loop', sampled),
+        )
+    }
 
 
 def plant_tables() -> Mapping[str, Table]:

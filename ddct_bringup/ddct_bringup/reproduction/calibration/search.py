@@ -42,14 +42,14 @@ class Search:
     chosen: Fit
 
 
-def search(progress: Progress, window_ends_s: Sequence[float] = WINDOW_ENDS_S) -> Search:
+def search(progress: Progress) -> Search:
     """
     Return the lowest objective of any stable PI loop.
 
     First over the window ends, each from two starts; then from all starts for the best window.
     """
     windows: list[Fit] = []
-    for end in window_ends_s:
+    for end in WINDOW_ENDS_S:
         progress(f'score window to {end:g} s')
         windows += _one_of_each_kind([fit(Problem(end), x) for x in STARTS[:2]])
     chosen_window = lowest_stable(windows).problem

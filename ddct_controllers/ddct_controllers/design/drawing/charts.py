@@ -26,6 +26,9 @@ from ddct_controllers.design.loop_shaping.nichols import (
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 
+_PHASE_DEG, _MAGNITUDE_DB = (-360.0, 0.0), (-40.0, 40.0)
+"""What a Nichols chart shows."""
+
 
 def draw_nichols(
     axes: Axes,
@@ -33,30 +36,28 @@ def draw_nichols(
     specifications: TimeSpecifications | None = None,
     *,
     styles: Iterable[dict[str, Any]] | None = None,
-    phase_deg: tuple[float, float] = (-360.0, 0.0),
-    magnitude_db: tuple[float, float] = (-40.0, 40.0),
 ) -> None:
     """
-    Draw loops by name in a Nichols chart over the given range.
+    Draw loops by name in a Nichols chart.
 
     With specifications it has their constant-|S| and constant-|T| curves, which L should not
     enter. `styles` are the keywords of each line.
     """
-    draw_nichols_grid(axes, phase_deg, magnitude_db)
+    draw_nichols_grid(axes, _PHASE_DEG, _MAGNITUDE_DB)
     if specifications:
         s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
         for name, curve, colour in (
             (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
             (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
         ):
-            draw_turns(axes, curve, phase_deg, name, color=colour, linestyle='--')
+            draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle='--')
     for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
-    critical = np.arange(-180.0, phase_deg[0] - 1.0, -TURN_DEG)
+    critical = np.arange(-180.0, _PHASE_DEG[0] - 1.0, -TURN_DEG)
     axes.plot(critical, 0.0 * critical, '+', color=BLACK, markersize=11, markeredgewidth=2)
     axes.axhline(0.0, color=GREY, linewidth=0.8)
-    axes.set(xlim=phase_deg, ylim=magnitude_db)
-    axes.set_xticks(np.arange(phase_deg[0], phase_deg[1] + 1.0, 45.0))
+    axes.set(xlim=_PHASE_DEG, ylim=_MAGNITUDE_DB)
+    axes.set_xticks(np.arange(_PHASE_DEG[0], _PHASE_DEG[1] + 1.0, 45.0))
     axes.set(xlabel='Open-loop phase arg L, °', ylabel='Open-loop magnitude |L|, dB')
     axes.legend(loc='upper left')
 

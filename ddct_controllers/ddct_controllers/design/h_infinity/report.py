@@ -30,8 +30,7 @@ from ddct_controllers.design.h_infinity.uncertainty import (
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.state_space import factored_form
-from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
 
 Record = dict[str, Any]
 _STEP_RISE_TIMES = 20.0
@@ -106,17 +105,6 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
         'cleaning': [dataclasses.asdict(step) for step in design.cleaning],
         'continuous_loop': continuous,
         'sampled_loop': sampled,
-    }
-
-
-def printed_record(
-    controller: FactoredTransferFunction, weights: HinfWeights, specifications: TimeSpecifications
-) -> Record:
-    """Return both loops of a printed controller, judged by the same weights."""
-    sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
-    return {
-        'continuous_loop': loop_record(continuous_loop(controller), weights, specifications),
-        'sampled_loop': loop_record(sampled_loop(sampled), weights, specifications),
     }
 
 

@@ -38,9 +38,9 @@ def shortfall_from_rad_s(weight: FactoredTransferFunction, error: float) -> floa
     return 0.0 if excess(OMEGA[0]) < 0.0 else float(brentq(excess, OMEGA[0], OMEGA[-1]))
 
 
-def wear_family(gains: Sequence[float] = WEAR_GAINS) -> tuple[FactoredTransferFunction, ...]:
-    """Return G_a P_2 30/pi for every K_usura, by default both ends of its range."""
-    return tuple(plant_in_rpm(IDENTIFIED_DRIVELINE, gain) for gain in gains)
+def wear_family() -> tuple[FactoredTransferFunction, ...]:
+    """Return G_a P_2 30/pi at both ends of the range of K_usura."""
+    return tuple(plant_in_rpm(IDENTIFIED_DRIVELINE, gain) for gain in WEAR_GAINS)
 
 
 def relative_error(
