@@ -17,13 +17,14 @@ from ddct_bringup.report.runs import (
     require_one_scenario,
 )
 from ddct_bringup.run.folder_lock import held, is_ours
-from ddct_bringup.scores.bags import bags_in, with_progress
+from ddct_bringup.scores.bags import bags_in
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.progress import with_progress
 
 PROGRAM = 'ddct report'
 REPORT_FILE = 'report.html'
@@ -53,9 +54,11 @@ def _report(argv: list[str]) -> int:
     limits = load_limits(options.limits)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with held(*filter(is_ours, places)):
-        bags = with_progress(bags_in(options.runs), 'reading')
+        bags = bags_in(options.runs)
         columns = load_columns(options.columns) if options.columns else None
-        runs = in_order([read_run(*bag, limits, columns) for bag in bags])
+        runs = in_order(
+            [read_run(*bag, limits, columns) for bag in with_progress(bags, len(bags), 'reading')]
+        )
         write_report(runs, options.out, limits)
     for run in runs:
         if not run.entry['valid']:

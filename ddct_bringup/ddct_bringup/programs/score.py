@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
-from ddct_bringup.scores.bags import bag_name, bags_in, with_progress
+from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv, signals_csv
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
@@ -25,6 +25,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.progress import with_progress
 
 PROGRAM = 'ddct score'
 
@@ -84,7 +85,7 @@ def _scored(
 ) -> list[Entry]:
     runs = []
     columns = load_columns(options.columns) if options.columns else None
-    for bag, folder in with_progress(bags, 'scoring'):
+    for bag, folder in with_progress(bags, len(bags), 'scoring'):
         try:
             runs.append(_score_one(bag, folder, options, limits, columns))
         except DdctError as error:

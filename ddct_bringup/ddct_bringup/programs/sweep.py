@@ -8,8 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import TextIO
 
-from rich.console import Console
-from rich.progress import track
 from rich.text import Text
 
 from ddct_bringup.campaign.rows import base_of
@@ -33,6 +31,7 @@ from ddct_plant.base.options import close_name
 from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.progress import with_progress
 from ddct_plant.program.table import Figure, drawn_by_rich
 
 PROGRAM = 'ddct sweep'
@@ -99,17 +98,8 @@ def _planned(options: argparse.Namespace) -> Sweep:
 
 def _carried_out(sweep: Sweep) -> list[SweptRun]:
     started = time.monotonic()
-    console = Console(file=sys.stderr)
     with sweep.runs() as runs:
-        shown = track(
-            runs,
-            f'{len(sweep)} runs',
-            len(sweep),
-            console=console,
-            transient=True,
-            disable=not console.is_terminal,
-        )
-        done = list(shown)
+        done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))
     complain(PROGRAM, f'{len(done)} runs in {time.monotonic() - started:.1f} s')
     return done
 

@@ -1,16 +1,10 @@
-"""Find the bags at the paths that a user gives, name them, and go through them."""
+"""Find the bags at the paths that a user gives, and name them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TypeVar
-
-from rich.console import Console
-from rich.progress import track
 
 from ddct_bringup.run.failed_run import NOTE_FILE
 from ddct_plant.base.errors import DdctError
-
-Bag = TypeVar('Bag')
 
 
 def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
@@ -63,10 +57,3 @@ def _visible(folder: Path, pattern: str) -> list[Path]:
         for file in folder.rglob(pattern)
         if not any(part.startswith('.') for part in file.relative_to(folder).parts)
     ]
-
-
-def with_progress(bags: Sequence[Bag], description: str) -> Iterable[Bag]:
-    """Show progress on standard error while the bags are gone through, on a terminal only."""
-    console = Console(stderr=True)
-    hidden = not console.is_terminal or len(bags) < 2
-    return track(bags, description, console=console, transient=True, disable=hidden)

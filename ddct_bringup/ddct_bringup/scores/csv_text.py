@@ -1,8 +1,6 @@
 """Scores and signals as CSV."""
 
-import csv
-import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +10,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.scores.measured import NOT_COMPUTED
 from ddct_bringup.scores.scoring import Entry
 from ddct_plant.base.printable import printable
+from ddct_plant.files.csv_table import csv_text
 from ddct_plant.graph.topics import (
     JOINT_STATES,
     JOINTS,
@@ -30,7 +29,7 @@ _OF_JOINTS = ((JOINT_STATES, JOINTS), (SENSED_JOINT_STATES, SENSED_JOINTS))
 def scores_csv(runs: Sequence[Entry]) -> str:
     """Return one row per run, its metrics and its verdict beside its facts."""
     rows = [score_row(run) for run in runs]
-    return _csv(rows[0], ([_text(value) for value in row.values()] for row in rows))
+    return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 
 def score_row(run: Entry) -> dict[str, Any]:
@@ -45,7 +44,7 @@ def signals_csv(recording: Recording) -> str:
     columns = signal_columns(recording.trajectory)
     # Python's floats print with the digits that give them back to the last bit.
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-    return _csv(columns, rows)
+    return csv_text(columns, rows)
 
 
 def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
@@ -65,14 +64,6 @@ def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
 
 def _verdict(run: Entry) -> dict[str, str]:
     return {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
-
-
-def _csv(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator='\n')
-    writer.writerow(names)
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _text(value: Any) -> Any:

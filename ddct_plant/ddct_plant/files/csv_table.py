@@ -1,10 +1,12 @@
-"""Read columns of numbers from a CSV file: of any tool, and with the line of what is wrong."""
+"""CSV: columns of numbers from a file of any tool, with the line of what is wrong; and text."""
 
 import csv
+import io
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +17,15 @@ from ddct_plant.files.input_file import read_text_file
 COMMENT = '#'
 _DELIMITERS = ',;\t'
 _EMPTY = ('', 'nan')
+
+
+def csv_text(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
+    """Return names and rows as the text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator='\n')
+    writer.writerow(names)
+    writer.writerows(rows)
+    return text.getvalue()
 
 
 @dataclass(frozen=True)

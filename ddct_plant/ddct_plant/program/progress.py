@@ -2,13 +2,17 @@
 
 import sys
 import time
-from collections.abc import Callable
-from typing import TextIO
+from collections.abc import Callable, Iterable
+from typing import TextIO, TypeVar
+
+from rich.console import Console
+from rich.progress import track
 
 QUIET_S = 2.0
 """Work that ends earlier says nothing."""
 _EVERY_S = {True: 0.5, False: 10.0}
 """Between two lines, on a terminal and elsewhere."""
+Step = TypeVar('Step')
 
 
 class Progress:
@@ -57,6 +61,13 @@ class Progress:
         if self._terminal and self._next > self._started + QUIET_S:
             self._stream.write('\r\x1b[K')
             self._stream.flush()
+
+
+def with_progress(steps: Iterable[Step], total: int, description: str) -> Iterable[Step]:
+    """Show a bar on standard error while the steps are gone through, on a terminal only."""
+    console = Console(stderr=True)
+    hidden = not console.is_terminal or total < 2
+    return track(steps, description, total, console=console, transient=True, disable=hidden)
 
 
 def _duration(seconds: float) -> str:

@@ -1,7 +1,5 @@
 """A figure as files: a picture, a drawing to scale, and its data."""
 
-import csv
-import io
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
@@ -12,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddct_controllers.design.drawing.chart_style import save_chart
+from ddct_plant.files.csv_table import csv_text
 from ddct_plant.files.output_file import write_text
 
 ENDINGS = ('.png', '.svg', '.csv')
@@ -32,7 +31,7 @@ def save_figure(figure: Figure, folder: Path, name: str) -> None:
     Raise DdctError when a file cannot be written.
     """
     picture, drawing, data = figure_files(folder, name)
-    write_text(str(data), csv_text(figure_data(figure)))  # before symbols become typeset
+    write_text(str(data), _as_csv(figure_data(figure)))  # before symbols become typeset
     save_chart(figure, picture)
     save_chart(figure, drawing)
 
@@ -54,14 +53,10 @@ def figure_data(figure: Figure) -> list[Column]:
     return list(columns.values())
 
 
-def csv_text(columns: list[Column]) -> str:
+def _as_csv(columns: list[Column]) -> str:
     """Return columns as CSV; a shorter one ends in empty cells."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator='\n')
-    writer.writerow([heading for heading, _ in columns])
     cells = ([f'{value:.9g}' for value in values] for _, values in columns)
-    writer.writerows(zip_longest(*cells, fillvalue=''))
-    return text.getvalue()
+    return csv_text((heading for heading, _ in columns), zip_longest(*cells, fillvalue=''))
 
 
 def _panel_data(axes: Axes) -> Iterator[Column]:
