@@ -50,7 +50,7 @@ class Plants:
         profiles = [
             np.interp(times, engines[index].time_s, engines[index].torque_n_m) for index in first
         ]
-        self.engine_torque = np.take(np.stack(profiles, axis=-1), places, axis=-1)
+        self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)
         """C_m in N m at every step, (N+1, R), what `Engine.demand` returns."""
         self._actuators = Actuators(actuators, start.torque_request, steps + 1)
         nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
