@@ -103,7 +103,8 @@ class Campaign:
         """
         known: set[tuple[str, ...]] = set()
         for case in range(self.cases):
-            kind = tuple(self.run(case).varied.get(key, '') for key in COMMON)
+            varied = self.run(case).varied
+            kind = tuple(varied.get(key, '') for key in COMMON)
             if kind not in known:
                 known.add(kind)
                 self._require_controllers(case)

@@ -148,7 +148,11 @@ def _grid(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
 
 def _not_empty(where: str, content: Any) -> Mapping[str, Any]:
     if not isinstance(content, Mapping) or not content:
-        raise ParameterError(f'{where} is empty: give keys and what they are, or leave it out')
+        said = f'is {content!r}' if content else 'is empty'
+        raise ParameterError(f'{where} {said}: give keys and what they are, or leave it out')
+    for key in content:
+        if not isinstance(key, str):
+            raise ParameterError(f'{where} has the key {key!r}: give names, such as wear_gain')
     return content
 
 

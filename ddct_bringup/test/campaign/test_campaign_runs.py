@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import spec_of
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -99,6 +99,21 @@ def test_a_sample_that_the_scenario_refuses_is_named_with_its_index_and_values()
     made = campaign(grid={'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]})
     with pytest.raises(ParameterError, match=r'run 3 \(duration_s 1.0, control_start_s 2.4, veh'):
         made.require_buildable()
+
+
+def test_planning_builds_each_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = campaign(controllers=['pi'])
+    built: list[int] = []
+    run = made.run
+
+    def counted(index: int) -> CampaignRun:
+        built.append(index)
+        return run(index)
+
+    monkeypatch.setattr(made, 'run', counted)
+    made.require_buildable()
+    of_controllers = [0, 3]  # the first of each clutch, where the controller is made too
+    assert sorted(built) == sorted([*range(made.cases), *of_controllers])
 
 
 def test_a_controller_that_does_not_suit_the_run_is_told_before_the_first_one() -> None:

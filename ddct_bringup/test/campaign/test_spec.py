@@ -36,6 +36,12 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
         (PI, 'spec.yaml: nothing is varied: give grid, random or both'),
         (PI + 'grids: {}\n', 'line 2: unknown key grids: did you mean grid?'),
         (PI + 'grid: {}\n', 'line 2: grid is empty'),
+        (PI + 'grid: [1]\n', 'line 2: grid is [1]: give keys'),
+        (PI + 'grid: {1: [1]}\n', 'line 2: grid has the key 1: give names'),
+        (
+            PI + f'random: {{samples: 2, vary: {{2: {MASS}}}}}\n',
+            'line 2: random.vary has the key 2: give names',
+        ),
         (PI + 'grid: {wear_gain: []}\n', 'line 2: grid.wear_gain is []: give a list of values'),
         (PI + 'grid: {wear_gain: 1.0}\n', 'grid.wear_gain is 1.0: give a list'),
         (PI + 'grid: {wear_gain: [1, 9]}\n', 'grid.wear_gain is 9: it must be at most 3'),
