@@ -239,6 +239,26 @@ def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path
     assert seen.errors == []
 
 
+def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(page: Path) -> None:
+    stack = """const {style} = document.querySelector('.field');
+      Object.assign(style, {width: '1rem', height: '6rem'});
+      document.querySelectorAll('.point').forEach((point) => {
+        Object.defineProperty(point.style, 'bottom', {set() {}});
+        point.style.setProperty('bottom', '90%');
+      });
+      document.querySelector('.pareto-choice select').dispatchEvent(new Event('change'))"""
+    outside = """(() => {
+      const {top, bottom} = document.querySelector('.field').getBoundingClientRect();
+      return [...document.querySelectorAll('.point b')].map((label) => {
+        const box = label.getBoundingClientRect();
+        return box.top < top - 0.1 || box.bottom > bottom + 0.1;
+      });
+    })()"""
+    seen = visit(page, scripts=[stack, outside])
+    assert seen.values[1] == [False] * 3
+    assert seen.errors == []
+
+
 def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
     listen = """addEventListener('beforeprint', () => {
       const lines = window.light.map((colour) => parseInt(colour.slice(1), 16));

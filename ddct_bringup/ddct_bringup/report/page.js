@@ -109,18 +109,28 @@
     partLabels();
   }
 
-  // A label that would cover another one or a dot moves up until it does not.
+  // A label that would cover another one or a dot moves to the nearest free place above or below,
+  // within the chart where there is one.
   function partLabels() {
     const points = [...document.querySelectorAll('.pareto .point:not([hidden])')];
+    const field = document.querySelector('.pareto .field').getBoundingClientRect();
     const taken = points.map((point) => point.querySelector('.dot').getBoundingClientRect());
     points.forEach((point) => {
       const label = point.querySelector('b');
       label.style.translate = '';
       const {left, right, top, height} = label.getBoundingClientRect();
-      let place = top;
-      const covered = () => taken.find((box) => left < box.right && right > box.left
-        && place < box.bottom && place + height > box.top);
-      for (let box = covered(); box; box = covered()) place = box.top - height;
+      const free = (next) => {
+        const covered = (place) => taken.find((box) => left < box.right && right > box.left
+          && place < box.bottom && place + height > box.top);
+        let place = top;
+        for (let box = covered(place); box; box = covered(place)) place = next(box);
+        return place;
+      };
+      const above = free((box) => box.top - height);
+      const below = free((box) => box.bottom);
+      const nearest = top - above <= below - top ? [above, below] : [below, above];
+      const place = nearest.find((each) => each >= field.top && each + height <= field.bottom)
+        ?? above;
       label.style.translate = `0 ${place - top}px`;
       taken.push({left, right, top: place, bottom: place + height});
     });
