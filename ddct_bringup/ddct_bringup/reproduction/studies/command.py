@@ -19,7 +19,8 @@ from ddct_bringup.reproduction.studies import (
     wear,
 )
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction
-from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.chart_files import save_figure
+from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_plant.base.checks import require_choice
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json
@@ -73,7 +74,9 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
     parser.add_argument(
-        '--charts', metavar='DIR', help='draw the charts of studies that have one: STUDY.png'
+        '--charts',
+        metavar='DIR',
+        help='draw the charts of studies that have one: STUDY.png and .svg, their data in .csv',
     )
     parser.set_defaults(run=run)
 
@@ -92,17 +95,17 @@ def run(options: argparse.Namespace) -> int:
         if options.json != STDOUT:
             _print(studies[name])
         if options.charts:
-            _draw(studies[name], Path(options.charts) / f'{name}.png')
+            _draw(studies[name], Path(options.charts), name)
     if options.json:
         write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
     return 0
 
 
-def _draw(study: Study, picture: Path) -> None:
+def _draw(study: Study, folder: Path, name: str) -> None:
     if study.draw is None:
         return
     with chart_style():
-        save_chart(study.draw(), picture)
+        save_figure(study.draw(), folder, name)
 
 
 def _print(study: Study) -> None:

@@ -28,7 +28,7 @@ class Slip:
 
     controller: str
     label: str
-    """What tells it from other runs of the controller."""
+    """Its wear gain, which tells it from other runs of the controller."""
     state: str
     start: int
     """Step at which control starts."""
@@ -62,10 +62,12 @@ def _place(slip: Slip, slips: Sequence[Slip]) -> int:
 def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
     axes.set_title(panel[0].controller, fontsize=9.0)
     axes.tick_params(labelsize=7.0)
+    axes.set_xlabel('Time, s', visible=False)  # for the data; the title says it to the eye
+    axes.set_ylabel('w_d, rpm', visible=False)
     axes.axvline(time_of_step(panel[0].start), color=GREY, linewidth=0.8)
     for place, (slip, colour) in enumerate(zip(panel, _COLOURS, strict=True)):
         time = np.arange(len(slip.rpm)) * PERIOD_S
-        axes.plot(time, slip.rpm, color=colour, linewidth=1.1)
+        axes.plot(time, slip.rpm, label=f'K_usura {slip.label}', color=colour, linewidth=1.1)
         axes.text(
             0.98,
             0.96 - 0.13 * place,

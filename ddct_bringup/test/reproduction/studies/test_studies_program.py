@@ -2,12 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
 from generator.pages import shown_tables
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.studies import command
 from ddct_bringup.reproduction.studies.command import STUDIES
+from ddct_bringup.reproduction.studies.engagement_charts import Slip, engagement_chart
 from ddct_bringup.reproduction.studies.study import Study
 
 FIRST = Study('The first', ('name', 'value'), [('a', '1'), ('b', '2')], ('Lower is better.',))
@@ -38,6 +40,20 @@ def test_json_on_standard_output_stands_alone_and_has_a_mapping_per_row(capsys):
             'remarks': ['Lower is better.'],
         }
     }
+
+
+def test_charts_come_as_picture_and_drawing_with_their_data(monkeypatch, tmp_path):
+    rpm = np.array([2.0, 1.0, 0.5])
+    slips = [Slip('pi', worn, 'engaged', 1, rpm + float(worn)) for worn in ('0', '1', '2')]
+    drawn = Study('Drawn', ('name',), [('c',)], draw=lambda: engagement_chart('Drawn', slips))
+    monkeypatch.setattr(command, 'STUDIES', {'plain': lambda: SECOND, 'drawn': lambda: drawn})
+    assert reproduce.main(['studies', '--json', '-', '--charts', str(tmp_path)]) == 0
+    files = sorted(file.name for file in tmp_path.iterdir())
+    assert files == ['drawn.csv', 'drawn.png', 'drawn.svg']
+    data = (tmp_path / 'drawn.csv').read_text(encoding='utf-8').splitlines()
+    headings = ','.join(f'"pi: K_usura {worn}: w_d, rpm"' for worn in '012')
+    assert data[0].endswith(headings)
+    assert data[1:] == ['0,2,3,4', '0.01,1,2,3', '0.02,0.5,1.5,2.5']
 
 
 def test_unknown_study_is_refused_before_the_work(capsys):
