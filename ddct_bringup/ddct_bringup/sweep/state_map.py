@@ -80,4 +80,10 @@ def label_values(axis: Axis, which: Any) -> None:
     """Label matplotlib's x or y axis with an axis of a sweep; few values are ticks themselves."""
     which.set_label_text(axis.heading)
     if not axis.numeric or len(axis.values) <= _MOST_TICKS:
-        which.set_ticks(places_of(axis), [value_text(value) for value in axis.values])
+        which.set_ticks(places_of(axis), _tick_texts(axis.values))
+
+
+def _tick_texts(values: Sequence[Any]) -> list[str]:
+    """Return numbers with four digits, or with all of them where four do not tell them apart."""
+    short = [f'{each:.4g}' if type(each) is float else value_text(each) for each in values]
+    return short if len(set(short)) == len(short) else [value_text(each) for each in values]

@@ -105,6 +105,19 @@ def test_a_map_has_the_first_key_across_and_the_second_up():
     assert (axes.get_xlabel(), axes.get_ylabel()) == ('wear_gain', 'gear')
 
 
+@pytest.mark.parametrize(
+    ('over', 'shown'),
+    [
+        ('wear_gain=0.5:1.5:4', ['0.5', '0.8333', '1.167', '1.5']),
+        ('vehicle.mass_kg=1500.1,1500.2', ['1500.1', '1500.2']),
+    ],
+)
+def test_ticks_are_short_but_told_apart(over, shown):
+    number = len(shown)
+    (*_, lanes) = drawn([over], ['pi'], [(ENGAGED, 1.0)] * number).axes
+    assert [tick.get_text() for tick in lanes.get_xticklabels()] == shown
+
+
 def test_cells_meet_in_the_middle_between_values():
     np.testing.assert_allclose(edges_of(np.array([0.0, 1.0, 4.0])), [-0.5, 0.5, 2.5, 5.5])
     np.testing.assert_allclose(edges_of(np.array([3.0])), [2.5, 3.5])
