@@ -15,6 +15,8 @@ RULES = {
     'interval': f'{METHOD}, {100.0 * CONFIDENCE:g} %, of runs that are a random sample. Invalid '
     'runs count as engaged at its lower end and as failed at its upper end. Runs on a grid are no '
     'sample and have none.',
+    'nominal': 'The value of the scenario, where the way to either side begins. "from": it begins '
+    'at the nearest value of the grid. A dash: the scenario gives no value, and 0 stands for it.',
     'first failure': 'The first value, from the nominal one outward, at which not every run is '
     'engaged; other numbers of the grid are at the value nearest to nominal. Of random samples it '
     'is the nearest one that is not engaged, whatever else was drawn with it.',

@@ -50,7 +50,7 @@ QUANTITIES = (
     ),
     Quantity(
         'w_sr',
-        'Torsion speed of the driveshaft',
+        'Twist rate of the driveshaft',
         'w_sr',
         'rpm',
         'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',

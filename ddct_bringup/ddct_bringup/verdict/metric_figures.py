@@ -42,10 +42,10 @@ FURTHER = (
         'RMSE w_d',
         'rpm',
         '.2f',
-        'reference less w_d over the score window',
+        'root mean square of reference less w_d over the score window',
         NO_WINDOW,
     ),
-    Figure('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'last sample', NOT_FINITE),
+    Figure('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'w_d at the end of the run', NOT_FINITE),
     Figure(
         'peak_jerk_m_s3',
         'peak jerk',
@@ -94,7 +94,7 @@ FURTHER = (
         'sum of all changes of the torque request, whole run',
         NOT_FINITE,
     ),
-    Figure('steps', 'steps', PURE, '.0f', 'periods of 10 ms'),
+    Figure('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
 )
 """The others but those of `timing.json`."""
 METRICS = {

@@ -65,10 +65,10 @@ _THESIS = (
 )
 _STATES = (
     Definition('engaged', 'the plates turn as one at the end, or never parted.'),
-    Definition('not engaged', 'they do not, but nothing worse happened.'),
-    Definition('oscillating', 'the slip goes to and fro and has not settled.'),
+    Definition('not engaged', 'the plates do not turn as one, and none of the following holds.'),
+    Definition('oscillating', 'the slip swings to and fro and has not settled.'),
     Definition('runaway', 'the plates are driven apart.'),
-    Definition('stalled, over revved', 'the engine left its limits, which ended the run.'),
+    Definition('stalled, over revved', 'the engine reached this limit, which ended the run.'),
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
     Definition(
         'within, beyond, no limit',

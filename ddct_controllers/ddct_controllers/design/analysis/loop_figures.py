@@ -6,12 +6,20 @@ from ddct_plant.program.table import PURE, Figure
 
 LOOP_FIGURES = (
     Figure(
-        'gain_margin_db', 'GM', 'dB', '.1f', 'least increase of the gain that makes it unstable'
+        'gain_margin_db',
+        'GM',
+        'dB',
+        '.1f',
+        'least increase of the gain that makes the loop unstable',
     ),
     Figure(
-        'phase_margin_deg', 'PM', 'deg', '.1f', 'least change of phase, lag or lead, that does'
+        'phase_margin_deg',
+        'PM',
+        'deg',
+        '.1f',
+        'least change of phase, lag or lead, that makes it unstable',
     ),
-    Figure('delay_margin_s', 'DM', 's', '.3f', 'least additional delay that does'),
+    Figure('delay_margin_s', 'DM', 's', '.3f', 'least additional delay that makes it unstable'),
     Figure('disk_margin', 'disk', PURE, '.2f', 'disk margin α = 2 / max |S − T|'),
     Figure('sensitivity_peak', 'M_s', PURE, '.2f', 'peak of |1/(1 + L)|'),
     Figure('complementary_peak', 'M_t', PURE, '.2f', 'peak of |L/(1 + L)|'),
@@ -20,7 +28,7 @@ LOOP_FIGURES = (
     Figure(
         'driveline_mode_hz', 'mode', 'Hz', '.2f', 'closed-loop pole pair nearest the zeros of P_2'
     ),
-    Figure('driveline_mode_damping', 'damping', PURE, '.3f', 'of that mode'),
+    Figure('driveline_mode_damping', 'damping', PURE, '.3f', 'damping ratio of that mode'),
 )
 """What every table of loops as they run shows."""
 LOOP_FIGURE_OF = {
