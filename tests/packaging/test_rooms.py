@@ -126,3 +126,10 @@ def test_no_controller_or_architecture_loads_python_control_to_run():
         [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
     )
     assert done.stdout.split() == ['False']
+
+
+def test_no_two_test_modules_have_one_name() -> None:
+    """Otherwise pytest cannot collect both at once."""
+    folders = [ROOT / 'tests', *(ROOT / package / 'test' for package in MAY_IMPORT)]
+    names = [file.name for folder in folders for file in folder.rglob('test_*.py')]
+    assert sorted({name for name in names if names.count(name) > 1}) == []
