@@ -107,7 +107,7 @@ def _share_table(found: StateMap) -> Table:
         counts = (engaged, others, driven_apart)
         shares = (f'{100.0 * count / len(states):.0f}' for count in counts)
         rows.append((architecture, PLANTS[clutch], name, *shares))
-    headers = ('engaged %', 'not engaged or oscillating %', 'runaway or diverged %')
+    headers = ('engaged %', 'not engaged or oscillating %', 'runaway or invalid %')
     return Table('', (ARCHITECTURE, 'plant', 'controller', *headers), rows)
 
 

@@ -44,7 +44,9 @@ class Plants:
         self._drag = np.array([load.drag for load in loads])
         self._wind = np.array([load.wind for load in loads])
         times = np.arange(steps + 1) / STEPS_PER_S
-        self._forces = np.stack([load.forces(times) for load in loads], axis=-1)
+        known = times if any(scenario.slope.given for scenario in scenarios) else times[:1]
+        forces = np.stack([load.forces(known) for load in loads], axis=-1)
+        self._forces = np.broadcast_to(forces, (steps + 1, len(runs)))
         engines = [scenario.engine for scenario in scenarios]
         first, places = distinct(engines)
         profiles = [
