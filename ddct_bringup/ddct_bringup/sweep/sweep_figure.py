@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
+from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.sweep.state_map import (
     draw_states,
     edges_of,
@@ -88,7 +89,7 @@ def _draw_metric(
 
     An engaged run without a value is a ring at the lower edge.
     """
-    axes.set_ylabel(figure.heading)
+    axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
     values = {
         name: np.array([_number(run.entry['metrics'][figure.key]) for run in runs])
         for name, runs in by_name.items()

@@ -60,6 +60,10 @@ def test_each_other_run_has_a_cross_within_the_panel(panel):
     assert high < 8.0
 
 
+def test_a_panel_says_symbol_and_unit_as_they_are_printed(panel):
+    assert panel.get_ylabel() == 't_a, s'
+
+
 def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
     runs = [(ENGAGED, 1.0), (ENGAGED, None), (NOT_ENGAGED, 1.5)]
     panel = drawn(['wear_gain=0.8,1,1.2'], ['pi'], runs).axes[0]
