@@ -20,8 +20,7 @@ from ddct_bringup.run.options import (
 )
 from ddct_bringup.scores.tables import table_console
 from ddct_bringup.sweep.axis import axis_of
-from ddct_bringup.sweep.sweep import Sweep, SweptRun
-from ddct_bringup.sweep.sweep_document import sweep_document
+from ddct_bringup.sweep.sweep import Sweep, SweptRun, sweep_document
 from ddct_bringup.sweep.sweep_table import sweep_notes, sweep_table
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1

@@ -12,10 +12,13 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.registry import Chosen
+from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.settings import RunSettings
+
+SCHEMA_VERSION = 1
+"""Of what `ddct sweep --json` writes."""
 
 
 @dataclass(frozen=True)
@@ -96,3 +99,27 @@ class Sweep:
     def runs(self) -> AbstractContextManager[Iterator[SweptRun]]:
         """Carry out all runs on all cores, as they are taken; as `in_processes`."""
         return in_processes(self.run, len(self))
+
+
+def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> dict[str, Any]:
+    """
+    Return what `--json` writes: the axes, the limits, and a row per run.
+
+    A row has its place, and what `scores.json` has.
+    """
+    return {
+        'schema_version': SCHEMA_VERSION,
+        'over': [
+            {'key': axis.key, 'unit': axis.unit, 'values': list(axis.values)}
+            for axis in sweep.axes
+        ],
+        'controllers': [controller_label(each) for each in sweep.controllers],
+        'limits': sweep.limits.origin,
+        'rows': [
+            {
+                'over': dict(run.varied),
+                **{key: value for key, value in run.entry.items() if key != 'bag'},
+            }
+            for run in runs
+        ],
+    }

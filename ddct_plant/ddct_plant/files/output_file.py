@@ -23,6 +23,9 @@ def require_place(option: str, target: str | None) -> None:
         raise DdctError(f'{option} {target} is a folder: name a file in it')
     if not path.parent.is_dir():
         raise DdctError(f'{option} {target}: there is no folder {path.parent}: make it first')
+    replaced = path.is_file() or not path.exists()
+    if not os.access(path.parent if replaced else path, os.W_OK):
+        raise DdctError(f'{option} {target}: cannot be written: choose another place')
 
 
 def write_json(target: str, content: Any, advice: str = _ADVICE) -> None:

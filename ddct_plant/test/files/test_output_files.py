@@ -1,12 +1,13 @@
 """Tables on standard output and JSON files, shared by the programs."""
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import write_json
+from ddct_plant.files.output_file import require_place, write_json
 from ddct_plant.program.table import Table, print_table
 
 
@@ -52,3 +53,11 @@ def test_full_device_is_an_error_in_one_line():
 def test_device_is_written_to_and_not_replaced():
     write_json('/dev/null', {'a': 1})
     assert not Path('/dev/null').is_file()
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(tmp_path, monkeypatch):
+    target = str(tmp_path / 'scores.json')
+    require_place('--json', target)
+    monkeypatch.setattr(os, 'access', lambda path, mode: (path, mode) != (tmp_path, os.W_OK))
+    with pytest.raises(DdctError, match='--json .*: cannot be written'):
+        require_place('--json', target)

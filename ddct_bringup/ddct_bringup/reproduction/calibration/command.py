@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.calibration.record import (
 from ddct_bringup.reproduction.calibration.tables import all_tables, check_tables
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.table import print_tables
 from ddct_plant.scenario.file import load_scenario
 
@@ -76,8 +76,8 @@ def run(options: argparse.Namespace) -> int:
         return 0
     if options.json == options.write == STDOUT:
         parser.error('--json - and --write - both want standard output: give one a file')
-    for output in (options.json, options.write):
-        _require_writable(output)
+    require_place('--json', options.json)
+    require_place('--write', options.write)
     quiet = STDOUT in (options.json, options.write)
     if options.quick:
         record = check_frozen(load_scenario('thesis'), _progress)
@@ -127,12 +127,3 @@ def _require_optimum(record: Record) -> None:
             f'scenario thesis is not the optimum: a refit moves {moved[0]} by '
             f'{100.0 * moved[1]:+.1f} % of its range; run it again without --quick'
         )
-
-
-def _require_writable(output: str | None) -> None:
-    """Refuse a file that cannot be written before the long work, not after it."""
-    if output in (None, STDOUT):
-        return
-    path = Path(output)
-    if path.is_dir() or not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise DdctError(f'{path}: cannot be written: give a file in a folder that can be')
