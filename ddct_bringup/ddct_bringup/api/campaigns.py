@@ -42,7 +42,7 @@ def campaign(
     """
     pandas_module()
     given = spec_of(spec, Path.cwd()) if isinstance(spec, Mapping) else read_spec(spec)
-    judged_by = load_limits(None if limits is None else Path(limits))
+    judged_by = load_limits(limits)
     carry_out(
         Campaign(given), judged_by, Path(out), workers=workers, scheduler=scheduler, resume=resume
     )

@@ -147,7 +147,7 @@ def run(
     chosen = chosen_from(controller, name)
     ready = _ready([controller_label(chosen), *beside], scenario, set, duration, **settings)
     plan = RunPlan(ready, chosen, 'headless' if headless else 'processes')
-    judged_by = load_limits(None if limits is None else Path(limits))
+    judged_by = load_limits(limits)
     if out is not None:
         return _kept(plan, Path(out), overwrite, judged_by)
     if headless:
@@ -190,7 +190,7 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
 def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
     """Return the run that a bag holds, a folder or an .mcap file, scored anew."""
     path = Path(bag)
-    judged_by = load_limits(None if limits is None else Path(limits))
+    judged_by = load_limits(limits)
     return _read(path, path.as_posix(), judged_by)
 
 

@@ -29,7 +29,7 @@ def sweep(
     """
     chosen = controllers_from(controllers)
     base = base_from([controller_label(each) for each in chosen], **options)
-    judged_by = load_limits(None if limits is None else Path(limits))
+    judged_by = load_limits(limits)
     planned = Sweep(base, [_axis(key, over[key]) for key in over], chosen, judged_by)
     with planned.runs() as runs:
         return pandas_module().DataFrame([result_row(each.entry, each.varied) for each in runs])

@@ -6,9 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ddct_bringup.campaign.columns import CONTROLLER
 from ddct_bringup.campaign_report.outcome import outcomes_of
-
-CONTROLLER = 'controller'
 
 
 @dataclass(frozen=True)

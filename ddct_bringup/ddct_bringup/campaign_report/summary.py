@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.campaign.columns import CONTROLLER
 from ddct_bringup.campaign_report.first_failure import WayOut, first_failures
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD, failed_share
 from ddct_bringup.campaign_report.quantities import quantities_in
-from ddct_bringup.campaign_report.results import CONTROLLER, Group, Results
+from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.tail import ONE_IN, tail_of
 from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Figure

@@ -43,15 +43,16 @@ def add_limits_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def load_limits(file: Path | None) -> Limits:
+def load_limits(file: str | Path | None) -> Limits:
     """Return the limits of a file, the packaged ones for None; raise DdctError that names it."""
     if file is None:
         return packaged_limits()
+    path = Path(file)
     try:
-        text = read_text_file(file)
+        text = read_text_file(path)
     except OSError as error:
-        raise DdctError(f'limits {file}: cannot be read ({error.strerror})') from error
-    return limits_of_text(text, str(file))
+        raise DdctError(f'limits {path}: cannot be read ({error.strerror})') from error
+    return limits_of_text(text, str(path))
 
 
 def limits_of_text(text: str, name: str) -> Limits:
