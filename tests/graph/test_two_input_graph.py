@@ -115,9 +115,11 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
     for _ in range(3):
         with graph_of(run) as graph:
             heard = _Listener(context=graph.context)
-            run_until_silent(graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP)
+            waited_s = run_until_silent(
+                graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP
+            )
             demands, torques = heard.demands, heard.torques
-            lateness_s = realtime_owner(graph).worst_lateness_s
+            busy_s = max(waited_s, realtime_owner(graph).worst_lateness_s)
         gaps = [
             (last, first)
             for last, first in pairwise(sorted(torques))
@@ -127,8 +129,8 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
         if gaps and abs(torques[gaps[-1][0]] - demands[gaps[-1][0]]) > 10.0:
             break
     else:
-        assert lateness_s > LATE_S, 'no requests that moved the engine'
-        pytest.skip(f'too busy for real time: a tick was {1e3 * lateness_s:.0f} ms late')
+        assert busy_s > LATE_S, 'no requests that moved the engine'
+        pytest.skip(f'too busy for real time: ticks or controller were {1e3 * busy_s:.0f} ms late')
     last, first = gaps[-1]
     alone = np.array([step for step in sorted(torques) if step >= first])
     before = torques[last] - demands[last]

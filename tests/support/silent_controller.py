@@ -3,6 +3,7 @@
 import signal
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from support.in_process_graph import InProcessGraph
@@ -18,19 +19,29 @@ def run_until_silent(
     has_come_to: Callable[[int], bool],
     signals: Sequence[signal.Signals],
     first_step: int,
-) -> None:
+) -> float:
     """
     Run with the controller in a process of its own, which gets the signals from a step on.
 
-    `has_come_to(step)` says whether the listener, a node, has heard of that step.
+    `has_come_to(step)` says whether the listener, a node, has heard of that step or a later one.
+    Return for how long, in s, the controller then had waited for a processor.
     """
     shared = graph.parameters['*'] | graph.parameters['controller']
     controller = programs.start_node('ddct_controllers.controller_node', shared)
     graph.add_other(listener)
     graph.add_all(without=['controller'])
+    waited_s = 0.0
     for number, sent in enumerate(signals):
         step = first_step + _APART_STEPS * number
         graph.spin_until(partial(has_come_to, step), f'step {step}', START_S)
+        waited_s = waited_s or _waited_s(controller.process.pid)
         controller.send(sent)
     graph.run()
     controller.send(signal.SIGKILL)
+    return waited_s
+
+
+def _waited_s(pid: int) -> float:
+    """Return how long the threads of a process were ready to run and did not (Linux)."""
+    files = Path(f'/proc/{pid}/task').glob('*/schedstat')
+    return 1e-9 * sum(int(file.read_text().split()[1]) for file in files)
