@@ -21,7 +21,7 @@ SCHEMA_VERSION = 1
 """Of `summary.json`."""
 MOST_REASONS = 5
 """That are given of why runs are invalid, the most frequent ones."""
-NO_SAMPLE = 'the runs are spread over a grid and are no random sample: no confidence interval'
+NO_SAMPLE = 'the runs are spread over a grid and are no random sample'
 
 
 def summary_of(results: Results) -> Summary:
