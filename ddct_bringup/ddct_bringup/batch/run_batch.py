@@ -5,11 +5,12 @@ Compute many runs of linear plants and controllers at once.
     results = run_batch([(settings, controller), ...])
 
 A result equals that of the run step by step to 1e-9 of each value, and does not depend on what
-other runs are in the batch.
+other runs are in the batch. A run in which rounding grows beyond that has no result.
 """
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -29,6 +30,12 @@ __all__ = ['BatchResult', 'batchable', 'run_batch', 'trajectories']
 
 MOST_RUNS = 1000
 """At once: a step's matrices of as many stay in the processor's cache."""
+_FEW_CUTS = 5
+"""Below which a request that is cut off at zero so often has never let rounding grow."""
+_MOVED = 1.0 + 2.0**-46
+"""By how much feedback is multiplied to see what rounding, some times less, may do."""
+_SAME = 1e-10
+"""Of the largest slip: how far that may move it."""
 Run = tuple[RunSettings, Controller]
 
 
@@ -37,8 +44,9 @@ def run_batch(runs: Sequence[Run], limits: Limits | None = None) -> list[BatchRe
     Return the result of each run, all `batchable`, in their order.
 
     A controller may stand in many runs; each starts with it as it is after a reset. `limits` are
-    the packaged ones by default. None stands for a run that grows beyond all numbers or cannot be
-    built: step by step it ends with the words that say so.
+    the packaged ones by default. None stands for a run that must go step by step: there one that
+    grows beyond all numbers or cannot be built ends with the words that say so, and one that is
+    chaotic has figures that repeat.
     """
     limits = limits or packaged_limits()
     results: list[BatchResult | None] = [None] * len(runs)
@@ -56,11 +64,14 @@ def trajectories(runs: Sequence[Run]) -> Trajectory:
     request. All runs have one length, control start, architecture, equilibrium, kind of reference
     and order of the controller.
     """
+    return _stack([settings for settings, _ in runs], _models(runs))
+
+
+def _stack(settings: Sequence[RunSettings], models: Sequence[StateSpace]) -> Trajectory:
     # A sum over one column alone is rounded in another order than one over many.
-    columns = [*runs, *runs] if len(runs) == 1 else runs
-    models = _models(columns)
-    stack = simulate_batch([settings for settings, _ in columns], models)
-    return one_or_more(stack, slice(len(runs)))
+    twice = 2 if len(settings) == 1 else 1
+    stack = simulate_batch([*settings] * twice, [*models] * twice)
+    return one_or_more(stack, slice(len(settings)))
 
 
 def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
@@ -93,16 +104,38 @@ def _results(runs: Sequence[Run], limits: Limits) -> list[BatchResult | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
             stack = trajectories(runs)
+            counts = _finite(stack) & _repeatable(runs, stack)
     except DdctError:
         if len(runs) == 1:
             return [None]
         half = len(runs) // 2
         return _results(runs[:half], limits) + _results(runs[half:], limits)
-    finite = _finite(stack)
-    kept = stack if finite.all() else one_or_more(stack, finite)
-    settings = [run for (run, _), counts in zip(runs, finite, strict=True) if counts]
+    kept = stack if counts.all() else one_or_more(stack, counts)
+    settings = [run for (run, _), each in zip(runs, counts, strict=True) if each]
     results = iter(stacked_results(settings, kept, limits) if settings else [])
-    return [next(results) if counts else None for counts in finite]
+    return [next(results) if each else None for each in counts]
+
+
+def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
+    """
+    Return of each run of a stack whether rounding stays small in it, (R,).
+
+    Feedback that is too strong for its loop swings through the cut-off at zero torque: each pass
+    may multiply a difference, until the figures are those of another run.
+    """
+    cut = stack.torque_request < 0.0
+    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEW_CUTS)
+    repeatable = np.ones(len(runs), dtype=bool)
+    if len(suspects):
+        suspected = [runs[index] for index in suspects.tolist()]
+        moved = [
+            replace(each, c=_MOVED * each.c, d=_MOVED * each.d) for each in _models(suspected)
+        ]
+        slip = stack.slip_speed[suspects]
+        again = _stack([settings for settings, _ in suspected], moved).slip_speed
+        difference = np.max(np.abs(again - slip), axis=-1)
+        repeatable[suspects] = difference <= _SAME * np.max(np.abs(slip), axis=-1)
+    return repeatable
 
 
 def _finite(stack: Trajectory) -> np.ndarray:

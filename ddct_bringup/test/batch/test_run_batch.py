@@ -173,6 +173,21 @@ def test_a_run_that_grows_beyond_all_numbers_has_no_result():
     assert [counts] == run_batch([(settings, calm)])
 
 
+def test_a_run_in_which_rounding_grows_has_no_result():
+    changes = {'vehicle.mass_kg': 1534.985199772065, 'actuator.delay_s': 0.003, 'gear': 5}
+    changes |= {'load.slope_rad': -0.027073904265832754}
+    changes |= {'driveline.halfshaft_stiffness': 10541.593582404965}
+    scenario = load_scenario('thesis', changes)
+    settings = RunSettings(scenario, architecture='base', wear_gain=1.6112888721496896)
+    swinging, moved = (PiController(gain, 0.1) for gain in (20.0, 20.0 * (1.0 + 1e-15)))
+    runs = [run_headless(settings, each).slip_speed for each in (swinging, moved)]
+    assert np.abs(runs[0] - runs[1]).max() > 1.0, 'the run is not chaotic'
+    calm = PiController(0.1, 0.1)
+    none, counts = run_batch([(settings, swinging), (settings, calm)])
+    assert none is None
+    assert [counts] == run_batch([(settings, calm)])
+
+
 def test_a_run_that_cannot_be_built_leaves_the_others_alone():
     settings = RunSettings(load_scenario('thesis', SHORT))
     weightless = dataclasses.replace(settings.scenario.driveline, shaft_inertia=1e-310)
