@@ -18,6 +18,7 @@ from ddct_bringup.campaign import conduct, executors
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.programs import campaign
 from ddct_bringup.run.folder_lock import SUFFIX
+from ddct_plant.base.errors import DdctError
 
 RUNS = 10
 SPEC = f"""\
@@ -131,6 +132,15 @@ def test_a_scheduler_that_is_not_there_is_told_before_anything_is_written(
     )
     assert not out.exists()
     assert not list(tmp_path.glob(f'*{SUFFIX}'))
+
+
+def test_what_answers_and_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def client(*_: object, **__: object) -> None:
+        raise MemoryError('Unable to allocate 3.07 EiB')  # a web server's answer as a length
+
+    monkeypatch.setattr('distributed.Client', client)
+    with pytest.raises(DdctError, match=r'tcp://web:80: no scheduler answers .*3\.07 EiB'):
+        executors.DaskWorkers('tcp://web:80')
 
 
 def test_without_dask_a_scheduler_cannot_be_asked(

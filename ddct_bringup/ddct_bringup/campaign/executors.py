@@ -8,7 +8,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from typing import Protocol
 
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.program.workers import begin_worker
 
 CONNECT_S = 10.0
@@ -83,7 +83,7 @@ class DaskWorkers:
             ) from error
         try:
             self._client = Client(address, timeout=CONNECT_S, set_as_default=False)
-        except (OSError, ValueError, TypeError) as error:
+        except FOREIGN_FAILURES as error:  # also of what answers and is no scheduler
             raise DdctError(
                 f'--scheduler {address}: no scheduler answers there ({error}): start one, or '
                 'leave the option out'
