@@ -43,9 +43,9 @@ def test_the_table_of_controllers():
 
 
 def test_the_response_to_a_step_of_engine_torque():
-    text = PAGE.read_text(encoding='utf-8')
+    text = ' '.join(PAGE.read_text(encoding='utf-8').split())
     at_once, finally_, exact_at_once = re.search(
-        r'request by\s([\d.]+) N m at once and by the static ([\d.]+) N m\s'
+        r'request by ([\d.]+) N m at once, and by the static ([\d.]+) N m '
         r'in the end \(ρ → 0: ([\d.]+) N m',
         text,
     ).groups()
