@@ -24,17 +24,18 @@ def run_until_silent(
     Run with the controller in a process of its own, which gets the signals from a step on.
 
     `has_come_to(step)` says whether the listener, a node, has heard of that step or a later one.
-    Return for how long, in s, the controller then had waited for a processor.
+    Return for how long, in s, the controller had waited for a processor from step 0 to then.
     """
     shared = graph.parameters['*'] | graph.parameters['controller']
     controller = programs.start_node('ddct_controllers.controller_node', shared)
     graph.add_other(listener)
     graph.add_all(without=['controller'])
-    waited_s = 0.0
+    graph.spin_until(partial(has_come_to, 0), 'step 0', START_S)
+    started_s, waited_s = _waited_s(controller.process.pid), 0.0
     for number, sent in enumerate(signals):
         step = first_step + _APART_STEPS * number
         graph.spin_until(partial(has_come_to, step), f'step {step}', START_S)
-        waited_s = waited_s or _waited_s(controller.process.pid)
+        waited_s = waited_s or _waited_s(controller.process.pid) - started_s
         controller.send(sent)
     graph.run()
     controller.send(signal.SIGKILL)

@@ -91,16 +91,21 @@ def test_number_is_not_reproduced_in_one_place_and_an_erratum_in_another() -> No
 
 def test_readme_and_overview_quote_the_distinct_facts(rows: tuple[GateRow, ...]) -> None:
     facts = count_facts(rows)
-    predicted = facts['predicted hit'], facts['predicted miss']
-    quote = (
-        f'{len(rows)} entries, {facts.total()} distinct facts: {facts["reproduced"]} reproduced, '
-        f'{facts["erratum"]} errata, {facts["calibrated hit"]} of '
-        f'{facts["calibrated hit"] + facts["calibrated miss"]} fits and {predicted[0]} of '
-        f'{sum(predicted)} predictions within their tolerance'
+    entries = f'{len(rows)} entries, {facts.total()} distinct facts'
+    reproduced, errata = facts['reproduced'], facts['erratum']
+    fits, predictions = (
+        f'{facts[f"{kind} hit"]} of {facts[f"{kind} hit"] + facts[f"{kind} miss"]}'
+        for kind in ('calibrated', 'predicted')
     )
-    for page in (REPOSITORY / 'README.md', REPOSITORY / 'docs' / 'thesis' / 'reproducing.md'):
-        text = ' '.join(page.read_text(encoding='utf-8').split())
-        assert quote in text, f'{page.name} must say: {quote}'
+    quotes = {
+        'README.md': f'{entries}. {reproduced} of these are reproduced and {errata} are errors of '
+        f'the print. {fits} fits and {predictions} predictions are within their tolerance',
+        'docs/thesis/reproducing.md': f'{entries}: {reproduced} reproduced, {errata} errata, '
+        f'{fits} fits and {predictions} predictions within their tolerance',
+    }
+    for page, quote in quotes.items():
+        text = ' '.join((REPOSITORY / page).read_text(encoding='utf-8').split())
+        assert quote in text, f'{page} must say: {quote}'
 
 
 def test_every_printed_number_of_the_list_is_in_its_section_of_the_thesis() -> None:
