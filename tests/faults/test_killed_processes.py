@@ -125,8 +125,9 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     live = programs.start_node(
         'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
+    # In a domain of its own: the middleware of a node that knows it would clean up after it.
     dead = programs.start_node(
-        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '101'}
     )
     left = _segments(programs, dead)
     # The middleware itself takes over the port of a dead node.
