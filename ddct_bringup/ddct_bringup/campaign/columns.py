@@ -8,18 +8,13 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_bringup.campaign.rows import CRITERION
+from ddct_bringup.campaign.rows import CRITERION_COLUMNS, METRIC_COLUMNS
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_plant.base.errors import DdctError
 
 SCHEMA_VERSION = 1
 """Of the columns."""
 INDEX, CONTROLLER, PATH = 'index', 'controller', 'path'
-METRICS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
-"""Those of `scores.json` that are the same each time a run is computed."""
-CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
 """Rows at least, but in the last group."""
@@ -29,7 +24,7 @@ _VERDICT = (
     ('verdict_state', pa.string()),
     ('verdict_limits', pa.string()),
 )
-COMPARED = (*METRICS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
+COMPARED = (*METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
 """What a run that is made again must have as its row has it."""
 
 
@@ -41,7 +36,7 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
         (CONTROLLER, pa.string()),
         (PATH, pa.string()),
         *varied,
-        *((name, pa.float64()) for name in METRICS),
+        *((name, pa.float64()) for name in METRIC_COLUMNS),
         *_VERDICT,
         *((name, pa.float64()) for name in CRITERION_COLUMNS),
     ]

@@ -6,7 +6,9 @@ The bits are those of the generator Philox 4x64, whose counter is the case; nump
 """
 
 import hashlib
+from functools import cache
 
+import numpy as np
 from numpy.random import Philox, SeedSequence
 
 _WORDS = 4
@@ -28,7 +30,12 @@ def run_seed(root: int, case: int) -> int:
 
 
 def _bits(root: int, key: str, case: int) -> int:
+    return int(Philox(key=_stream(root, key), counter=case).random_raw())
+
+
+@cache
+def _stream(root: int, key: str) -> np.ndarray:
+    """Return the key of the generator that a campaign has for one of its keys, (2,)."""
     digest = hashlib.sha256(key.encode()).digest()
     words = [int.from_bytes(digest[4 * i : 4 * i + 4], 'little') for i in range(_WORDS)]
-    stream = SeedSequence([root, *words]).generate_state(2, 'uint64')
-    return int(Philox(key=stream, counter=case).random_raw())
+    return SeedSequence([root, *words]).generate_state(2, 'uint64')

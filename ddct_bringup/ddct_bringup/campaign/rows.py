@@ -27,8 +27,11 @@ SERIAL, VECTORISED = 'serial', 'vectorised'
 """Column `path`: of a run that was simulated step by step, and of one among many at once."""
 WALL_CLOCK = ('update_time_median_us', 'update_time_p99_us')
 """Metrics that differ each time; those of missed steps and lateness do not without a graph."""
+METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
+"""Those of `scores.json` that are the same each time a run is computed."""
 CRITERION = 'criterion.'
 """Before the name of a criterion's column."""
+CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
 
 
 @dataclass(frozen=True)
@@ -92,15 +95,15 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
 def result_row(entry: Entry, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
     """Return a run as one row: controller, path, what was varied, metrics, verdict, criteria."""
     verdict = entry['verdict']
-    criteria = {each['name']: each['value'] for each in verdict['criteria']}
+    criteria = {f'{CRITERION}{each["name"]}': each['value'] for each in verdict['criteria']}
     return {
         'controller': entry['controller'],
         'path': path,
         **varied,
-        **{figure.key: entry['metrics'][figure.key] for figure in (*TABLE_5_1, *FURTHER)},
+        **{name: entry['metrics'][name] for name in METRIC_COLUMNS},
         'valid': entry['valid'],
         'reason': entry['reason'],
         'verdict_state': verdict['state'],
         'verdict_limits': verdict['limits'],
-        **{f'{CRITERION}{each.key}': criteria.get(each.key) for each in CRITERIA},
+        **{name: criteria.get(name) for name in CRITERION_COLUMNS},
     }

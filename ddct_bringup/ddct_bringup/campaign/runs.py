@@ -10,14 +10,11 @@ from typing import Any
 from ddct_bringup.campaign.draws import run_seed, uniform
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, FILE_KEY, SCENARIO, run_options
 from ddct_bringup.campaign.spec import MOST_RUNS, CampaignSpec
+from ddct_bringup.run.options import run_settings
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.registry import (
-    controller_spec,
-    make_controller,
-    require_known_controllers,
-)
+from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import ScenarioFile, is_packaged
@@ -144,8 +141,8 @@ class Campaign:
         own = {key: given.pop(key) for key in run_options() if key in given}
         changes = {key: self._placed(key, value) for key, value in given.items()}
         scenario = file.scenario(changes, own.get('clutch', LINEAR))
-        require_known_controllers(scenario, self.labels)
-        return RunSettings(scenario, **{'seed': run_seed(self.spec.root, case), **own})
+        own = {'seed': run_seed(self.spec.root, case), **own}
+        return run_settings(scenario, self.labels, own)
 
     def _placed(self, key: str, value: Any) -> Any:
         """Return a value with the file that it names, if any, placed in the folder."""

@@ -13,10 +13,11 @@ from in_this_process import OneByOne, in_this_process
 
 from ddct_bringup.campaign import conduct, shards
 from ddct_bringup.campaign.code import code_digest
-from ddct_bringup.campaign.columns import COMPARED, METRICS
+from ddct_bringup.campaign.columns import COMPARED
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.replay import differences
+from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
@@ -77,7 +78,7 @@ def test_a_row_holds_the_run_its_values_and_its_scores(whole: Path) -> None:
     assert table['valid'].all()
     assert (table['reason'] == '').all()
     assert (table['steps'] == 70.0).all()
-    assert not {'update_time_median_us', 'missed_steps'} & set(METRICS)
+    assert not {'update_time_median_us', 'missed_steps'} & set(METRIC_COLUMNS)
 
 
 def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> None:
@@ -261,4 +262,4 @@ def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
     failed = rows[0]
     assert "controller 'wild'" in failed['reason']
     assert (failed['verdict_state'], failed['verdict_limits']) == ('invalid', 'no_limit')
-    assert {failed[name] for name in METRICS} == {None}
+    assert {failed[name] for name in METRIC_COLUMNS} == {None}

@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.columns import METRICS, schema_of, shard_bytes
+from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits_file import packaged_limits
@@ -38,7 +39,7 @@ def make_campaign(
         state = state_of(run)
         rows.append(
             dict.fromkeys(schema.names)
-            | {name: float(place * index) for place, name in enumerate(METRICS, 1)}
+            | {name: float(place * index) for place, name in enumerate(METRIC_COLUMNS, 1)}
             | {'index': index, 'controller': run.controller.name, 'path': 'serial'}
             | {'valid': state != INVALID, 'reason': '', 'verdict_limits': 'no_limit'}
             | {'verdict_state': state, **run.varied, **cells}
