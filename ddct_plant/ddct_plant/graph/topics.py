@@ -168,6 +168,10 @@ def _held(name: str, which: str = '') -> Signal:
     return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
 
 
+def _of_sensor(name: str, kind: MessageKind, publisher: str, said: Signal, held: Signal) -> Topic:
+    return Topic(name, kind, publisher, (said, held), when=_sensed)
+
+
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
@@ -212,49 +216,37 @@ VEHICLE_ACCEL = Topic(
     'driveline',
     (Signal('vehicle_accel', 'm/s^2', 'A_x'),),
 )
-SENSED_JOINT_STATES = Topic(
+SENSED_JOINT_STATES = _of_sensor(
     'sensors/joint_states',
     SensedJoints('sensor_msgs/msg/JointState', SENSED_JOINTS),
     'driveline',
-    (
-        Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
-        _held('sensed_joint_held', '(3,) '),
-    ),
-    when=_sensed,
+    Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
+    _held('sensed_joint_held', '(3,) '),
 )
-SENSED_SLIP = Topic(
+SENSED_SLIP = _of_sensor(
     'sensors/slip',
     SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
     'driveline',
-    (
-        Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
-        _held('sensed_slip_held'),
-    ),
-    when=_sensed,
+    Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
+    _held('sensed_slip_held'),
 )
-SENSED_VEHICLE_SPEED = Topic(
+SENSED_VEHICLE_SPEED = _of_sensor(
     'sensors/twist',
     SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
     'driveline',
-    (
-        Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
-        _held('sensed_vehicle_held'),
-    ),
-    when=_sensed,
+    Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
+    _held('sensed_vehicle_held'),
 )
 TORQUE_DEMAND = _torque(
     'engine/torque_demand', 'engine', 'torque_demand', "the driver's demand at t_k"
 )
 ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
-SENSED_ENGINE_TORQUE = Topic(
+SENSED_ENGINE_TORQUE = _of_sensor(
     'sensors/engine_torque',
     SensedScalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x'),
     'engine',
-    (
-        Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
-        _held('sensed_torque_held'),
-    ),
-    when=_sensed,
+    Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
+    _held('sensed_torque_held'),
 )
 LOAD_TORQUE = _torque('load/torque', 'load', 'load_torque', 'C_load, held over the period')
 HOLDING_TORQUE = Topic(
