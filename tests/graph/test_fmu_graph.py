@@ -1,11 +1,10 @@
 """A controller in an FMU runs in the nodes as headless, and leaves no file of its own behind."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.fmu import GAINS, controller_file
+from support.fmu import GAINS, controller_file, skip_without_fmus
 from support.runs import bag_bytes, expected, plan, record
 
 
@@ -13,9 +12,7 @@ from support.runs import bag_bytes, expected, plan, record
 def test_an_fmu_gives_the_same_bytes_in_every_layout(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip('fmpy', reason='FMPy, an optional extra, is absent: make fmu')
-    if shutil.which('cc') is None:
-        pytest.skip('there is no C compiler cc')
+    skip_without_fmus()
     monkeypatch.chdir(tmp_path)
     Path('tmp').mkdir()
     monkeypatch.setenv('TMPDIR', str(tmp_path / 'tmp'))

@@ -5,12 +5,15 @@ FMUs that the tests build: a PI controller in C, for FMI 2.0 and 3.0, with its d
 """
 
 import functools
+import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+
+import pytest
 
 SOURCE = Path(__file__).parents[1] / 'fmu' / 'pi_unit.c'
 EVENTS = 'PI_UNIT_EVENTS'
@@ -27,6 +30,13 @@ fmu:
 """
 GAINS = 'controllers.pi={proportional_gain: 0.2, integral_gain: 0.3}'
 """For `pi`, the same."""
+
+
+def skip_without_fmus() -> None:
+    """Skip a test on a machine that cannot build FMUs or run them."""
+    pytest.importorskip('fmpy', reason='FMPy, an optional extra, is absent: make fmu')
+    if shutil.which('cc') is None:
+        pytest.skip('there is no C compiler cc')
 
 
 @dataclass(frozen=True)
