@@ -47,6 +47,21 @@ def test_the_page_of_programs_names_every_program() -> None:
     assert named == set(ddct.programs())
 
 
+def test_programs_start_without_the_slow_parts_of_scipy() -> None:
+    """They are imported when something is computed: --help and errors need not wait for them."""
+    names = ('bringup', 'campaign', 'compare', 'identify', 'live', 'report', 'score', 'sweep')
+    modules = [ddct.programs()[name].module for name in names]
+    code = (
+        f'import {", ".join(modules)}, sys; print([n for n in sys.modules if n[:6] == "scipy."])'
+    )
+    loaded = subprocess.run(
+        [sys.executable, '-P', '-c', code], capture_output=True, text=True, check=True
+    ).stdout
+    slow = ('signal', 'stats', 'optimize', 'integrate', 'interpolate', 'linalg', 'special')
+    assert 'scipy._lib' in loaded
+    assert [name for name in slow if f"'scipy.{name}" in loaded] == []
+
+
 @pytest.mark.parametrize(
     ('arguments', 'line'),
     [

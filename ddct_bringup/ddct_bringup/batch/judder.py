@@ -1,12 +1,12 @@
 """Judder of many runs at once, each over a stretch of its own."""
 
 import numpy as np
-from scipy import signal
+import scipy
 
 from ddct_bringup.verdict.comfort import at_rest
-from ddct_bringup.verdict.vibration import BAND_PASS
+from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, band_pass
 
-_PADDING = 3 * (2 * len(BAND_PASS) + 1)
+_PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
 """Samples that `sosfiltfilt` adds at both ends of a stretch."""
 
 
@@ -17,13 +17,14 @@ def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -
     `torsion_speed` is (R, N+1); a stretch has more than `_PADDING` samples. Each is moved to the
     start of its row, so that one call filters all; what stands behind a stretch does not count.
     """
+    sos = band_pass()
     length = (after - first)[:, np.newaxis]
     place = np.arange(torsion_speed.shape[-1] + 2 * _PADDING)
     padded = _padded(torsion_speed, first[:, np.newaxis], length, place - _PADDING)
-    forward = signal.sosfilt(BAND_PASS, padded, zi=at_rest(BAND_PASS, padded[:, :1]))[0]
+    forward = scipy.signal.sosfilt(sos, padded, zi=at_rest(sos, padded[:, :1]))[0]
     backward_place = np.maximum(length + 2 * _PADDING - 1 - place, 0)
     turned = np.take_along_axis(forward, backward_place, axis=-1)
-    filtered = signal.sosfilt(BAND_PASS, turned, zi=at_rest(BAND_PASS, turned[:, :1]))[0]
+    filtered = scipy.signal.sosfilt(sos, turned, zi=at_rest(sos, turned[:, :1]))[0]
     inside = (place >= _PADDING) & (place < _PADDING + length)
     return np.sqrt(np.sum(np.where(inside, filtered, 0.0) ** 2, axis=-1) / length[:, 0])
 

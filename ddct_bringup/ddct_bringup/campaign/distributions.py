@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+import scipy
 
 from ddct_plant.base.checks import require_choice, require_number
 from ddct_plant.base.errors import ParameterError
@@ -103,8 +103,8 @@ def _standard_normal(uniform: float, low: float, high: float) -> float:
     """Return the quantile of the standard normal distribution between two ends."""
     if low > 0.0:  # above it the distribution function is 1 to rounding
         return -_standard_normal(1.0 - uniform, -high, -low)
-    least, most = ndtr(low), ndtr(high)
-    return float(ndtri(least + uniform * (most - least)))
+    least, most = scipy.special.ndtr(low), scipy.special.ndtr(high)
+    return float(scipy.special.ndtri(least + uniform * (most - least)))
 
 
 _OPEN = ((LOW, -math.inf), (HIGH, math.inf))

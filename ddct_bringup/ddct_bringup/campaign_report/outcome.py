@@ -11,7 +11,7 @@ A criterion beyond its limit is no failed engagement: the verdict tells the two 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import betaincinv
+import scipy
 
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -44,8 +44,10 @@ class FailedShare:
         """
         outside = (1.0 - CONFIDENCE) / 2.0
         least, most, runs = self.failed, self.failed + self.invalid, self.runs
-        lower = float(betaincinv(least, runs - least + 1, outside)) if least else 0.0
-        upper = float(betaincinv(most + 1, runs - most, 1.0 - outside)) if most < runs else 1.0
+        lower = float(scipy.special.betaincinv(least, runs - least + 1, outside)) if least else 0.0
+        upper = 1.0
+        if most < runs:
+            upper = float(scipy.special.betaincinv(most + 1, runs - most, 1.0 - outside))
         return lower, upper
 
 

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import trapezoid
+import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.run_timing import RunTiming
@@ -146,7 +146,7 @@ def _friction_energy(trajectory: Trajectory) -> np.ndarray:
     if work is not None:
         return np.sum(work, axis=-1)
     power = np.abs(trajectory.joint_effort[..., 1] * trajectory.slip_speed)
-    return trapezoid(power, dx=PERIOD_S)
+    return scipy.integrate.trapezoid(power, dx=PERIOD_S)
 
 
 def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, np.ndarray]:

@@ -3,15 +3,13 @@
 from functools import cache
 
 import numpy as np
-from scipy import signal
-from scipy.integrate import cumulative_trapezoid, trapezoid
+import scipy
 
 from ddct_plant.base.timebase import PERIOD_S
 
 JERK_CUTOFF_HZ = 20.0
 _JERK_FILTER_ORDER = 2
 """Order of the Butterworth filter, which runs once forward and once backward."""
-_JERK_FILTER = signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
 
 
 def jerk(acceleration: np.ndarray) -> np.ndarray:
@@ -24,18 +22,23 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     padding = 3 * (_JERK_FILTER_ORDER + 1)
     if acceleration.shape[-1] <= padding:
         return np.empty((*acceleration.shape[:-1], 0))
-    return np.diff(signal.filtfilt(*_JERK_FILTER, acceleration, padlen=padding)) / PERIOD_S
+    return np.diff(scipy.signal.filtfilt(*_low_pass(), acceleration, padlen=padding)) / PERIOD_S
+
+
+@cache
+def _low_pass() -> tuple[np.ndarray, np.ndarray]:
+    return scipy.signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
     """Return the (..., n) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
     sos = _weighting()
-    return signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
+    return scipy.signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
 
 
 def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return the states (sections, ..., 2) of a filter that rests on values (..., 1)."""
-    states = signal.sosfilt_zi(sos)
+    states = scipy.signal.sosfilt_zi(sos)
     return states.reshape(len(sos), *(1,) * (values.ndim - 1), 2) * values
 
 
@@ -58,7 +61,7 @@ def _weighting() -> np.ndarray:
 
 def vibration_dose(weighted: np.ndarray) -> np.ndarray:
     """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
-    return trapezoid(_fourth_power(weighted), dx=PERIOD_S) ** 0.25
+    return scipy.integrate.trapezoid(_fourth_power(weighted), dx=PERIOD_S) ** 0.25
 
 
 def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
@@ -69,7 +72,9 @@ def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, n
     """
     before = np.zeros((*weighted.shape[:-1], 1))
     squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
-    fourths = cumulative_trapezoid(_fourth_power(weighted), dx=PERIOD_S, initial=0.0)
+    fourths = scipy.integrate.cumulative_trapezoid(
+        _fourth_power(weighted), dx=PERIOD_S, initial=0.0
+    )
     means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
     doses = fourths[..., periods:] - fourths[..., :-periods]
     return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
@@ -82,5 +87,5 @@ def _fourth_power(values: np.ndarray) -> np.ndarray:
 
 def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
     """Return the digital section of an analogue one, each polynomial with three coefficients."""
-    b, a = signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
+    b, a = scipy.signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
     return np.pad(b, (0, 3 - len(b))), np.pad(a, (0, 3 - len(a)))

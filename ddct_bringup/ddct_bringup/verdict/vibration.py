@@ -1,14 +1,24 @@
 """Vibration of driveline and car during an engagement: judder, shuffle, dip, mean jerk."""
 
+from functools import cache
+
 import numpy as np
-from scipy import signal
+import scipy
 
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 
 JUDDER_BAND_HZ = (2.0, 20.0)
+BAND_PASS_ORDER = 2
 SHORTEST_JUDDER_S = 1.0
 """Of slipping: two periods of the lowest frequency of the band."""
-BAND_PASS = signal.butter(2, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos')
+
+
+@cache
+def band_pass() -> np.ndarray:
+    """Return the Butterworth band-pass, as sections."""
+    return scipy.signal.butter(
+        BAND_PASS_ORDER, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos'
+    )
 
 
 def judder(torsion_speed: np.ndarray) -> float | None:
@@ -20,7 +30,7 @@ def judder(torsion_speed: np.ndarray) -> float | None:
     """
     if (len(torsion_speed) - 1) * PERIOD_S < SHORTEST_JUDDER_S:
         return None
-    return float(np.sqrt(np.mean(signal.sosfiltfilt(BAND_PASS, torsion_speed) ** 2)))
+    return float(np.sqrt(np.mean(scipy.signal.sosfiltfilt(band_pass(), torsion_speed) ** 2)))
 
 
 def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:

@@ -8,7 +8,7 @@ takes a second to load, and its realisation of factors through polynomials is of
 from typing import Any
 
 import numpy as np
-from scipy.linalg import eigvals
+import scipy
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
@@ -148,5 +148,5 @@ def _zeros(system: StateSpace, far: float) -> np.ndarray:
     mass = np.zeros_like(pencil)
     mass[: len(system.a), : len(system.a)] = np.eye(len(system.a))
     with np.errstate(divide='ignore', invalid='ignore'):
-        found = eigvals(pencil, mass)
+        found = scipy.linalg.eigvals(pencil, mass)
     return found[np.isfinite(found) & (np.abs(found) < far)]

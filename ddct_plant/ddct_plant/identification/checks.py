@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+import scipy
 
 from ddct_plant.identification.coefficients import PrintedCoefficients
 from ddct_plant.identification.fit import ROUNDING_VARIANCE, Identification, predict_left_out
@@ -43,7 +43,7 @@ def check_identification(
             f'chi-square of {identification.degrees_of_freedom} degrees of freedom',
             identification.chi_square,
             0.0,
-            float(chi2.ppf(_CONFIDENCE, identification.degrees_of_freedom)),
+            float(scipy.stats.chi2.ppf(_CONFIDENCE, identification.degrees_of_freedom)),
         ),
         IdentificationCheck('least possible worst residual, half-units', worst, 0.0, 1.0),
         _zero_pair(coefficients, p2),

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.coefficients import (
@@ -146,7 +146,7 @@ def predict_left_out(
 
 def _fit(coefficients: PrintedCoefficients, kept: np.ndarray) -> np.ndarray:
     """Return the (7,) logarithms that fit the coefficients where `kept` is true."""
-    answer = least_squares(
+    answer = scipy.optimize.least_squares(
         lambda logarithms: coefficients.residuals(logarithms)[kept],
         coefficients.start(),
         jac=lambda logarithms: coefficients.jacobian(logarithms)[kept],

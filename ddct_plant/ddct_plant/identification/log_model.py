@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
@@ -96,7 +96,7 @@ def _weights(z: complex, step: float) -> tuple[complex, complex, complex]:
 
 def _run(decay: complex, pushed: np.ndarray) -> np.ndarray:
     """Return z_k of z_(k+1) = decay z_k + pushed_(k+1) with z_0 = pushed_0."""
-    return lfilter([1.0], [1.0, -decay], pushed)
+    return scipy.signal.lfilter([1.0], [1.0, -decay], pushed)
 
 
 def _at(stretch: Stretch, values: np.ndarray) -> np.ndarray:

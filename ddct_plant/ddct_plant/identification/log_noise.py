@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
-from scipy.stats import chi2
+import scipy
 
 MOST_LAGS = 10
 WHITE_LAGS = 10
@@ -31,7 +30,7 @@ class NoiseModel:
     def white(self, values: np.ndarray) -> np.ndarray:
         """Return L^-1 e of residuals, (n, 3) or (n, 3, m), from the sample p on."""
         left = [
-            lfilter([1.0, *(-self.lags[output])], [1.0], values[:, output], axis=0)
+            scipy.signal.lfilter([1.0, *(-self.lags[output])], [1.0], values[:, output], axis=0)
             for output in range(3)
         ]
         whitened = np.tensordot(np.stack(left, axis=1), np.linalg.inv(self.factor), (1, 1))
@@ -84,5 +83,5 @@ def whiteness(whitened: Sequence[np.ndarray]) -> list[float]:
         for lag in range(1, WHITE_LAGS + 1):
             product = sum(float(part[lag:] @ part[:-lag]) for part in parts)
             statistic += (product / power) ** 2 / (total - lag)
-        found.append(float(chi2.sf(total * (total + 2.0) * statistic, WHITE_LAGS)))
+        found.append(float(scipy.stats.chi2.sf(total * (total + 2.0) * statistic, WHITE_LAGS)))
     return found

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.log_model import NUISANCE, Stretch, residuals_of, responses
@@ -75,7 +75,7 @@ class LogProblem:
     def _fitted(
         self, x: np.ndarray, stretches: Sequence[Stretch]
     ) -> tuple[np.ndarray, np.ndarray]:
-        answer = least_squares(
+        answer = scipy.optimize.least_squares(
             self._residuals,
             x,
             bounds=(-_BOUND, _BOUND),

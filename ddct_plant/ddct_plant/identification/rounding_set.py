@@ -1,7 +1,7 @@
 """What the rounding of the printed coefficients allows: hard bounds, next to the fit's spread."""
 
 import numpy as np
-from scipy.optimize import linprog
+import scipy
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.coefficients import FITTED, PrintedCoefficients
@@ -58,7 +58,9 @@ def _descend(
         residuals = coefficients.residuals(logarithms)
         jacobian = coefficients.jacobian(logarithms) * _SCALE
         rows = np.block([[jacobian, -ones], [-jacobian, -ones]])
-        answer = linprog(goal, rows, np.concatenate([-residuals, residuals]), bounds=bounds)
+        answer = scipy.optimize.linprog(
+            goal, rows, np.concatenate([-residuals, residuals]), bounds=bounds
+        )
         if not answer.success:
             raise DdctError(f'bounds of the driveline parameters: {answer.message}')
         logarithms = logarithms + _SCALE * answer.x[:-1]

@@ -4,8 +4,8 @@ import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.stats import t as student_t
 
 from ddct_bringup.reproduction.calibration.parameters import (
     BASE,
@@ -86,7 +86,7 @@ def identifiability(optimum: Fit) -> Identifiability:
     return Identifiability(
         degrees_of_freedom=degrees,
         residual_std=float(np.sqrt(variance)),
-        coverage_95=float(student_t.ppf(0.975, degrees)),
+        coverage_95=float(scipy.stats.t.ppf(0.975, degrees)),
         singular_values=singular_values,
         directions=directions,
         std=std * RANGE,

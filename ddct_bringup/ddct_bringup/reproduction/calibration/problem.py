@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from ddct_bringup.reproduction.calibration.parameters import (
     BASE,
@@ -178,7 +178,7 @@ def fit(
         return values
 
     shares = np.clip((origin - LOWER) / RANGE, 1e-6, 1.0 - 1e-6)[free]
-    answer = least_squares(
+    answer = scipy.optimize.least_squares(
         lambda shares: problem.residuals(values_at(shares)),
         shares,
         jac=lambda shares: problem.jacobian(values_at(shares))[:, free],

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from ddct_bringup.reproduction.calibration.parameters import LOWER, PARAMETERS, RANGE, Values
 from ddct_bringup.reproduction.calibration.problem import Problem
@@ -26,7 +26,7 @@ def centre(problem: Problem, start: Values) -> tuple[float, ...]:
     ones = np.ones((2 * figures.count, 1))
     gradient = np.append(np.zeros(len(PARAMETERS)), 1.0)
     shares = _shares(start)
-    answer = minimize(
+    answer = scipy.optimize.minimize(
         lambda at: at[-1],
         np.append(shares, np.max(np.abs(figures.residuals(shares)))),
         jac=lambda at: gradient,
@@ -48,7 +48,7 @@ def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[fl
     """
     figures = _Figures(problem)
     gain = np.array(direction, dtype=float)
-    answer = minimize(
+    answer = scipy.optimize.minimize(
         lambda at: -gain @ at,
         _shares(start),
         jac=lambda at: -gain,

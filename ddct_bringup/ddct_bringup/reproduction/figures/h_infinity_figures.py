@@ -4,8 +4,8 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
-from scipy.optimize import brentq
 
 from ddct_bringup.reproduction.figures.loop_figures import nichols_figure, step_figure
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
@@ -48,7 +48,7 @@ def _norms(factor: float) -> WeightedNorms:
 @cache
 def _gain_of_the_printed_norms() -> float:
     """Return the least factor on the gain that gives the printed norm of W_s S_n."""
-    return brentq(
+    return scipy.optimize.brentq(
         lambda factor: _norms(factor).sensitivity - _PRINTED_SENSITIVITY_NORM, 1.0, 3.0, xtol=1e-6
     )
 

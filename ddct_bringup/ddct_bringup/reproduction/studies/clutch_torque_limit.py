@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.linalg import toeplitz
+import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
@@ -168,4 +168,4 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
 def _delayed(response: np.ndarray) -> np.ndarray:
     """Return (n, n - 1): column k is the response, which starts a period later, from step k."""
     none = np.zeros(len(response) - 1)
-    return toeplitz(np.concatenate([[0.0], response[:-1]]), none)
+    return scipy.linalg.toeplitz(np.concatenate([[0.0], response[:-1]]), none)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eig
+import scipy
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE
 from ddct_controllers.design.state_space import close_loop, to_s_plane
@@ -40,7 +40,7 @@ def driveline_mode(
     None when the closed loop has no oscillating pole, or the locked driveline does not oscillate.
     """
     closed = close_loop(loop)
-    poles, left, right = eig(closed.a, left=True, right=True)
+    poles, left, right = scipy.linalg.eig(closed.a, left=True, right=True)
     rates = to_s_plane(poles, loop.period_s)
     index = nearest_mode(rates, locked_driveline_zero(parameters))
     if index is None:

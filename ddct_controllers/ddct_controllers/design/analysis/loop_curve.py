@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+import scipy
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s
@@ -50,8 +50,12 @@ class LoopCurve:
         """Return the frequencies in rad/s, rising, at which `measure` of L changes its sign."""
         signs = measure(self.values) > 0.0
         brackets = np.flatnonzero(signs[1:] != signs[:-1])
+
+        def measured(omega: float) -> float:
+            return self._measured(measure, omega)
+
         return [
-            float(brentq(lambda x: self._measured(measure, x), *self.omega[i : i + 2], rtol=1e-12))
+            float(scipy.optimize.brentq(measured, *self.omega[i : i + 2], rtol=1e-12))
             for i in brackets
         ]
 
@@ -63,7 +67,7 @@ class LoopCurve:
         inner = measured[1:-1]
         local = (inner >= measured[:-2]) & (inner >= measured[2:])
         for i in np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest)):
-            found = minimize_scalar(
+            found = scipy.optimize.minimize_scalar(
                 lambda x: -self._measured(measure, x),
                 bounds=(self.omega[i], self.omega[i + 2]),
                 method='bounded',

@@ -1,7 +1,7 @@
 """From plant and weights to the generalised plant: mixed sensitivity, continuous and sampled."""
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
     GeneralisedPlant,
@@ -125,7 +125,7 @@ def _side_by_side(*systems: StateSpace) -> StateSpace:
     """Return the block-diagonal system."""
     return StateSpace(
         *(
-            block_diag(*(getattr(system, name) for system in systems))
+            scipy.linalg.block_diag(*(getattr(system, name) for system in systems))
             for name in ('a', 'b', 'c', 'd')
         )
     )

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq, linprog
+import scipy
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
@@ -35,7 +35,9 @@ def shortfall_from_rad_s(weight: FactoredTransferFunction, error: float) -> floa
 
     if excess(OMEGA[-1]) >= 0.0:
         return None
-    return 0.0 if excess(OMEGA[0]) < 0.0 else float(brentq(excess, OMEGA[0], OMEGA[-1]))
+    if excess(OMEGA[0]) < 0.0:
+        return 0.0
+    return float(scipy.optimize.brentq(excess, OMEGA[0], OMEGA[-1]))
 
 
 def wear_family() -> tuple[FactoredTransferFunction, ...]:
@@ -75,7 +77,7 @@ def _least_excess(omega: np.ndarray, error: np.ndarray, pole: float) -> tuple[fl
     wanted = error**2 * (omega**2 + pole**2)
     shape = np.column_stack([omega**2, np.full_like(omega, pole**2)]) / wanted[:, None]
     none = np.zeros((len(omega), 1))
-    found = linprog(
+    found = scipy.optimize.linprog(
         [0.0, 0.0, 1.0],
         np.vstack([np.hstack([-shape, none]), np.hstack([shape, none - 1.0])]),
         np.concatenate([-np.ones(len(omega)), np.zeros(len(omega))]),

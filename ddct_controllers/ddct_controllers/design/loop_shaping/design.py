@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
+import scipy
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.step_response import overshoot, step_response
@@ -92,4 +92,4 @@ def largest_zero_rad_s(
         loop = continuous_loop(controller, parameters)
         return overshoot(*step_response(loop, duration_s)) - largest_overshoot
 
-    return float(brentq(excess, 0.01 * crossover_rad_s, crossover_rad_s, rtol=1e-6))
+    return float(scipy.optimize.brentq(excess, 0.01 * crossover_rad_s, crossover_rad_s, rtol=1e-6))

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from ddct_plant.base.checks import require_number
 from ddct_plant.base.errors import ParameterError
@@ -136,7 +136,11 @@ def highest_crossover_rad_s(damping: float) -> float:
     stay. A flatter loop gains little: it crosses more than once or has no gain margin left.
     """
     allowed = math.pi / 2.0 - prototype_phase_margin(damping)
-    return float(brentq(lambda omega: unavoidable_lag(omega) - allowed, 1e-9, math.pi / PERIOD_S))
+    return float(
+        scipy.optimize.brentq(
+            lambda omega: unavoidable_lag(omega) - allowed, 1e-9, math.pi / PERIOD_S
+        )
+    )
 
 
 def require_reachable(specifications: TimeSpecifications) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cholesky, matrix_balance, solve_continuous_lyapunov
+import scipy
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import StateSpace
@@ -132,16 +132,16 @@ def balanced(plant: GeneralisedPlant, discount: float = DISCOUNT_RAD_S) -> Gener
     dominating. A plant with modes that nothing moves or shows is returned as it is.
     """
     system = plant.system
-    _, diagonal = matrix_balance(system.a, permute=False)
+    _, diagonal = scipy.linalg.matrix_balance(system.a, permute=False)
     scaled = _in_coordinates(system, diagonal)
     fastest_growth = max(float(np.max(np.linalg.eigvals(scaled.a).real)), 0.0)
     decaying = scaled.a - (discount + fastest_growth) * np.eye(len(scaled.a))
     control = float(np.linalg.norm(plant.d12))
     inputs = np.hstack([scaled.b[:, :-1], scaled.b[:, -1:] / control])
     try:
-        reach = solve_continuous_lyapunov(decaying, -inputs @ inputs.T)
-        observe = solve_continuous_lyapunov(decaying.T, -scaled.c.T @ scaled.c)
-        root = cholesky((reach + reach.T) / 2.0, lower=True)
+        reach = scipy.linalg.solve_continuous_lyapunov(decaying, -inputs @ inputs.T)
+        observe = scipy.linalg.solve_continuous_lyapunov(decaying.T, -scaled.c.T @ scaled.c)
+        root = scipy.linalg.cholesky((reach + reach.T) / 2.0, lower=True)
         vectors, values, _ = np.linalg.svd(root.T @ observe @ root)
         return GeneralisedPlant(_in_coordinates(scaled, root @ vectors * values**-0.25))
     except (np.linalg.LinAlgError, ValueError):

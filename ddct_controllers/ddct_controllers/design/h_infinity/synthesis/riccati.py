@@ -1,7 +1,7 @@
 """The two Riccati equations of H-infinity synthesis and the central controller they give."""
 
 import numpy as np
-from scipy.linalg import matrix_balance, schur
+import scipy
 
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
 from ddct_plant.linear.lti import StateSpace
@@ -72,8 +72,8 @@ def _riccati(
     r_inverse = np.linalg.inv(r)
     drift = a - b @ r_inverse @ s.T
     hamiltonian = np.block([[drift, -b @ r_inverse @ b.T], [s @ r_inverse @ s.T - q, -drift.T]])
-    balanced, scale = matrix_balance(hamiltonian)
-    _, vectors, stable = schur(balanced, output='real', sort='lhp')
+    balanced, scale = scipy.linalg.matrix_balance(hamiltonian)
+    _, vectors, stable = scipy.linalg.schur(balanced, output='real', sort='lhp')
     if stable != n:
         raise np.linalg.LinAlgError('the Hamiltonian matrix has eigenvalues on the axis')
     subspace = scale @ vectors[:, :n]
