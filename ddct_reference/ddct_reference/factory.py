@@ -1,8 +1,13 @@
 """The slip reference that a run's scenario and architecture ask for."""
 
-from ddct_plant.base.timebase import PERIOD_S, steps_in
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE
+from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import make_load
+from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE, Scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import WholePlant
 from ddct_reference.descent import (
     CrfRamp,
     Descent,
@@ -11,8 +16,7 @@ from ddct_reference.descent import (
     TanhDescent,
 )
 from ddct_reference.engine_speed_target import EngineSpeedTarget
-from ddct_reference.nominal_slip import nominal_slip
-from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference
+from ddct_reference.slip_reference import DescendingReference, SlipReference
 
 
 def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
@@ -30,10 +34,10 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
             scenario.control_start_step,
             preview_steps,
         )
-    descent = make_descent(settings)
-    if settings.detailed:
-        return FollowingReference(descent, scenario.control_start_step, preview_steps)
-    return StoredReference(descent, nominal_slip(scenario), preview_steps)
+    stored = [] if settings.detailed else nominal_slip(scenario)
+    return DescendingReference(
+        make_descent(settings), scenario.control_start_step, preview_steps, stored
+    )
 
 
 def make_descent(settings: RunSettings) -> Descent:
@@ -49,3 +53,28 @@ def make_descent(settings: RunSettings) -> Descent:
     return shapes[settings.reference_shape](
         (end_step - settings.scenario.control_start_step) * PERIOD_S
     )
+
+
+def nominal_slip(scenario: Scenario) -> list[float]:
+    """
+    Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
+
+    It is that of the nominal detailed run: a clutch without wear, the actuator as printed. Until
+    control starts feedback is off and only the static controller C_fOL acts. So no controller
+    enters: the values are those of any controller's run, to the last bit.
+    """
+    settings = RunSettings(scenario, architecture='detailed')
+    plant = WholePlant(settings, two_input=False)
+    plant.actuator = Actuator(initial_state(settings).torque_request)
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    load = make_load(settings)
+    slips = []
+    for step in range(scenario.control_start_step + 1):
+        sight = plant.look(step)
+        slips.append(sight.now.slip_speed)
+        engine_speed, shaft_speed = sight.now.joint_speed[:2]
+        load_torque = load.torque(sight.now.vehicle_speed, time_of_step(step))
+        assert sight.delivered is not None
+        request = static.torque(sight.delivered, load_torque, engine_speed, shaft_speed)
+        plant.advance(plant.reply(step, sight, request, None))
+    return slips

@@ -1,4 +1,4 @@
-"""Slip-speed references with preview: one that follows the slip first, one stored over time."""
+"""Slip-speed references with preview; that of most runs follows w_d, or stored values, first."""
 
 import math
 from abc import ABC, abstractmethod
@@ -27,77 +27,48 @@ class SlipReference(ABC):
 
 
 class DescendingReference(SlipReference):
-    """A reference that runs to zero as a `Descent` does."""
+    """
+    What stands before control start, then a `Descent` from there to zero.
 
-    def __init__(self, descent: Descent, control_start_step: int, preview_steps: int) -> None:
-        """Take how it runs to zero from `control_start_step` on, and the steps to look ahead."""
+    Without stored values it is CRF's reference generator, that of the detailed architecture
+    (Section 1.4.1). It equals w_d until control starts, and from then on does not depend on it any
+    more. Until then the preview assumes that the descent begins from the slip speed of now.
+
+    With stored values it is a function of time (Section 1.6): the slip speed of the run does not
+    change it, so its preview is exact everywhere.
+    """
+
+    def __init__(
+        self,
+        descent: Descent,
+        control_start_step: int,
+        preview_steps: int = 0,
+        stored: Sequence[float] = (),
+    ) -> None:
+        """Take the steps to look ahead; `stored` is in rad/s at steps 0, ..., control start."""
         self._descent = descent
         self._start_step = control_start_step
         self._preview_steps = preview_steps
+        self._stored = stored
+        self._start_value = stored[-1] if stored else math.nan
+        """The value in rad/s at control start, as far as it is known."""
 
     def update(
         self, step: int, slip_speed: float, shaft_speed: float = math.nan
     ) -> tuple[list[float], list[float]]:
         """Return the reference and its rate at steps k, k + 1, ..., k + P."""
-        start_value = self._start_value(step, slip_speed)
-        points = [
-            self._point(step + ahead, start_value) for ahead in range(self._preview_steps + 1)
-        ]
+        follows = step <= self._start_step or math.isnan(self._start_value)
+        if follows and not self._stored:
+            self._start_value = slip_speed
+        points = [self._point(step + ahead) for ahead in range(self._preview_steps + 1)]
         speeds, rates = zip(*points, strict=True)
         return list(speeds), list(rates)
 
-    def _point(self, step: int, start_value: float) -> tuple[float, float]:
-        since_start = step - self._start_step
-        if since_start < 0:
-            return self._before_start(step, start_value)
-        return self._descent.at(start_value, since_start * PERIOD_S)
-
-    @abstractmethod
-    def _start_value(self, step: int, slip_speed: float) -> float:
-        """Return the value in rad/s at control start, as it is known at step k."""
-
-    @abstractmethod
-    def _before_start(self, step: int, start_value: float) -> tuple[float, float]:
-        """Return the value and its rate at a step before control starts."""
-
-
-class FollowingReference(DescendingReference):
-    """
-    CRF's reference generator, that of the detailed architecture (Section 1.4.1).
-
-    The output equals w_d until control starts, and from then on does not depend on it any more.
-    Until then the preview assumes that the descent begins from the slip speed of now.
-    """
-
-    def __init__(self, descent: Descent, control_start_step: int, preview_steps: int = 0) -> None:
-        """Start without having seen any slip speed."""
-        super().__init__(descent, control_start_step, preview_steps)
-        self._followed: float | None = None
-
-    def _start_value(self, step: int, slip_speed: float) -> float:
-        if step <= self._start_step or self._followed is None:
-            self._followed = slip_speed
-        return self._followed
-
-    def _before_start(self, step: int, start_value: float) -> tuple[float, float]:
-        return start_value, 0.0
-
-
-class StoredReference(DescendingReference):
-    """
-    A function of time: stored values until control starts, then the descent (Section 1.6).
-
-    The slip speed of the run does not change it, so its preview is exact everywhere.
-    """
-
-    def __init__(self, descent: Descent, stored: Sequence[float], preview_steps: int = 0) -> None:
-        """Take the values in rad/s at steps 0, 1, ..., up to and with the first controlled one."""
-        super().__init__(descent, len(stored) - 1, preview_steps)
-        self._stored = stored
-
-    def _start_value(self, step: int, slip_speed: float) -> float:
-        return self._stored[-1]
-
-    def _before_start(self, step: int, start_value: float) -> tuple[float, float]:
+    def _point(self, step: int) -> tuple[float, float]:
+        if step >= self._start_step:
+            time_s = (step - self._start_step) * PERIOD_S
+            return self._descent.at(self._start_value, time_s)
+        if not self._stored:
+            return self._start_value, 0.0
         value = self._stored[step]
         return value, (self._stored[step + 1] - value) / PERIOD_S

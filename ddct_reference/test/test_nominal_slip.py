@@ -3,7 +3,7 @@
 import pytest
 
 from ddct_plant.scenario.file import load_scenario
-from ddct_reference.nominal_slip import nominal_slip
+from ddct_reference.factory import nominal_slip
 
 CONSTANT = (
     *('engine.time_s=[0.0]', 'engine.torque_n_m=[150.0]', 'control_start_s=1.0'),

@@ -8,7 +8,7 @@ from ddct_plant.scenario.scenario import REFERENCE_SHAPES
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 from ddct_reference.descent import CrfRamp
 from ddct_reference.factory import make_reference
-from ddct_reference.slip_reference import FollowingReference, SlipReference, StoredReference
+from ddct_reference.slip_reference import DescendingReference, SlipReference
 
 SLIPS = [0.0, 0.5, 1.5, 2.5, 9.0, -3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 
@@ -17,12 +17,12 @@ def values(reference: SlipReference, slips: list[float]) -> list[float]:
     return [reference.update(step, slip)[0][0] for step, slip in enumerate(slips)]
 
 
-def following(slope: float, start_step: int, preview_steps: int = 0) -> FollowingReference:
-    return FollowingReference(CrfRamp(slope), start_step, preview_steps)
+def following(slope: float, start_step: int, preview_steps: int = 0) -> DescendingReference:
+    return DescendingReference(CrfRamp(slope), start_step, preview_steps)
 
 
-def stored(preview_steps: int = 0) -> StoredReference:
-    return StoredReference(CrfRamp(100.0), [0.0, 1.0, 3.0, 3.5], preview_steps)
+def stored(preview_steps: int = 0) -> DescendingReference:
+    return DescendingReference(CrfRamp(100.0), 3, preview_steps, [0.0, 1.0, 3.0, 3.5])
 
 
 def test_it_equals_the_slip_speed_until_control_starts():
