@@ -9,8 +9,7 @@ import numpy as np
 from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_error, place_of_method
-from ddct_plant.base.checks import require_finite
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError, require_finite
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque

@@ -8,8 +8,7 @@ from ddct_controllers.interface import Controller, ControllerContext, Controller
 from ddct_controllers.linear import HOLD, Given, linear_spec
 from ddct_controllers.lti_objects import linear_system
 from ddct_controllers.registry import Chosen, controller_names, factory_spec
-from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_name
 
 _LINEAR = 'linear'
 """What a linear system is called that was given no name."""

@@ -12,8 +12,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_plant.base.checks import require_choice
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_choice
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh

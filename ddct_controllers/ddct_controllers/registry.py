@@ -22,8 +22,7 @@ from ddct_controllers.pi import PI
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
-from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
 from ddct_plant.base.options import Option, Options
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings

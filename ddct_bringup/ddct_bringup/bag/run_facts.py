@@ -5,8 +5,7 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ddct_plant.base.checks import require_name, require_number
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
 from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_TOPICS, RunKind

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from ddct_plant.base.checks import require_choice, require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.options import Option, close_name
 from ddct_plant.base.timebase import PERIOD_S
 

@@ -16,9 +16,8 @@ from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_controllers.registry import Chosen, controller_label
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, printable
 from ddct_plant.base.options import options_of
-from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario, parsed_override
 from ddct_plant.scenario.settings import RunSettings

@@ -11,8 +11,7 @@ from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write_campaign_page
 from ddct_bringup.campaign_report.tables import summary_tables
 from ddct_bringup.campaign_report.words import RULES, replay_command
-from ddct_plant.base.errors import DdctError
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser
 from ddct_plant.program.table import print_tables

@@ -30,8 +30,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.scenario.settings import RunSettings

@@ -25,9 +25,8 @@ from ddct_bringup.sweep.sweep_table import sweep_notes, sweep_table
 from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.base.options import close_name
-from ddct_plant.base.printable import printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress

@@ -18,8 +18,7 @@ from ddct_bringup.record.heard_nodes import HeardNodes
 from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode

@@ -4,8 +4,7 @@ import json
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, require_number
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_text import parse_json
 from ddct_plant.files.output_file import write_text

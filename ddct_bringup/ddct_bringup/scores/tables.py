@@ -11,7 +11,7 @@ from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import printable
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.table import UNDEFINED, Column, Figure, drawn_by_rich, table_of
 from ddct_plant.scenario.differences import scenario_title

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.campaign.keys import SCENARIO, option_of
-from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.files.yaml_text import parse_yaml
 
 MOST = 10_000

@@ -11,8 +11,7 @@ from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import Limit, Limits, Rules
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.schema_version import require_schema_version
 from ddct_plant.files.yaml_text import parse_yaml_with_lines

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 from ddct_controllers.check.checks import check_controller
 from ddct_controllers.check.outcome import FAIL, Outcome
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import printable
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
 from ddct_plant.scenario.options import add_scenario_options, scenario_of

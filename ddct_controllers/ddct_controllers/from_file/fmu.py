@@ -16,8 +16,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_plant.base.checks import require_finite
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_finite
 from ddct_plant.base.options import REQUIRED, Option, close_name
 
 KIND = 'fmu'

@@ -1,6 +1,17 @@
-"""Errors that a user can mend; programs print them in one line."""
+"""Errors that a user can mend, printed in one line, and the checks of values that raise them."""
 
-from ddct_plant.base.printable import printable
+import math
+import re
+from collections.abc import Sequence
+from numbers import Real
+
+LONGEST_LINE = 4000
+"""Longer text loses its middle: the beginning says what is wrong, the end what to do."""
+_KEPT_AT_END = 1000
+_CUT = ' [...] '
+LONGEST_NAME = 64
+"""Longest name: a file name has two names and an ending, and may have 255 bytes."""
+_NAME = re.compile(rf'[A-Za-z0-9_][A-Za-z0-9._-]{{0,{LONGEST_NAME - 1}}}')
 
 
 class DdctError(Exception):
@@ -26,3 +37,85 @@ class ParameterError(DdctError, ValueError):
 
 FOREIGN_FAILURES = (Exception, SystemExit)
 """What code of a third party may raise: sys.exit would end the program without a word."""
+
+
+def printable(text: object) -> str:
+    r"""
+    Return text from files, bags and messages as one line without control characters.
+
+    What a terminal would obey or not show (ANSI codes, line ends, marks of direction, lone
+    surrogates) is written as an escape such as \x1b.
+    """
+    line = str(text)
+    if len(line) > LONGEST_LINE:
+        line = line[: LONGEST_LINE - _KEPT_AT_END] + _CUT + line[-_KEPT_AT_END:]
+    if line.isprintable():
+        return line
+    return ''.join(
+        character if character.isprintable() else character.encode('unicode_escape').decode()
+        for character in line
+    )
+
+
+def require_number(
+    name: str,
+    value: object,
+    *,
+    unit: str = '',
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> float:
+    """
+    Return `value` as a float, or raise ParameterError that names it.
+
+    `above` is an exclusive lower bound; `at_least` and `at_most` are inclusive.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ParameterError(f'{name} is {value!r}: give a number{_in(unit)}')
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ParameterError(f'{name} is {number}: give a finite number{_in(unit)}')
+    if above is not None and number <= above:
+        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be above {above:g}')
+    if at_least is not None and number < at_least:
+        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at least {at_least:g}')
+    if at_most is not None and number > at_most:
+        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}')
+    return number
+
+
+def require_name(what: str, name: object) -> None:
+    """Raise ParameterError unless `name` of `what` is plain: it becomes the name of a file."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise ParameterError(
+            f'{what} is {name!r}: use up to {LONGEST_NAME} letters (A to Z, a to z), digits, '
+            'dots, dashes and underscores, no dot or dash first'
+        )
+
+
+def require_rising(name: str, times: Sequence[float]) -> None:
+    """Raise ParameterError where one of `times`, called `name`, is not later than the last."""
+    for earlier, later in zip(times, times[1:], strict=False):
+        if later <= earlier:
+            raise ParameterError(f'{name} goes from {earlier:g} to {later:g}: it must rise')
+
+
+def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
+    """Raise ParameterError that names the choices when `value` is none of them."""
+    if value not in choices:
+        raise ParameterError(f'unknown {name} {value!r}: choose from {", ".join(choices)}')
+
+
+def require_finite(source: str, value: float) -> float:
+    """Return a number that `source` gave; raise DdctError when it is NaN or infinite."""
+    if not math.isfinite(value):
+        raise DdctError(f'{source} is {value}: mend what computes it')
+    return value
+
+
+def _in(unit: str) -> str:
+    return f' {unit}' if unit else ''

@@ -12,8 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
-from ddct_plant.base.checks import require_choice, require_number, require_rising
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_choice, require_number, require_rising
 from ddct_plant.base.timebase import steps_in
 
 REQUIRED: Any = dataclasses.MISSING

@@ -16,8 +16,7 @@ from functools import cached_property
 from operator import attrgetter
 from typing import Any, ClassVar
 
-from ddct_plant.base.checks import require_finite, require_number
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, require_finite, require_number
 from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.hybrid.forcing import require_capacities
 from ddct_plant.models.driveline import PHASE_CHANGES, PHASES, PhaseEvent

@@ -6,8 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.hybrid.forcing import Forcing, Layout, Signs, Values
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.interval_map import Interval, IntervalMap

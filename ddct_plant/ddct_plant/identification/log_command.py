@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.log_check import Prediction, predict

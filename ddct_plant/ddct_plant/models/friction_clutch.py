@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import require_number
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 
 AMBIENT_C = 20.0

@@ -10,8 +10,7 @@ from collections.abc import Callable, Sequence
 from types import ModuleType
 from typing import Any, NoReturn
 
-from ddct_plant.base.errors import DdctError
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, write_json
 
 USAGE = 2

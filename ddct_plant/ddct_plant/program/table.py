@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from ddct_plant.base.printable import printable
+from ddct_plant.base.errors import printable
 
 PURE = '1'
 """Unit of a pure number."""

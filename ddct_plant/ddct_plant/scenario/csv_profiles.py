@@ -5,8 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.options import REQUIRED, Option, OptionGroup, close_name, options_of
 from ddct_plant.base.profile import TIME, value_name
 from ddct_plant.base.units import si_values

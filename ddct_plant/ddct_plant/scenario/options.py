@@ -4,8 +4,8 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from ddct_plant.base.errors import printable
 from ddct_plant.base.options import Option
-from ddct_plant.base.printable import printable
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.scenario import Scenario

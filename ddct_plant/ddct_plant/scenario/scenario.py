@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ddct_plant.base.checks import require_name
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_name
 from ddct_plant.base.options import ASSUMED, REQUIRED, Option, OptionGroup, option
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.actuator import ActuatorParameters

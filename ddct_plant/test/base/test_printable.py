@@ -4,8 +4,7 @@ import pickle
 
 import pytest
 
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.printable import MOST_CHARACTERS, printable
+from ddct_plant.base.errors import LONGEST_LINE, DdctError, ParameterError, printable
 from ddct_plant.program.table import Table, print_table
 
 RED = '\x1b[31mred\x1b[0m'
@@ -33,7 +32,7 @@ def test_long_text_keeps_its_beginning_and_its_end():
     assert shown.startswith('begins x')
     assert shown.endswith('x ends')
     assert ' [...] ' in shown
-    assert len(shown) < MOST_CHARACTERS + 10
+    assert len(shown) < LONGEST_LINE + 10
 
 
 @pytest.mark.parametrize('kind', [DdctError, ParameterError])

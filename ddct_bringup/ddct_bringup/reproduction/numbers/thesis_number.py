@@ -3,8 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ddct_plant.base.checks import require_choice, require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.models.printed import PrintedNumber
 
 

@@ -21,8 +21,7 @@ from ddct_bringup.reproduction.studies import (
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction
 from ddct_controllers.design.drawing.chart_files import save_figure
 from ddct_controllers.design.drawing.chart_style import chart_style
-from ddct_plant.base.checks import require_choice
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.table import print_table
 

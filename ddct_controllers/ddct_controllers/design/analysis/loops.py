@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_controllers.design.state_space import series
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh

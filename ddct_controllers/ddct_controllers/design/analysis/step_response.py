@@ -4,7 +4,7 @@ import numpy as np
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import to_control
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import require_number
 from ddct_plant.linear.lti import StateSpace
 
 TIME_STEP_S = 0.001

@@ -24,7 +24,7 @@ from ddct_controllers.design.h_infinity.synthesis.generalised_plant import Gener
 from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.design.state_space import factored_form
-from ddct_plant.base.checks import require_choice
+from ddct_plant.base.errors import require_choice
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh

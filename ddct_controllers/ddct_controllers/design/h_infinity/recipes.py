@@ -10,7 +10,7 @@ from ddct_controllers.design.h_infinity.weights import (
     WeightError,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.base.checks import require_choice
+from ddct_plant.base.errors import require_choice
 
 THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
 """Section 3.2."""

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 BUTTERWORTH = math.sqrt(0.5)

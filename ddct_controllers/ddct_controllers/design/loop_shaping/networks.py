@@ -3,7 +3,7 @@
 import numpy as np
 
 from ddct_controllers.design.loop_shaping.specifications import SpecificationError
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import require_number
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 _SLOW = 1e-7

@@ -12,7 +12,7 @@ from ddct_controllers.design.analysis.loop_curve import (
     sensitivity,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.base.checks import require_number
+from ddct_plant.base.errors import require_number
 
 _CURVE_POINTS = 720
 _SMALLEST_SIZE = 1e-4

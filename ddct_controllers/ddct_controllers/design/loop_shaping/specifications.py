@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.printed import ACTUATOR
 

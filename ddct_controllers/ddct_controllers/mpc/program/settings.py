@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 
 from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND
-from ddct_plant.base.checks import require_choice, require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_choice, require_number
 
 
 @dataclass(frozen=True)

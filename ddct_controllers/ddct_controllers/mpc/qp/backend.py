@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from ddct_controllers.mpc.qp.problem import QpSolution, QpStatus, QpStructure
-from ddct_plant.base.checks import require_choice
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, require_choice
 
 Vector = np.ndarray | Sequence[float]
 

@@ -5,8 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, require_number
 
 QpStatus = Literal['solved', 'iteration limit', 'infeasible']
 

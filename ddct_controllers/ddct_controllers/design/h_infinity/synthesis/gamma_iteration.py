@@ -13,8 +13,7 @@ from ddct_controllers.design.h_infinity.synthesis.riccati import (
     central_controller,
     stabilising_solutions,
 )
-from ddct_plant.base.checks import require_number
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.linear.lti import StateSpace
 
 BACK_OFF = 1.01
