@@ -1,95 +1,126 @@
 """The simplified plant of Section 1.5.1 that is drawn with elementary blocks (Figure 1.20)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 
 import numpy as np
 
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import SUBSTEP_S
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.simplified.block_diagram import Block, BlockDiagram, Gain, Integrator, Sum
-from ddct_plant.simplified.plants import SimplifiedPlant
+from ddct_plant.simplified.plants import SlipPhase
 
 
-class ElementaryBlockPlant(SimplifiedPlant):
+class BlockDiagram:
     """
-    The plant drawn with elementary blocks, gains, sums and integrators (Figure 1.20).
+    Gains, sums and integrators, evaluated block by block.
+
+    A block is called like the signal it puts out; signals of no block are inputs. A gain or a sum
+    is given by the factors of the signals that go into it, an integrator by the signal that it
+    integrates: a state.
+    """
+
+    def __init__(
+        self,
+        sums: Mapping[str, Mapping[str, float]],
+        integrators: Mapping[str, str],
+        inputs: Sequence[str],
+    ) -> None:
+        """Order the blocks; raise ParameterError for an unknown signal or an algebraic loop."""
+        self._integrators, self._inputs = integrators, inputs
+        sources = {**sums, **{state: (source,) for state, source in integrators.items()}}
+        for name in sources:
+            for source in sources[name]:
+                if source not in sources and source not in inputs:
+                    raise ParameterError(f'block {name}: there is no signal {source!r}')
+        direct = {name: factors.keys() & sums.keys() for name, factors in sums.items()}
+        try:
+            order = list(TopologicalSorter(direct).static_order())
+        except CycleError as error:
+            raise ParameterError(f'algebraic loop: {" - ".join(error.args[1])}') from error
+        self._ordered = [(name, tuple(sums[name].items())) for name in order]
+
+    def signals(self, states: Iterable[float], inputs: Iterable[float]) -> dict[str, float]:
+        """Return every signal for the values of the integrators and of the inputs."""
+        values = dict(zip(self._integrators, states, strict=True))
+        values.update(zip(self._inputs, inputs, strict=True))
+        for name, factors in self._ordered:
+            total = 0.0
+            for source, factor in factors:
+                total += factor * values[source]
+            values[name] = total
+        return values
+
+    def derivative(self, states: np.ndarray, inputs: Iterable[float]) -> np.ndarray:
+        """Return what each integrator integrates."""
+        values = self.signals(states.tolist(), inputs)
+        return np.array([values[source] for source in self._integrators.values()])
+
+
+def elementary_slip(parameters: DrivelineParameters, phase: SlipPhase) -> np.ndarray:
+    """
+    Integrate the plant drawn with gains, sums and integrators (Figure 1.20).
 
     It takes classical Runge-Kutta steps that never straddle a bend of C_f and span at most 0.02
     of the fastest mode's time constant: an error of 1e-11 of the peak, by a method that shares
     nothing with the matrix exponentials of the other plants.
     """
-
-    def __init__(self, parameters: DrivelineParameters) -> None:
-        """Draw the diagram of Section 1.5's equations."""
-        p = parameters
-        blocks: dict[str, Block] = {
-            'engine_speed': Integrator('engine_acceleration'),
-            'shaft_speed': Integrator('shaft_acceleration'),
-            'wheel_speed': Integrator('wheel_acceleration'),
-            'twist': Integrator('twist_speed'),
-            'slip_speed': Sum(('engine_speed',), ('shaft_speed',)),
-            'engine_drag': Gain(p.engine_damping, 'engine_speed'),
-            'engine_net': Sum(('engine_torque',), ('clutch_torque', 'engine_drag')),
-            'engine_acceleration': Gain(1.0 / p.engine_inertia, 'engine_net'),
-            'geared_speed': Gain(1.0 / p.total_ratio, 'shaft_speed'),
-            'twist_speed': Sum(('geared_speed',), ('wheel_speed',)),
-            'damper_torque': Gain(p.halfshaft_damping, 'twist_speed'),
-            'spring_torque': Gain(p.halfshaft_stiffness, 'twist'),
-            'halfshaft_torque': Sum(('damper_torque', 'spring_torque')),
-            'reflected_torque': Gain(1.0 / p.total_ratio, 'halfshaft_torque'),
-            'shaft_drag': Gain(p.shaft_damping, 'shaft_speed'),
-            'shaft_net': Sum(('clutch_torque',), ('reflected_torque', 'shaft_drag')),
-            'shaft_acceleration': Gain(1.0 / p.shaft_inertia, 'shaft_net'),
-            'wheel_net': Sum(('halfshaft_torque',), ('load_torque',)),
-            'wheel_acceleration': Gain(1.0 / p.vehicle_inertia, 'wheel_net'),
-        }
-        self._diagram = BlockDiagram(blocks, ('engine_torque', 'clutch_torque', 'load_torque'))
-        fastest = float(np.abs(np.linalg.eigvals(driveline_matrices(p).a)).max())
-        self._steps = max(math.ceil(SUBSTEP_S * fastest / 0.02), 1)
-
-    def _slip_speed(
-        self,
-        engine_torque: np.ndarray,
-        clutch_points: np.ndarray,
-        load_torque: np.ndarray,
-        initial_state: np.ndarray,
-    ) -> np.ndarray:
-        state = initial_state.tolist()
-        slip_speed = [state[0] - state[1]]
-        periods = zip(
-            engine_torque.tolist(), clutch_points.tolist(), load_torque.tolist(), strict=True
-        )
-        for engine, points, load in periods:
-            for first, last in zip(points, points[1:], strict=False):
-                state = self._advance(state, engine, (first, last), load)
-            slip_speed.append(
-                self._diagram.signals(state, (engine, points[-1], load))['slip_speed']
-            )
-        return np.array(slip_speed)
-
-    def _advance(
-        self, state: list[float], engine: float, clutch: tuple[float, float], load: float
-    ) -> list[float]:
-        """Return the state 1 ms later; `clutch` holds C_f at both ends."""
-        h = SUBSTEP_S / self._steps
-        derivative = self._diagram.derivative
-        for step in range(self._steps):
-            start, middle, end = (
-                (engine, clutch[0] + (clutch[1] - clutch[0]) * (step + part) / self._steps, load)
-                for part in (0.0, 0.5, 1.0)
-            )
-            k_1 = derivative(state, start)
-            k_2 = derivative(_moved(state, k_1, h / 2), middle)
-            k_3 = derivative(_moved(state, k_2, h / 2), middle)
-            k_4 = derivative(_moved(state, k_3, h), end)
-            slopes = [
-                (a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(k_1, k_2, k_3, k_4, strict=True)
-            ]
-            state = _moved(state, slopes, h)
-        return state
+    diagram = _diagram(parameters)
+    fastest = float(np.abs(np.linalg.eigvals(driveline_matrices(parameters).a)).max())
+    steps = max(math.ceil(SUBSTEP_S * fastest / 0.02), 1)
+    halves = np.arange(2 * steps + 1) / 2
+    state = phase.initial_state
+    slip_speed = [state[0] - state[1]]
+    torques = phase.engine_torque, phase.clutch_points, phase.load_torque
+    for engine, points, load in zip(*(torque.tolist() for torque in torques), strict=True):
+        for first, last in zip(points, points[1:], strict=False):
+            clutch = (first + (last - first) * halves / steps).tolist()
+            state = _substep(diagram, state, [(engine, torque, load) for torque in clutch])
+        slip_speed.append(diagram.signals(state, (engine, points[-1], load))['slip_speed'])
+    return np.array(slip_speed)
 
 
-def _moved(state: Sequence[float], slopes: Sequence[float], time: float) -> list[float]:
-    return [value + slope * time for value, slope in zip(state, slopes, strict=True)]
+def _diagram(p: DrivelineParameters) -> BlockDiagram:
+    """Draw the diagram of Section 1.5's equations."""
+    return BlockDiagram(
+        {
+            'slip_speed': {'engine_speed': 1.0, 'shaft_speed': -1.0},
+            'engine_drag': {'engine_speed': p.engine_damping},
+            'engine_net': {'engine_torque': 1.0, 'clutch_torque': -1.0, 'engine_drag': -1.0},
+            'engine_acceleration': {'engine_net': 1.0 / p.engine_inertia},
+            'geared_speed': {'shaft_speed': 1.0 / p.total_ratio},
+            'twist_speed': {'geared_speed': 1.0, 'wheel_speed': -1.0},
+            'damper_torque': {'twist_speed': p.halfshaft_damping},
+            'spring_torque': {'twist': p.halfshaft_stiffness},
+            'halfshaft_torque': {'damper_torque': 1.0, 'spring_torque': 1.0},
+            'reflected_torque': {'halfshaft_torque': 1.0 / p.total_ratio},
+            'shaft_drag': {'shaft_speed': p.shaft_damping},
+            'shaft_net': {'clutch_torque': 1.0, 'reflected_torque': -1.0, 'shaft_drag': -1.0},
+            'shaft_acceleration': {'shaft_net': 1.0 / p.shaft_inertia},
+            'wheel_net': {'halfshaft_torque': 1.0, 'load_torque': -1.0},
+            'wheel_acceleration': {'wheel_net': 1.0 / p.vehicle_inertia},
+        },
+        {
+            'engine_speed': 'engine_acceleration',
+            'shaft_speed': 'shaft_acceleration',
+            'wheel_speed': 'wheel_acceleration',
+            'twist': 'twist_speed',
+        },
+        ('engine_torque', 'clutch_torque', 'load_torque'),
+    )
+
+
+def _substep(
+    diagram: BlockDiagram, state: np.ndarray, inputs: Sequence[tuple[float, ...]]
+) -> np.ndarray:
+    """Return the state 1 ms later, with the inputs at the ends and the middle of each step."""
+    h = 2.0 * SUBSTEP_S / (len(inputs) - 1)
+    for start, middle, end in zip(inputs[:-2:2], inputs[1::2], inputs[2::2], strict=True):
+        k_1 = diagram.derivative(state, start)
+        k_2 = diagram.derivative(state + k_1 * (h / 2), middle)
+        k_3 = diagram.derivative(state + k_2 * (h / 2), middle)
+        k_4 = diagram.derivative(state + k_3 * h, end)
+        state = state + (k_1 + 2 * k_2 + 2 * k_3 + k_4) / 6 * h
+    return state

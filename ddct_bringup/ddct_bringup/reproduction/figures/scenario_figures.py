@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.values.plant_values import (
+    SIMPLIFIED_PLANTS,
     deviation_bound_percent,
     deviations,
     plant_slips,
-    simplified_plants,
 )
 from ddct_controllers.design.drawing.chart_style import GREY, REFERENCE_LINE
 from ddct_plant.base.timebase import PERIOD_S
@@ -19,7 +19,7 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine import Engine
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.simplified.plants import printed_lti_plant
+from ddct_plant.simplified.plants import printed_lti_slip
 from ddct_reference.factory import make_reference
 
 _LAST_S = 2.2
@@ -73,10 +73,10 @@ def _draw_engine_torque(axes: Axes) -> str:
 
 def _draw_plants(axes: Axes) -> str:
     run = thesis_run('pi', 'detailed', 1.0)
-    printed = {_PRINTED_PLANT: printed_lti_plant(THESIS_SCENARIO.driveline)}
+    printed = {_PRINTED_PLANT: printed_lti_slip}
     slips = {
         'detailed model': run.slip_speed,
-        **plant_slips({**simplified_plants(), **printed}),
+        **plant_slips({**SIMPLIFIED_PLANTS, **printed}),
     }
     draw_over_time(
         *(axes, 'w_d, rpm', (0.0, run.time_s[-1])),

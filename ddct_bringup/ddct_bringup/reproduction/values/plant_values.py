@@ -25,8 +25,20 @@ from ddct_plant.models.printed import (
     ENGINE_TO_SLIP,
     LOAD_TO_SLIP,
 )
-from ddct_plant.simplified.elementary import ElementaryBlockPlant
-from ddct_plant.simplified.plants import SimplifiedPlant, StateSpacePlant, lti_plant
+from ddct_plant.simplified.elementary import elementary_slip
+from ddct_plant.simplified.plants import (
+    SimplifiedPlant,
+    SlipPhase,
+    lti_slip,
+    state_space_slip,
+)
+
+SIMPLIFIED_PLANTS: Mapping[str, SimplifiedPlant] = {
+    'elementary blocks': elementary_slip,
+    'state space': state_space_slip,
+    'LTI': lti_slip,
+}
+"""The three simplified models of Section 1.5.1."""
 
 
 def plant_values() -> dict[str, Value | None]:
@@ -104,17 +116,7 @@ def _buildable(path: FactoredTransferFunction, inverted: FactoredTransferFunctio
 
 def deviation_bound_percent() -> float:
     """Return the power of ten within which w_d of the simplified models is, of its peak."""
-    return 10.0 ** math.ceil(math.log10(100.0 * max(deviations(simplified_plants()).values())))
-
-
-def simplified_plants() -> dict[str, SimplifiedPlant]:
-    """Return the three simplified models of Section 1.5.1."""
-    parameters = THESIS_SCENARIO.driveline
-    return {
-        'elementary blocks': ElementaryBlockPlant(parameters),
-        'state space': StateSpacePlant(parameters),
-        'LTI': lti_plant(parameters),
-    }
+    return 10.0 ** math.ceil(math.log10(100.0 * max(deviations(SIMPLIFIED_PLANTS).values())))
 
 
 def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
@@ -122,7 +124,8 @@ def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
     run = thesis_run('pi', 'detailed', 1.0)
     start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
     torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
-    return {name: plant.simulate(*torques, start) for name, plant in plants.items()}
+    phase = SlipPhase(*torques, start)
+    return {name: plant(THESIS_SCENARIO.driveline, phase) for name, plant in plants.items()}
 
 
 def deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
