@@ -1,4 +1,4 @@
-"""What differs from run to run, as arrays with one column for each run."""
+"""What differs from run to run, as arrays with one column for each run, and filters of them."""
 
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import fields
@@ -6,6 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+
+from ddct_plant.linear.lti import StateSpace
 
 
 def stacked(things: Sequence[Any]) -> Any:
@@ -39,3 +41,31 @@ def product(matrix: np.ndarray, columns: np.ndarray) -> np.ndarray:
     BLAS is faster with one matrix, but rounds a column by what stands beside it.
     """
     return np.einsum('ijr,jr->ir' if matrix.ndim == 3 else 'ij,jr->ir', matrix, columns)
+
+
+class Filters:
+    """
+    `DiscreteFilter` over columns: many sampled linear systems as they run.
+
+    y_k = c x_k + d u_k, x_(k+1) = a x_k + b u_k of each run, all of one order, one output.
+    """
+
+    def __init__(self, models: Sequence[StateSpace], states: np.ndarray | float = 0.0) -> None:
+        """Start at `states`, (n, R)."""
+        systems = [(model.a, model.b, model.c, model.d) for model in models]
+        first, places = distinct(tuple(map(np.ndarray.tobytes, each)) for each in systems)
+        # From states and inputs to the next states and the output, (n + 1, n + m) each.
+        maps = [np.block([[a, b], [c, d]]) for a, b, c, d in (systems[index] for index in first)]
+        matrices = np.stack(maps, axis=-1)
+        self._matrix = matrices[..., 0] if len(first) == 1 else np.take(matrices, places, axis=-1)
+        self._order = len(models[0].a)
+        self._states_and_inputs = np.zeros((self._matrix.shape[1], len(models)))
+        self._states_and_inputs[: self._order] = states
+
+    def update(self, *inputs: np.ndarray) -> np.ndarray:
+        """Return the outputs of this period, (R,), and advance the states to the next one."""
+        values = self._states_and_inputs
+        values[self._order :] = inputs
+        following = product(self._matrix, values)
+        values[: self._order] = following[:-1]
+        return following[-1]

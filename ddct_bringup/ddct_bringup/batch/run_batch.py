@@ -16,8 +16,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import batchable
-from ddct_bringup.batch.loops import simulate_batch
-from ddct_bringup.batch.references import reference_kind
+from ddct_bringup.batch.loops import reference_kind, simulate_batch
 from ddct_bringup.batch.results import BatchResult, one_or_more, stacked_results
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.limits_file import packaged_limits
