@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from ddct_controllers.design.h_infinity.weights import WeightError
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.linear import BILINEAR
 from ddct_controllers.registry import make_controller
@@ -141,7 +140,3 @@ def test_a_users_mistake_is_one_line(capsys, options, complaint):
     assert complaint in error
     assert error.startswith('ddct design: ')
     assert error.count('\n') == 1
-
-
-def test_weight_errors_are_parameter_errors():
-    assert issubclass(WeightError, ParameterError)

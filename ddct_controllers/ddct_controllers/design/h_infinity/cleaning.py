@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import SynthesisError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -36,7 +36,7 @@ def clean(
     becoming a; (2) of the two poles that W_1* left at -epsilon one becomes s, mu = 1, the other
     goes in zpk form, s + a becoming 1, together with the slowest zero: that one would cancel the
     plant's pole at 0; (3) a pole and a zero within 0.1 % of each other go in zpk form. Raise
-    SynthesisError when there are no two poles near -epsilon.
+    DdctError when there are no two poles near -epsilon.
     """
     steps: list[CleaningStep] = []
     numerator, zeros_gain = _without_fast(controller.numerator, steps, 'zero')
@@ -72,13 +72,13 @@ def _with_integrator(
     left = nearest[:1] if nearest and isinstance(nearest[0], tuple) else nearest[:2]
     orders = sum(_order(factor) for factor in left)
     if orders != 2 or any(not 1 / _NEAR_OFFSET < rate_of(f) / offset < _NEAR_OFFSET for f in left):
-        raise SynthesisError(
+        raise DdctError(
             f'cleaning: the controller has no two poles near epsilon = {offset:.3g} rad/s, which '
             'W_1* puts there: clean it by hand, or choose another epsilon'
         )
     slowest = min(numerator, key=rate_of, default=(0.0, 0.0))
     if isinstance(slowest, tuple):
-        raise SynthesisError(
+        raise DdctError(
             'cleaning: the slowest zero of the controller is not real, so that it is not the '
             "trace of the plant's pole at 0: choose a larger epsilon"
         )

@@ -17,14 +17,12 @@ from ddct_controllers.design.h_infinity.problem import mixed_sensitivity, sample
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
     Synthesis,
-    SynthesisError,
     synthesise,
 )
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
 from ddct_controllers.design.h_infinity.synthesis.lmi import synthesise_by_lmi
-from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.design.state_space import factored_form
-from ddct_plant.base.errors import require_choice
+from ddct_plant.base.errors import DdctError, ParameterError, require_choice
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
@@ -58,7 +56,7 @@ def design_h_infinity(
     """
     Synthesise, clean, discretise and verify a controller.
 
-    Raise SpecificationError when no controller meets both requirements, SynthesisError when no
+    Raise ParameterError when no controller meets both requirements, DdctError when no
     controller verifies or the cleaned one does not keep the loop stable.
     """
     require_choice('method', method, METHODS)
@@ -96,7 +94,7 @@ def _require_attainable(
     weights: HinfWeights, synthesis: Synthesis, parameters: DrivelineParameters
 ) -> None:
     """
-    Raise SpecificationError when the bounds on S and T exclude each other.
+    Raise ParameterError when the bounds on S and T exclude each other.
 
     A controller with ||W_s S|| <= 1 and ||W_t T|| <= 1 has a stack of at most sqrt(2).
     """
@@ -105,7 +103,7 @@ def _require_attainable(
         alone = replace(weights, effort=None)
         bound = synthesise(generalised_plant(alone, parameters)).lower_bound
     if bound > math.sqrt(2.0):
-        raise SpecificationError(
+        raise ParameterError(
             f'no controller meets the bounds on S and T: the least norm of their stack is '
             f'{bound:.2f}, above sqrt(2): allow a longer rise time, more overshoot, '
             'a larger K or a larger w_2'
@@ -114,7 +112,7 @@ def _require_attainable(
 
 def _require_stable(which: str, loop: ContinuousLoop | StateSpace) -> None:
     if not closed_loop_stable(loop):
-        raise SynthesisError(
+        raise DdctError(
             f'synthesis: the cleaned controller makes the loop {which} unstable: allow a longer '
             'rise time, or use the weights that have hold and delay in the plant (sampled)'
         )

@@ -5,10 +5,10 @@ import scipy
 
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
     GeneralisedPlant,
-    GeneralisedPlantError,
 )
-from ddct_controllers.design.h_infinity.weights import WeightError, stable_weight
+from ddct_controllers.design.h_infinity.weights import stable_weight
 from ddct_controllers.design.state_space import series
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 AXIS_SHIFT_RAD_S = 1e-4
@@ -31,7 +31,7 @@ def mixed_sensitivity(
 
     `w_2` is a polynomial in s, or proper. A polynomial is exact, without the thesis's `sderiv`:
     y' = C A x and so on, up to the order at which u appears, which is the plant's relative
-    degree. Raise WeightError for a weight that cannot be used.
+    degree. Raise ParameterError for a weight that cannot be used.
     """
     realised = off_axis(plant).to_state_space()
     first = stable_weight('W_1', w_1)
@@ -70,7 +70,7 @@ def off_axis(plant: FactoredTransferFunction) -> FactoredTransferFunction:
     found = FactoredTransferFunction(plant.gain, plant.numerator, moved)
     on_axis = found.poles[(found.poles.real == 0.0)]
     if on_axis.size:
-        raise GeneralisedPlantError(
+        raise DdctError(
             f'plant has an undamped pole at {on_axis[0]:.4g} rad/s: give it a little damping for '
             'the synthesis'
         )
@@ -84,7 +84,7 @@ def _derivatives(
     coefficients = weight.gain * np.atleast_1d(np.poly(weight.zeros).real)[::-1]
     degree = len(coefficients) - 1
     if degree > relative_degree:
-        raise WeightError(
+        raise ParameterError(
             f'W_2 is of degree {degree}, but the plant has only {relative_degree} more poles than '
             f'zeros, so that W_2 T is improper: give it at most {relative_degree} zeros'
         )

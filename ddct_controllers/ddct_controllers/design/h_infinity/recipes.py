@@ -7,10 +7,9 @@ from ddct_controllers.design.h_infinity.weights import (
     ComplementaryWeight,
     EffortWeight,
     SensitivityWeight,
-    WeightError,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
-from ddct_plant.base.errors import require_choice
+from ddct_plant.base.errors import ParameterError, require_choice
 
 THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
 """Section 3.2."""
@@ -109,7 +108,7 @@ def _effort(
 ) -> EffortWeight | None:
     if recipe is None:
         if torque is not None:
-            raise WeightError('only the sampled design weighs the torque: leave out its weight')
+            raise ParameterError('only the sampled design weighs the torque: leave out its weight')
         return None
     return EffortWeight(
         _either(torque, recipe.torque_n_m_per_rpm / slower), recipe.corner_rad_s / slower

@@ -19,10 +19,6 @@ over at 0.95 rad/s; from 0.001 to 0.03 the ratio moves gamma by less than 1 %.
 """
 
 
-class WeightError(ParameterError):
-    """A weight cannot be used, or contradicts itself."""
-
-
 @dataclass(frozen=True)
 class SensitivityWeight:
     """
@@ -37,9 +33,9 @@ class SensitivityWeight:
     """S_p."""
 
     def __post_init__(self) -> None:
-        """Check both; raise WeightError that names a bad one."""
-        _require('K, the low-frequency gain of S,', self.low_frequency_gain, above=0.0)
-        _require(
+        """Check both; raise ParameterError that names a bad one."""
+        require_number('K, the low-frequency gain of S,', self.low_frequency_gain, above=0.0)
+        _require_peak(
             'S_p, the bound on |S|,',
             self.peak,
             above=1.0,
@@ -79,15 +75,15 @@ class ComplementaryWeight:
     """zeta; 1 makes the double real zero that two calls of `sderiv` with [1/w_2 1] make."""
 
     def __post_init__(self) -> None:
-        """Check all; raise WeightError that names a bad one."""
-        _require(
+        """Check all; raise ParameterError that names a bad one."""
+        _require_peak(
             'T_p, the bound on |T|,',
             self.peak,
             at_least=1.0,
             why='with an integrator in the loop T is 1 at rest',
         )
-        _require('w_2', self.corner_rad_s, above=0.0)
-        _require('damping of W_t', self.damping, above=0.0)
+        require_number('w_2', self.corner_rad_s, above=0.0)
+        require_number('damping of W_t', self.damping, above=0.0)
 
     def transfer_function(self) -> FactoredTransferFunction:
         """Return W_t, a polynomial of second order."""
@@ -111,9 +107,9 @@ class EffortWeight:
     """Frequency from which the weight rises, up to 100 times higher."""
 
     def __post_init__(self) -> None:
-        """Check both; raise WeightError that names a bad one."""
-        _require('the torque of the effort weight', self.torque_n_m_per_rpm, above=0.0)
-        _require('the corner of the effort weight', self.corner_rad_s, above=0.0)
+        """Check both; raise ParameterError that names a bad one."""
+        require_number('the torque of the effort weight', self.torque_n_m_per_rpm, above=0.0)
+        require_number('the corner of the effort weight', self.corner_rad_s, above=0.0)
 
     def transfer_function(self) -> FactoredTransferFunction:
         """Return (1 + s/w_c) / (1 + s/(100 w_c)) over the torque."""
@@ -122,30 +118,30 @@ class EffortWeight:
 
 
 def stable_weight(name: str, weight: FactoredTransferFunction) -> StateSpace:
-    """Return a realisation; raise WeightError for a weight that is not proper and stable."""
+    """Return a realisation; raise ParameterError for a weight that is not proper and stable."""
     if weight.zeros.size > weight.poles.size:
-        raise WeightError(
+        raise ParameterError(
             f'{name} has {weight.zeros.size} zeros and {weight.poles.size} poles: '
             'make it proper, with a pole far beyond the crossover for each zero too many'
         )
     if np.any(weight.poles.real >= 0.0):
         worst = weight.poles[np.argmax(weight.poles.real)]
-        raise WeightError(
+        raise ParameterError(
             f'{name} has a pole at {worst:.4g} rad/s: no feedback can move a pole of a weight; '
             'replace s by s + epsilon, or reflect the pole to the left'
         )
     return weight.to_state_space()
 
 
-def _require(
+def _require_peak(
     name: str,
-    value: float,
+    peak: float,
     *,
     above: float | None = None,
     at_least: float | None = None,
-    why: str = '',
+    why: str,
 ) -> None:
     try:
-        require_number(name, value, above=above, at_least=at_least)
+        require_number(name, peak, above=above, at_least=at_least)
     except ParameterError as error:
-        raise WeightError(f'{error}: {why}' if why else str(error)) from error
+        raise ParameterError(f'{error}: {why}') from error

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ddct_controllers.design.loop_shaping.specifications import SpecificationError
-from ddct_plant.base.errors import require_number
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 _SLOW = 1e-7
@@ -35,7 +34,7 @@ def required_integrators(
     mu + p >= q + h + 1; Section 2.2 writes it for P_1, mu + p >= 2.
     """
     if disturbance_order < 0:
-        raise SpecificationError(
+        raise ParameterError(
             f'disturbance order is {disturbance_order}: it must be 0 (a step), 1 (a ramp) or more'
         )
     needed = poles_at_zero(disturbance_path) + disturbance_order + 1

@@ -17,7 +17,6 @@ from ddct_controllers.design.loop_shaping.networks import (
     with_crossover,
 )
 from ddct_controllers.design.loop_shaping.specifications import (
-    SpecificationError,
     TimeSpecifications,
     require_reachable,
 )
@@ -27,6 +26,7 @@ from ddct_controllers.design.verified_design import (
     Verification,
     verify,
 )
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
@@ -70,7 +70,7 @@ def design_loop_shaping(
     Return the slowest controller found that meets the specifications.
 
     In this order: a structure whose L stays out of the S_p and T_p curves, then any that meets
-    the time specifications. Only what `verify` accepts is returned. Raise SpecificationError with
+    the time specifications. Only what `verify` accepts is returned. Raise ParameterError with
     what can be reached when there is none.
     """
     require_reachable(specifications)
@@ -117,7 +117,7 @@ class _Search:
             if rise_time_s <= self._specifications.rise_time_s:
                 yield controller
 
-    def failure(self, structures: tuple[str, ...]) -> SpecificationError:
+    def failure(self, structures: tuple[str, ...]) -> ParameterError:
         """Return the error that says what can be reached and what to change."""
         limit_s = self._specifications.rise_time_s
         asked = (
@@ -126,14 +126,14 @@ class _Search:
             'sampled loop'
         )
         if self._fastest_s <= limit_s:
-            return SpecificationError(
+            return ParameterError(
                 f'{asked} (last candidate: {"; ".join(self.complaints)}): allow a longer rise time'
             )
         fastest_s = min(self._fastest_s, *(self._slower_s(structure) for structure in structures))
         if math.isinf(fastest_s):
-            return SpecificationError(f'{asked}, nor a slower one: allow more overshoot')
+            return ParameterError(f'{asked}, nor a slower one: allow more overshoot')
         fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
-        return SpecificationError(
+        return ParameterError(
             f'{asked}: the fastest has {fastest_s:g} s: allow that or more overshoot'
         )
 

@@ -14,10 +14,6 @@ LONGEST_RISE_TIME_S = 5.0
 """An engagement takes about a second."""
 
 
-class SpecificationError(ParameterError):
-    """A specification makes no sense, or no controller of the kind asked for meets it."""
-
-
 @dataclass(frozen=True)
 class TimeSpecifications:
     """
@@ -32,16 +28,14 @@ class TimeSpecifications:
     """s^, as a fraction of the final value: 0.14 is 14 %."""
 
     def __post_init__(self) -> None:
-        """Check both; raise SpecificationError that names a bad one."""
-        try:
-            rise_time_s = require_number('rise time', self.rise_time_s, unit='s', above=0.0)
-            require_number('rise time', rise_time_s, unit='s', at_most=LONGEST_RISE_TIME_S)
-            percent = 100.0 * require_number('overshoot', self.overshoot)
-            require_number('overshoot', percent, unit='%', above=0.0)
-        except ParameterError as error:
-            raise SpecificationError(str(error)) from error
+        """Check both; raise ParameterError that names a bad one."""
+        require_number(
+            'rise time', self.rise_time_s, unit='s', above=0.0, at_most=LONGEST_RISE_TIME_S
+        )
+        percent = 100.0 * require_number('overshoot', self.overshoot)
+        require_number('overshoot', percent, unit='%', above=0.0)
         if percent >= 100.0:
-            raise SpecificationError(
+            raise ParameterError(
                 f'overshoot is {percent:g} %: it must be below 100 %, where oscillation never ends'
             )
 
@@ -143,12 +137,12 @@ def highest_crossover_rad_s(damping: float) -> float:
 
 
 def require_reachable(specifications: TimeSpecifications) -> None:
-    """Raise SpecificationError with the bound when the crossover asked for is above it."""
+    """Raise ParameterError with the bound when the crossover asked for is above it."""
     damping, wanted = specifications.damping, specifications.crossover_rad_s
     bound = highest_crossover_rad_s(damping)
     if wanted > bound:
         slowest = rise_time_crossover_product(damping) / bound
-        raise SpecificationError(
+        raise ParameterError(
             f'rise time {specifications.rise_time_s:g} s with overshoot '
             f'{100.0 * specifications.overshoot:g} % asks for a crossover of {wanted:.3g} rad/s, '
             f"but the actuator's delay, hold and right-half-plane zeros allow {bound:.3g} rad/s: "

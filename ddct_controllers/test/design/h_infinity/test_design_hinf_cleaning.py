@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.h_infinity.cleaning import FAST_RAD_S, clean, factor_text
-from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import SynthesisError
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
+from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 RAW_ZEROS = (0.7567, 0.009368, 0.004946, (82.23, 2563.0), (121.4, 7696.0), (134.1, 4.27e4))
@@ -71,7 +71,7 @@ def test_a_pair_within_a_thousandth_cancels_and_one_beyond_does_not():
     ],
 )
 def test_what_no_rule_fits_is_said(raw, complaint):
-    with pytest.raises(SynthesisError, match=complaint):
+    with pytest.raises(DdctError, match=complaint):
         clean(raw, 0.01)
 
 

@@ -19,7 +19,6 @@ from ddct_controllers.design.h_infinity.weights import (
     ComplementaryWeight,
     EffortWeight,
     SensitivityWeight,
-    WeightError,
     stable_weight,
 )
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
@@ -149,7 +148,7 @@ def test_the_printed_w_u_falls_short_by_0_4_percent():
     ],
 )
 def test_a_weight_that_cannot_be_used_is_named(build, complaint):
-    with pytest.raises(WeightError, match=complaint):
+    with pytest.raises(ParameterError, match=complaint):
         build()
 
 

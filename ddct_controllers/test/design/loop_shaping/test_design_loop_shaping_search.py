@@ -6,12 +6,12 @@ import pytest
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
 from ddct_controllers.design.loop_shaping.specifications import (
-    SpecificationError,
     TimeSpecifications,
 )
 from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.design.verified_design import verify
 from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
@@ -78,18 +78,18 @@ def test_one_structure_can_be_asked_for(structure):
 
 def test_networks_alone_cannot_have_0_2_s_and_14_percent_as_the_thesis_found():
     specifications = TimeSpecifications(0.2, 0.14)
-    with pytest.raises(SpecificationError, match=r'the fastest has 0\.\d+ s: allow that or more'):
+    with pytest.raises(ParameterError, match=r'the fastest has 0\.\d+ s: allow that or more'):
         design_loop_shaping(specifications, 1, DRIVELINE, ('networks',))
     assert design_loop_shaping(specifications, 1, DRIVELINE).structure == 'placement'
 
 
 def test_what_the_actuator_forbids_is_refused_at_once():
-    with pytest.raises(SpecificationError, match=r'right-half-plane zeros allow 24\.5 rad/s'):
+    with pytest.raises(ParameterError, match=r'right-half-plane zeros allow 24\.5 rad/s'):
         design_loop_shaping(TimeSpecifications(0.05, 0.14), 1, DRIVELINE)
 
 
 def test_between_bound_and_structure_the_error_says_what_can_be_had_and_it_can():
-    with pytest.raises(SpecificationError, match=r'the fastest has 0\.104 s: allow that'):
+    with pytest.raises(ParameterError, match=r'the fastest has 0\.104 s: allow that'):
         design_loop_shaping(TimeSpecifications(0.1, 0.14), 1, DRIVELINE)
     design = design_loop_shaping(TimeSpecifications(0.104, 0.14), 1, DRIVELINE)
     assert design.verification.complaints == ()
@@ -107,7 +107,7 @@ def test_what_no_loop_so_fast_can_have_is_named_with_what_can_be_had(
     rise_time, overshoot, structures, reachable
 ):
     """Two integrators overshoot; 0.05 s would need an M_s above 2."""
-    with pytest.raises(SpecificationError, match=f'{reachable}.*more overshoot'):
+    with pytest.raises(ParameterError, match=f'{reachable}.*more overshoot'):
         design_loop_shaping(TimeSpecifications(rise_time, overshoot), 1, DRIVELINE, structures)
 
 

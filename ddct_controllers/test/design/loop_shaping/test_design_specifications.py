@@ -10,7 +10,6 @@ from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.specifications import (
-    SpecificationError,
     TimeSpecifications,
     highest_crossover_rad_s,
     prototype_complementary_peak,
@@ -20,6 +19,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
     rise_time_crossover_product,
     unavoidable_lag,
 )
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.printed import ACTUATOR
 
@@ -95,7 +95,7 @@ def test_a_well_damped_prototype_has_no_peak_of_t():
     ],
 )
 def test_specifications_without_sense_are_named(rise_time, overshoot_asked, complaint):
-    with pytest.raises(SpecificationError, match=complaint):
+    with pytest.raises(ParameterError, match=complaint):
         TimeSpecifications(rise_time, overshoot_asked)
 
 
@@ -120,7 +120,7 @@ def test_less_overshoot_allows_less_crossover():
 
 def test_a_crossover_above_the_bound_is_refused_with_the_bound_and_a_way_out():
     with pytest.raises(
-        SpecificationError,
+        ParameterError,
         match=r'crossover of 38.4 rad/s.*allow 24.5 rad/s: allow a rise time of 0.078 s or more',
     ):
         require_reachable(TimeSpecifications(rise_time_s=0.05, overshoot=0.14))

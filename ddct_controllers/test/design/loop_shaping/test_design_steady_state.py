@@ -11,8 +11,8 @@ from ddct_controllers.design.loop_shaping.networks import (
     poles_at_zero,
     required_integrators,
 )
-from ddct_controllers.design.loop_shaping.specifications import SpecificationError
 from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
@@ -79,5 +79,5 @@ def test_without_integrator_the_error_is_that_of_the_engine_torque_over_the_gain
 
 
 def test_a_negative_disturbance_order_is_refused():
-    with pytest.raises(SpecificationError, match='disturbance order is -1'):
+    with pytest.raises(ParameterError, match='disturbance order is -1'):
         required_integrators(PLANT, ENGINE, -1)

@@ -37,10 +37,6 @@ _LOWEST, _HIGHEST = 1e-6, 1e6
 """Levels between which an optimum is looked for."""
 
 
-class SynthesisError(DdctError):
-    """No controller was found whose closed loop could be verified."""
-
-
 @dataclass(frozen=True, eq=False)
 class Synthesis:
     """A controller, and the norms that its closed loop was found to have."""
@@ -66,8 +62,8 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
     Return the central controller at `back_off` times the least level that verifies.
 
     A level counts as reached when its controller's closed loop is stable and has at most that
-    norm; what the Riccati solutions promise does not count. Raise GeneralisedPlantError for a
-    plant without a solution, SynthesisError when no level verifies.
+    norm; what the Riccati solutions promise does not count. Raise DdctError for a
+    plant without a solution, DdctError when no level verifies.
     """
     require_number('back-off from the optimum', back_off, at_least=1.0, at_most=100.0)
     plant.require_solvable()
@@ -94,7 +90,7 @@ def _first_reached(plant: GeneralisedPlant) -> Synthesis:
         if found:
             return found
         level *= _FACTOR
-    raise SynthesisError(
+    raise DdctError(
         f'synthesis: no level up to {_HIGHEST:g} gave a controller whose closed loop verifies: '
         'move plant poles and zeros off the imaginary axis, or scale the weights to about 1 near '
         'the crossover'

@@ -14,10 +14,6 @@ DISCOUNT_RAD_S = 30.0
 """Decay rate of the Gramians, about the bandwidth of W_t."""
 
 
-class GeneralisedPlantError(DdctError):
-    """No controller can be synthesised for this generalised plant."""
-
-
 @dataclass(frozen=True, eq=False)
 class GeneralisedPlant:
     """
@@ -71,19 +67,19 @@ class GeneralisedPlant:
         return self.system.d[-1:, -1:]
 
     def require_solvable(self) -> None:
-        """Check what synthesis assumes; raise GeneralisedPlantError that names what is missing."""
+        """Check what synthesis assumes; raise DdctError that names what is missing."""
         _require_all_moved(self.system.a, self.b2, 'stabilisable', 'moved by the control')
         _require_all_moved(
             self.system.a.T, self.c2.T, 'detectable', 'seen in what the controller measures'
         )
         if not np.any(self.d12):
-            raise GeneralisedPlantError(
+            raise DdctError(
                 'generalised plant: no external output has the control in it directly (D12 is 0), '
                 'so that infinite gain costs nothing: weigh the torque, or give W_2 as many zeros '
                 'as the plant has more poles than zeros'
             )
         if not np.any(self.d21):
-            raise GeneralisedPlantError(
+            raise DdctError(
                 'generalised plant: no external input is in the measurement directly (D21 is 0): '
                 'let the reference, or noise, enter the slip error'
             )
@@ -116,7 +112,7 @@ def _require_all_moved(a: np.ndarray, b: np.ndarray, wanted: str, what: str) -> 
         scaled = pencil / np.where(largest == 0.0, 1.0, largest)
         sizes = np.linalg.svd(scaled, compute_uv=False)
         if sizes[-1] <= _RANK * sizes[0]:
-            raise GeneralisedPlantError(
+            raise DdctError(
                 f'generalised plant is not {wanted}: its mode at {eigenvalue:.4g} rad/s is not '
                 f'{what}: take unstable poles out of the weights and cancelled ones out of the '
                 'plant'

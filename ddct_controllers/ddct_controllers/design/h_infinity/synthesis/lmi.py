@@ -9,7 +9,6 @@ from scipy.sparse import csc_matrix
 
 from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
     Synthesis,
-    SynthesisError,
     verified_norm,
 )
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import (
@@ -34,7 +33,7 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
     gamma is minimised over R, S with the two projected bounded-real inequalities and
     [R I; I S] >= 0; the controller is the central one for X = gamma R^-1, Y = gamma S^-1. In raw
     coordinates the solver finds no optimum, as R and S range over ten decades. Raise
-    SynthesisError when no closed loop verifies, DdctError without the package clarabel.
+    DdctError when no closed loop verifies, DdctError without the package clarabel.
     """
     clarabel = _solver()
     plant.require_solvable()
@@ -52,7 +51,7 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
         norm = verified_norm(plant, controller)
         if norm <= _EXCESS * optimum:
             return Synthesis(controller, norm, norm, optimum, 'lmi')
-    raise SynthesisError(
+    raise DdctError(
         'synthesis by LMI: no solution gave a closed loop that verifies: use the Riccati method, '
         'or scale the weights to about 1 near the crossover'
     )
