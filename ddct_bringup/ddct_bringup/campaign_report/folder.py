@@ -1,31 +1,46 @@
 """A campaign's folder: its results are read here, its summary and its page are written here."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import pyarrow as pa
 import pyarrow.parquet as parquet
+from markupsafe import Markup
 
 from ddct_bringup.campaign.columns import INDEX, SCHEMA_VERSION, schema_of
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.campaign_report.page import campaign_page
+from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import Summary, summary_of
+from ddct_bringup.report.output import MARKER
+from ddct_bringup.report.page_parts import json_data, page_part, page_template
+from ddct_bringup.report.tables.verdict_table import value_text
+from ddct_bringup.report.typeset import number_text
 from ddct_bringup.run.folder_lock import held
+from ddct_bringup.verdict.metric_figures import TABLE_5_1
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_json, write_text
 from ddct_plant.files.schema_version import KEY, require_schema_version
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.models.clutch import LINEAR
+from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.file import is_packaged, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SUMMARY, PAGE = 'summary.json', 'report.html'
 _AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
+_ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
+_RAMP = tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))
+"""Dark to light, made for colour-blind eyes (Nunez, Anderton and Renslow 2018)."""
+_SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
+"""The quantity of the maps when the page opens: the first of these that there is."""
 
 
 def write_campaign_page(folder: Path) -> Summary:
@@ -111,3 +126,37 @@ def _facts(manifest: Manifest) -> dict[str, Any]:
 
 def _first_line(error: Exception) -> str:
     return next(iter(str(error).splitlines()), type(error).__name__)
+
+
+def campaign_page(
+    results: Results, summary: Summary, folder: str, facts: Mapping[str, str]
+) -> str:
+    """Return the HTML over a campaign in a folder; `facts` are words about where it is from."""
+    maps = campaign_maps(results)
+    replay = words.replay_command(folder, 'INDEX')
+    return page_template(_ROOM, 'campaign.html.j2').render(
+        marker=Markup(MARKER),
+        style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
+        script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'campaign.js'),
+        data=json_data({'maps': maps, 'ramp': _RAMP, 'replay': replay}),
+        maps=maps,
+        chosen=_chosen(maps['quantities']) if maps else 0,
+        summary=summary,
+        labels=[group.label for group in results.groups],
+        numbers=results.numbers,
+        words=words,
+        value_text=value_text,
+        number_text=number_text,
+        figures={figure.key: figure for figure in results.quantities},
+        first=[figure.key for figure in TABLE_5_1],
+        replay=replay,
+        folder=folder,
+        facts=facts,
+        version=package_version(),
+    )
+
+
+def _chosen(quantities: list[dict[str, Any]]) -> int:
+    """Return the place of the quantity that the maps show when the page opens."""
+    keys = [each['key'] for each in quantities]
+    return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)

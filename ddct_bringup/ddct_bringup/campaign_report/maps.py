@@ -10,7 +10,6 @@ from ddct_bringup.campaign_report.outcome import FAILED, failed_share
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
-from ddct_plant.program.table import Figure
 
 FAILED_SHARE = 'failed_share'
 """The quantity that is the share of failed engagements in a cell."""
@@ -18,11 +17,13 @@ MOST_MAPS = 10
 """That the page offers: all pairs of five numbers."""
 MOST_POINTS = 300
 """Of a group that a map of samples shows, the first ones."""
+_TELLING = (INVALID, FAILED, ENGAGED)
+"""Which outcome of several runs marks their cell: the first of these that there is."""
 _DIGITS, _PLACE_DIGITS = 4, 9
 """Of values, and of where they are."""
 
 
-def campaign_maps(results: Results, quantities: Sequence[Figure]) -> dict[str, Any] | None:
+def campaign_maps(results: Results) -> dict[str, Any] | None:
     """
     Return what the page draws, as JSON has it; None where no number was varied.
 
@@ -34,21 +35,21 @@ def campaign_maps(results: Results, quantities: Sequence[Figure]) -> dict[str, A
     if not numbers:
         return None
     pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS]
-    maps = [_map(results, keys, quantities) for keys in pairs or [numbers]]
+    maps = [_map(results, keys) for keys in pairs or [numbers]]
     repeated = any(max(panel['runs'], default=0) > 1 for each in maps for panel in each['panels'])
     share = {'key': FAILED_SHARE, 'title': 'share of failed engagements', 'low': 0.0, 'high': 1.0}
     return {
-        'quantities': [*([share] if repeated else []), *_scales(results, quantities)],
+        'quantities': [*([share] if repeated else []), *_scales(results)],
         'groups': [group.label for group in results.groups],
         'maps': maps,
     }
 
 
-def _scales(results: Results, quantities: Sequence[Figure]) -> list[dict[str, Any]]:
+def _scales(results: Results) -> list[dict[str, Any]]:
     """Return the ends of each quantity's scale of colours, that of the engaged runs of all."""
     engaged = results.outcomes == ENGAGED
     found = []
-    for figure in quantities:
+    for figure in results.quantities:
         values = np.abs(results.columns[figure.key][engaged])
         values = values[~np.isnan(values)]
         low, high = (values.min(), values.max()) if values.size else (0.0, 0.0)
@@ -57,14 +58,14 @@ def _scales(results: Results, quantities: Sequence[Figure]) -> list[dict[str, An
     return found
 
 
-def _map(results: Results, keys: Sequence[str], quantities: Sequence[Figure]) -> dict[str, Any]:
+def _map(results: Results, keys: Sequence[str]) -> dict[str, Any]:
     cells = all(key in results.grid for key in keys)
     others = {key: results.start_of(key) for key in results.others(keys)}
     panels = []
     for group in results.groups:
         rows = results.others_nominal(group.rows, keys)
         parts = _cells(results, rows, keys) if cells else [np.array([row]) for row in rows]
-        panels.append(_panel(results, parts[: None if cells else MOST_POINTS], keys, quantities))
+        panels.append(_panel(results, parts[: None if cells else MOST_POINTS], keys))
     return {'keys': list(keys), 'cells': cells, 'others': others, 'panels': panels}
 
 
@@ -76,24 +77,19 @@ def _cells(results: Results, rows: np.ndarray, keys: Sequence[str]) -> list[np.n
     return [np.array(each) for each in found.values()]
 
 
-def _panel(
-    results: Results,
-    parts: Sequence[np.ndarray],
-    keys: Sequence[str],
-    quantities: Sequence[Figure],
-) -> dict[str, Any]:
+def _panel(results: Results, parts: Sequence[np.ndarray], keys: Sequence[str]) -> dict[str, Any]:
     """Return the cells or points of one group, column by column."""
-    outcomes = [results.outcomes[rows] for rows in parts]
+    counts = [failed_share(results.outcomes[rows]) for rows in parts]
     repeated = any(len(rows) > 1 for rows in parts)
-    telling = [_telling(*each) for each in zip(parts, outcomes, strict=True)]
+    telling = [_telling(results, rows) for rows in parts]
     states, index = results.columns['verdict_state'], results.columns['index']
-    worst = {figure.key: _worst(results, figure.key, parts) for figure in quantities}
+    worst = {figure.key: _worst(results, figure.key, parts) for figure in results.quantities}
     return {
         'at': [_places(results.columns[key], parts) for key in keys],
         'runs': [len(rows) for rows in parts],
-        'failed': [int(np.sum(each == FAILED)) for each in outcomes],
-        'invalid': [int(np.sum(each == INVALID)) for each in outcomes],
-        'intervals': [failed_share(each).interval() for each in outcomes] if repeated else None,
+        'failed': [each.failed for each in counts],
+        'invalid': [each.invalid for each in counts],
+        'intervals': [each.interval() for each in counts] if repeated else None,
         'state': [str(states[row]) for row in telling],
         'index': [int(index[row]) for row in telling],
         'values': {key: [value for value, _ in found] for key, found in worst.items()},
@@ -103,13 +99,9 @@ def _panel(
     }
 
 
-def _telling(rows: np.ndarray, outcomes: np.ndarray) -> int:
+def _telling(results: Results, rows: np.ndarray) -> int:
     """Return the run that marks a cell: the first invalid one, else the first failed one."""
-    for outcome in (INVALID, FAILED, ENGAGED):
-        found = rows[outcomes == outcome]
-        if found.size:
-            return int(found[0])
-    raise AssertionError('a cell has a run')
+    return min(rows.tolist(), key=lambda row: _TELLING.index(results.outcomes[row]))
 
 
 def _worst(

@@ -1,13 +1,29 @@
-"""The rows of a campaign: what was varied in them, how they are grouped, what each came to."""
+"""The rows of a campaign: what was varied, how they are grouped, what they are judged by."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER
+from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_plant.program.table import Figure
+
+_NOT_JUDGED = ('steps',)
+"""Of the metrics more of these is not worse."""
+QUANTITIES = (
+    *(figure for figure in (*TABLE_5_1, *FURTHER) if figure.key not in _NOT_JUDGED),
+    *(
+        replace(criterion, key=f'{CRITERION}{criterion.key}')
+        for criterion in CRITERIA
+        if not criterion.metric
+    ),
+)
+"""The metrics and the other criteria, by their columns. Less of a magnitude is better for each."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +48,15 @@ class Results:
     def outcomes(self) -> np.ndarray:
         """(n,) engaged, failed or invalid."""
         return outcomes_of(self.columns['valid'], self.columns['verdict_state'])
+
+    @cached_property
+    def quantities(self) -> list[Figure]:
+        """What a campaign is judged by, as far as a run has a value."""
+        return [
+            each
+            for each in QUANTITIES
+            if each.key in self.columns and not np.isnan(self.columns[each.key]).all()
+        ]
 
     @cached_property
     def numbers(self) -> list[str]:

@@ -1,17 +1,21 @@
 """Put the summary of a campaign together: the content of `summary.json`."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER
-from ddct_bringup.campaign_report.first_failure import WayOut, first_failures
-from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD, failed_share
-from ddct_bringup.campaign_report.quantities import quantities_in
+from ddct_bringup.campaign_report.outcome import (
+    CONFIDENCE,
+    METHOD,
+    ONE_IN,
+    failed_share,
+    tail_of,
+    ways_out,
+)
 from ddct_bringup.campaign_report.results import Group, Results
-from ddct_bringup.campaign_report.tail import ONE_IN, tail_of
 from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Figure
 
@@ -26,7 +30,6 @@ NO_SAMPLE = 'the runs are spread over a grid and are no random sample'
 
 def summary_of(results: Results) -> Summary:
     """Return what came out of a campaign."""
-    quantities = quantities_in(results.columns)
     return {
         'schema_version': SCHEMA_VERSION,
         'runs': results.rows,
@@ -34,17 +37,17 @@ def summary_of(results: Results) -> Summary:
         'random': list(results.random),
         'interval': {'method': METHOD, 'confidence': CONFIDENCE},
         'tail_share': 1.0 / ONE_IN,
-        'groups': [_group(results, group, quantities) for group in results.groups],
+        'groups': [_group(results, group) for group in results.groups],
     }
 
 
-def _group(results: Results, group: Group, quantities: Sequence[Figure]) -> Summary:
+def _group(results: Results, group: Group) -> Summary:
     return {
         'controller': group.names[CONTROLLER],
         'varied': {key: name for key, name in group.names.items() if key != CONTROLLER},
         'failed': _failed(results, group),
         'first_failures': [_first_failure(results, group, key) for key in results.numbers],
-        'quantities': [_quantity(results, group, figure) for figure in quantities],
+        'quantities': [_quantity(results, group, figure) for figure in results.quantities],
     }
 
 
@@ -83,24 +86,22 @@ def _first_failure(results: Results, group: Group, key: str) -> Summary:
     """Return the ways out of one varied number, the grid's other numbers being at their start."""
     rows = results.others_nominal(group.rows, [key])
     start = results.start_of(key)
-    found = first_failures(results.columns[key][rows], results.outcomes[rows], start)
+    ways = ways_out(results.columns[key][rows], results.outcomes[rows], start)
     return {
         'key': key,
         'nominal': results.nominal.get(key),
         'start': start,
         'others': {other: results.start_of(other) for other in results.others([key])},
-        'below': _way(results, rows, found.below),
-        'above': _way(results, rows, found.above),
-    }
-
-
-def _way(results: Results, rows: np.ndarray, way: WayOut) -> Summary:
-    return {
-        'held_to': way.held_to,
-        'first_failure': way.first_failure,
-        'lost': way.lost,
-        'runs': way.runs,
-        **_run(results, rows, way.row),
+        **{
+            side: {
+                'held_to': way.held_to,
+                'first_failure': way.first_failure,
+                'lost': way.lost,
+                'runs': way.runs,
+                **_run(results, rows, way.row),
+            }
+            for side, way in ways.items()
+        },
     }
 
 

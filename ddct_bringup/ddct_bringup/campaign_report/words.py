@@ -1,11 +1,13 @@
-"""How page and terminal say what the summary holds."""
+"""How page and terminal say what the summary holds: definitions, words, and tables."""
 
 import shlex
-from typing import Any
+from collections.abc import Sequence
 
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
+from ddct_bringup.campaign_report.summary import Summary
 from ddct_bringup.report.tables.verdict_table import value_text
-from ddct_plant.program.table import UNDEFINED
+from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
 
 RULES = {
     'failed': 'The verdict of a valid run has another state than engaged. A criterion beyond its '
@@ -37,12 +39,12 @@ def replay_command(folder: str, index: int | str) -> str:
     return f'ddct campaign replay {shlex.quote(folder)} --index {index} --out replay-{index}'
 
 
-def share_text(failed: dict[str, Any]) -> str:
+def share_text(failed: Summary) -> str:
     """Return the share of failed engagements in percent."""
     return UNDEFINED if failed['share'] is None else f'{100.0 * failed["share"]:.1f} %'
 
 
-def interval_text(failed: dict[str, Any]) -> str:
+def interval_text(failed: Summary) -> str:
     """Return the ends of its interval, or a dash."""
     if failed['interval'] is None:
         return UNDEFINED
@@ -50,13 +52,13 @@ def interval_text(failed: dict[str, Any]) -> str:
     return f'{lower:.1f} to {upper:.1f} %'
 
 
-def states_text(failed: dict[str, Any]) -> str:
+def states_text(failed: Summary) -> str:
     """Return how many runs are in which state, those that are not engaged."""
     states = failed['states'].items()
     return ', '.join(f'{count} {spoken(name)}' for name, count in states if name != 'engaged')
 
 
-def way_text(way: dict[str, Any]) -> str:
+def way_text(way: Summary) -> str:
     """Return where engagement fails first on a way out."""
     held, first = way['held_to'], way['first_failure']
     if first is None:
@@ -65,7 +67,7 @@ def way_text(way: dict[str, Any]) -> str:
     return f'{value_text(first)} ({spoken(way["state"])}, run {way["index"]}{several})'
 
 
-def held_text(way: dict[str, Any]) -> str:
+def held_text(way: Summary) -> str:
     """Return up to which value it held."""
     if way['held_to'] is None:
         return 'nothing held' if way['first_failure'] is not None else ''
@@ -75,3 +77,71 @@ def held_text(way: dict[str, Any]) -> str:
 def spoken(state: str) -> str:
     """Return the name of a state in words."""
     return state.replace('_', ' ')
+
+
+def summary_tables(summary: Summary) -> list[Table]:
+    """Return how often, where failure begins, and how badly."""
+    return [_failed(summary), *_first_failures(summary), _quantities(summary)]
+
+
+def label_of(group: Summary) -> str:
+    """Return what a table calls a group of a summary."""
+    return ', '.join([group['controller'], *group['varied'].values()])
+
+
+def _failed(summary: Summary) -> Table:
+    rows = [
+        (
+            label_of(group),
+            share_text(failed),
+            interval_text(failed),
+            *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
+            states_text(failed) or UNDEFINED,
+        )
+        for group in summary['groups']
+        for failed in [group['failed']]
+    ]
+    headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
+    return Table('How often engagement fails', headers, rows, numbers=[False, *[True] * 6])
+
+
+def _first_failures(summary: Summary) -> list[Table]:
+    rows = [
+        (
+            found['key'],
+            label_of(group),
+            UNDEFINED if found['nominal'] is None else value_text(found['nominal']),
+            *(text(found[side]) for side in ('below', 'above') for text in (way_text, held_text)),
+        )
+        for place in range(len(summary['groups'][0]['first_failures']))
+        for group in summary['groups']
+        for found in [group['first_failures'][place]]
+    ]
+    headers = 'varied', 'controller', 'nominal', 'fails below at', '', 'fails above at', ''
+    return [Table('Where failure begins', headers, rows)] if rows else []
+
+
+def _quantities(summary: Summary) -> Table:
+    """Return the metrics; the page has the other criteria too."""
+    rows = [
+        _quantity(label_of(group), group['quantities'][place])
+        for place in range(len(summary['groups'][0]['quantities']))
+        for group in summary['groups']
+        if group['quantities'][place]['name'] in METRICS
+    ]
+    headers = 'quantity', 'controller', 'median', 'CVaR', 'worst engaged', 'run', 'worst', 'run'
+    return Table('How bad it becomes', headers, rows, numbers=[False, False, *[True] * 5])
+
+
+def _quantity(label: str, found: Summary) -> Sequence[str]:
+    figure = METRICS[found['name']]
+    worst = found['worst']
+    return (
+        figure.heading,
+        label,
+        *(text_or_dash(found[name], figure.form) for name in ('median', 'cvar')),
+        text_or_dash(found['worst_engaged']['value'], figure.form),
+        text_or_dash(found['worst_engaged']['index'], 'd'),
+        text_or_dash(worst['value'], figure.form),
+        UNDEFINED if worst['index'] is None else f'{worst["index"]} ({spoken(worst["state"])})',
+    )

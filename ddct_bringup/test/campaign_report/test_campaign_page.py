@@ -9,8 +9,12 @@ import pytest
 from made_campaign import GRID, make_campaign
 from made_results import made_results
 
-from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, write_campaign_page
-from ddct_bringup.campaign_report.page import campaign_page
+from ddct_bringup.campaign_report.folder import (
+    PAGE,
+    SUMMARY,
+    campaign_page,
+    write_campaign_page,
+)
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 

@@ -3,7 +3,7 @@
 import numpy as np
 from made_results import made_results
 
-from ddct_bringup.campaign_report.first_failure import WayOut, first_failures
+from ddct_bringup.campaign_report.outcome import WayOut, ways_out
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -11,7 +11,7 @@ WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]
 
 
 def found(outcomes, start=1.0, values=WEAR):
-    return first_failures(np.array(values), np.array(outcomes, dtype=object), start)
+    return ways_out(np.array(values), np.array(outcomes, dtype=object), start)
 
 
 def by_mark(marks):
@@ -21,42 +21,42 @@ def by_mark(marks):
 
 def test_the_first_failure_is_the_one_next_to_what_held_and_not_the_last():
     ways = found(by_mark('efeeeeff'))
-    assert ways.below == WayOut(held_to=0.8, first_failure=0.7, row=1, lost=1, runs=1)
-    assert ways.above == WayOut(held_to=1.1, first_failure=1.2, row=6, lost=1, runs=1)
+    assert ways['below'] == WayOut(held_to=0.8, first_failure=0.7, row=1, lost=1, runs=1)
+    assert ways['above'] == WayOut(held_to=1.1, first_failure=1.2, row=6, lost=1, runs=1)
 
 
 def test_without_a_failure_it_held_to_the_ends_of_the_range():
     ways = found(by_mark('eeeeeeee'))
-    assert (ways.below.held_to, ways.below.first_failure) == (0.6, None)
-    assert (ways.above.held_to, ways.above.first_failure) == (1.3, None)
+    assert (ways['below'].held_to, ways['below'].first_failure) == (0.6, None)
+    assert (ways['above'].held_to, ways['above'].first_failure) == (1.3, None)
 
 
 def test_a_start_that_fails_is_the_first_failure_of_both_ways():
     ways = found(by_mark('eeeefeee'))
-    assert ways.below == ways.above == WayOut(None, 1.0, 4, 1, 1)
+    assert ways['below'] == ways['above'] == WayOut(None, 1.0, 4, 1, 1)
 
 
 def test_where_all_fail_nothing_held():
-    assert found(by_mark('ffffffff')).below == WayOut(None, 1.0, 4, 1, 1)
+    assert found(by_mark('ffffffff'))['below'] == WayOut(None, 1.0, 4, 1, 1)
 
 
 def test_an_invalid_run_holds_nothing():
-    assert found(by_mark('eeeeeiee')).above == WayOut(1.0, 1.1, 5, 1, 1)
+    assert found(by_mark('eeeeeiee'))['above'] == WayOut(1.0, 1.1, 5, 1, 1)
 
 
 def test_a_value_with_several_runs_fails_with_one_and_a_failed_run_is_named_first():
     ways = found(by_mark('eeeif'), 1.0, [1.0, 1.0, 1.0, 1.1, 1.1])
-    assert ways.above == WayOut(1.0, 1.1, 4, 2, 2)
+    assert ways['above'] == WayOut(1.0, 1.1, 4, 2, 2)
 
 
 def test_a_start_between_samples_takes_each_side_by_itself():
     ways = found(by_mark('eefe'), 1.0, [0.7, 0.9, 1.05, 1.2])
-    assert (ways.below.held_to, ways.below.first_failure) == (0.7, None)
-    assert ways.above == WayOut(None, 1.05, 2, 1, 1)
+    assert (ways['below'].held_to, ways['below'].first_failure) == (0.7, None)
+    assert ways['above'] == WayOut(None, 1.05, 2, 1, 1)
 
 
 def test_one_run_is_enough():
-    assert found([ENGAGED], values=[1.0]).below == WayOut(1.0, None, None)
+    assert found([ENGAGED], values=[1.0])['below'] == WayOut(1.0, None, None)
 
 
 def summary_over_wear_and_mass(states):

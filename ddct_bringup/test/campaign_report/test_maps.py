@@ -5,7 +5,6 @@ from typing import Any
 from made_results import made_results
 
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
-from ddct_bringup.campaign_report.quantities import quantities_in
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -14,7 +13,7 @@ JERK = 'peak_jerk_m_s3'
 
 
 def maps_of(results: Results) -> dict[str, Any]:
-    found = campaign_maps(results, quantities_in(results.columns))
+    found = campaign_maps(results)
     assert found is not None
     return found
 
@@ -94,4 +93,4 @@ def test_random_samples_are_points_and_no_more_than_a_page_can_show():
 
 def test_nothing_is_drawn_over_what_does_not_vary():
     results = made_results([ENGAGED, ENGAGED], {WEAR: [1.0, 1.0]}, {JERK: [1.0, 2.0]})
-    assert campaign_maps(results, quantities_in(results.columns)) is None
+    assert campaign_maps(results) is None

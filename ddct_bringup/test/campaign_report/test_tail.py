@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_results import made_results
 
+from ddct_bringup.campaign_report.outcome import conditional_value_at_risk, tail_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.tail import conditional_value_at_risk, tail_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 
