@@ -4,7 +4,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.run.source_commit import source_commit
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.fail_safe.guarded_engine import engine_info
+from ddct_plant.fail_safe.guarded import engine_info
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.program.command_line import package_version

@@ -39,11 +39,6 @@ class FailSafeSettings(OptionGroup):
         return {name: repr(value) for name, value in asdict(self).items()}
 
 
-def steps_to_make_up(next_step: int, step: int) -> range:
-    """Return the steps before `step`, from the first not yet answered, that still count."""
-    return range(max(next_step, step - MOST_CATCH_UP_STEPS), step)
-
-
 class RequestWatch:
     """
     Notice that requests have stopped for longer than the timeout in s.
@@ -56,6 +51,7 @@ class RequestWatch:
         self._timeout_ns = round(timeout_s * 1e9)
         self._last_step: int | None = None
         self.stopped = False
+        """Whether they have."""
 
     @property
     def heard(self) -> bool:
@@ -77,30 +73,17 @@ class RequestWatch:
         return (step - since_step) * PERIOD_NS > self._timeout_ns
 
 
-class FailSafe:
+class FailSafe(RequestWatch):
     """Watch the requests and, when they stop, ramp the last one down to an open clutch."""
 
     def __init__(self, settings: FailSafeSettings) -> None:
-        self.watch = RequestWatch(settings.request_timeout_s)
+        super().__init__(settings.request_timeout_s)
         self._most_change = settings.fail_safe_ramp_n_m_s * PERIOD_S
-        self._torque = 0.0
-
-    @property
-    def engaged(self) -> bool:
-        """Whether the clutch is being opened, or open."""
-        return self.watch.stopped
-
-    def request(self, step: int, torque: float) -> None:
-        """Note the request in N m that came for `step`."""
-        self.watch.request(step)
-        self._torque = torque
-
-    def tick(self, step: int) -> bool:
-        """Say at the start of `step` whether the fail-safe is engaged from now on."""
-        return self.watch.tick(step)
+        self.torque = 0.0
+        """The last request in N m, from which the ramp begins."""
 
     def next_torque(self, periods: int = 1) -> float:
         """Return the request in N m on the way to an open clutch, so many periods later."""
-        left = max(abs(self._torque) - periods * self._most_change, 0.0)
-        self._torque = math.copysign(left, self._torque)
-        return self._torque
+        left = max(abs(self.torque) - periods * self._most_change, 0.0)
+        self.torque = math.copysign(left, self.torque)
+        return self.torque

@@ -3,7 +3,7 @@
 from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.fail_safe.guarded_actuator import GuardedActuator
+from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
@@ -60,7 +60,7 @@ class ActuatorNode(FollowerNode):
         true = super().admits(topic, stamp)
         if not true and self.limit and not self.limit.tick_seen:
             self._requests_without_clock += 1
-            if self._actuator.too_long(0, 1 + self._requests_without_clock):
+            if self._actuator.watch.too_long(0, 1 + self._requests_without_clock):
                 raise DdctError(
                     f'at stamp {stamp} ns: {REQUEST} comes without {CLOCK.name}, by which the '
                     f'fail-safe sees that requests stop: publish {CLOCK.name} '

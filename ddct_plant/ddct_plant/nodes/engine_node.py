@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.fail_safe.guarded_engine import GuardedEngine, engine_info
+from ddct_plant.fail_safe.guarded import GuardedEngine, engine_info
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import Output
@@ -69,7 +69,8 @@ class EngineNode(FollowerNode):
         """Return the torque over the period of step k, and the demand if it is not out yet."""
         speed = inputs[JOINT_STATES.name]
         if self._two_input:
-            torque = self._commanded.request(step, inputs[REQUEST], speed)
+            self._commanded.speed = speed
+            torque = self._commanded.request(step, inputs[REQUEST])
             return () if torque is None else self._delivered(step, stamp_ns, torque)
         return (
             *self._delivered(step, stamp_ns, self._engine.torque(step, speed=speed)),
@@ -107,8 +108,9 @@ class EngineNode(FollowerNode):
             self._answer_alone(step, stamp, speed)
 
     def _answer_alone(self, step: int, stamp: int, speed: float) -> None:
-        torque = self._commanded.tick(step, speed)
-        if self._commanded.on_demand:
+        self._commanded.speed = speed
+        torque = self._commanded.tick(step)
+        if self._commanded.watch.stopped:
             self._safe_state.tell(
                 step,
                 stamp,

@@ -40,7 +40,7 @@ class RealtimeOwner(TickOwner):
     @property
     def safe(self) -> bool:
         """Whether the clutch torque has stayed away and is being taken to zero."""
-        return self._clutch.engaged
+        return self._clutch.stopped
 
     def tick(self) -> None:
         """Take every step that is due by the wall clock."""
@@ -99,7 +99,8 @@ class RealtimeOwner(TickOwner):
         """Return the rows of torques in N m of this period: the reply, the last, or a ramp."""
         if reply is not None and not self.safe:
             self._held_clutch = [row[-1] for row in reply]
-            self._clutch.request(self.step, self._held_clutch[0])
+            self._clutch.request(self.step)
+            self._clutch.torque = self._held_clutch[0]
             return reply
         held = self._held_clutch
         if self._clutch.tick(self.step):

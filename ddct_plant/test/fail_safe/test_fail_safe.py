@@ -4,27 +4,30 @@ from fractions import Fraction
 
 import pytest
 
-from ddct_plant.fail_safe.request_watch import (
-    FailSafe,
-    FailSafeSettings,
-    RequestWatch,
-    steps_to_make_up,
-)
+from ddct_plant.fail_safe.guarded import steps_to_make_up
+from ddct_plant.fail_safe.request_watch import FailSafe, FailSafeSettings, RequestWatch
+
+
+def asked(step: int, torque: float, settings: FailSafeSettings | None = None) -> FailSafe:
+    """Return a fail-safe that has had one request."""
+    fail_safe = FailSafe(settings or FailSafeSettings())
+    fail_safe.request(step)
+    fail_safe.torque = torque
+    return fail_safe
 
 
 def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():
-    fail_safe = FailSafe(FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0))
-    fail_safe.request(10, 25.0)
+    settings = FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0)
+    fail_safe = asked(10, 25.0, settings)
     assert not any(fail_safe.tick(step) for step in range(11, 16))
     assert fail_safe.tick(16)
     assert [fail_safe.next_torque() for _ in range(4)] == [15.0, 5.0, 0.0, 0.0]
 
 
 def test_fail_safe_stays_engaged_when_requests_come_back():
-    fail_safe = FailSafe(FailSafeSettings())
-    fail_safe.request(0, 25.0)
+    fail_safe = asked(0, 25.0)
     assert fail_safe.tick(20)
-    fail_safe.request(21, 300.0)
+    fail_safe.request(21)
     assert fail_safe.tick(21)
 
 
@@ -50,9 +53,7 @@ def test_every_timeout_in_hundredths_of_a_second_trips_one_step_after_it(since):
 
 
 def test_the_ramp_over_several_periods_is_that_of_each():
-    one, several = (FailSafe(FailSafeSettings()) for _ in range(2))
-    for fail_safe in (one, several):
-        fail_safe.request(0, 300.0)
+    one, several = (asked(0, 300.0) for _ in range(2))
     for _ in range(7):
         last = one.next_torque()
     assert several.next_torque(7) == last == 230.0
@@ -60,8 +61,7 @@ def test_the_ramp_over_several_periods_is_that_of_each():
 
 
 def test_a_negative_torque_runs_to_zero_too():
-    fail_safe = FailSafe(FailSafeSettings())
-    fail_safe.request(0, -15.0)
+    fail_safe = asked(0, -15.0)
     assert [fail_safe.next_torque() for _ in range(3)] == [-5.0, 0.0, 0.0]
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ddct_plant.fail_safe.guarded_actuator import GuardedActuator
+from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.models.actuator import Actuator
 
@@ -39,7 +39,7 @@ def test_the_clutch_opens_one_step_after_the_timeout_at_the_stated_rate():
     answers = [actuator.tick(step) for step in range(6, 40)]
     ramp = [max(200.0 - RAMP_PER_STEP * (i + 1), 0.0) for i in range(34)]
     assert answers == bare([200.0] * 6 + ramp)[6:]
-    assert actuator.opening
+    assert actuator.watch.stopped
 
 
 def test_it_obeys_no_request_after_its_safe_state():
@@ -68,6 +68,13 @@ def test_a_ramp_after_a_pause_of_any_length_ends_at_zero_at_once():
     actuator.request(0, 200.0)
     actuator.tick(6)
     assert actuator.tick(214_748_364_700)[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_slow_ramp_after_a_long_pause_is_as_far_as_time_says():
+    actuator = GuardedActuator(Actuator(200.0), 200.0, FailSafeSettings(0.05, 1.0))
+    actuator.request(0, 200.0)
+    actuator.tick(6)
+    assert actuator.tick(10_006)[-1] == pytest.approx(200.0 - 100.01, abs=0.5)
 
 
 def test_a_tick_that_comes_again_gets_the_same_torque_and_an_older_one_none():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ddct_plant.fail_safe.guarded_engine import GuardedEngine
+from ddct_plant.fail_safe.guarded import GuardedEngine
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
 
 DEMAND = 308.0
@@ -36,9 +36,9 @@ def test_the_demand_takes_over_one_step_after_the_timeout_and_no_request_counts_
     engine = guarded(EngineAuthority(slew_n_m_s=500.0))
     assert engine.request(0, 320.0) == 313.0
     assert [engine.tick(step) for step in range(1, 6)] == [None] * 5
-    before = engine.on_demand
+    before = engine.watch.stopped
     assert engine.tick(6) == 315.0, 'the request was held for five steps, then the demand'
-    assert (before, engine.on_demand) == (False, True)
+    assert (before, engine.watch.stopped) == (False, True)
     assert engine.request(7, 400.0) is None
     assert [engine.tick(step) for step in (7, 7, 8, 9, 6)] == [310.0, 310.0, 308.0, 308.0, None]
 
@@ -47,7 +47,7 @@ def test_until_the_first_request_the_demand_holds():
     engine = guarded(EngineAuthority(slew_n_m_s=500.0))
     assert engine.tick(5) is None
     assert engine.tick(6) == DEMAND
-    assert not engine.on_demand
+    assert not engine.watch.stopped
     assert engine.request(6, 320.0) is None
     assert engine.request(7, 320.0) == DEMAND + 5.0
 
