@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_finite, require_number
 from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
-from ddct_plant.hybrid.forcing import require_capacities
+from ddct_plant.hybrid.friction_system import require_capacities
 from ddct_plant.models.driveline import PHASE_CHANGES, PHASES, PhaseEvent
 
 NS_PER_S = 1_000_000_000

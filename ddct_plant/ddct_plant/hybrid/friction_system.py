@@ -1,13 +1,17 @@
-"""A linear system with dry-friction elements."""
+"""A linear system with dry-friction elements, and what drives it over an interval."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import combinations
+from itertools import accumulate, combinations, pairwise
 
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import own_matrices
 
+Signs = tuple[int, ...]
+"""A mode: by element 0 where it sticks, else the sign of its slip."""
+Values = Sequence[float] | np.ndarray
 SINGULAR = 1e-12
 """A principal minor of -h g counts as zero below this part of the product of its diagonal."""
 
@@ -34,30 +38,13 @@ class FrictionSystem:
 
     def __post_init__(self) -> None:
         """Check shapes, values and minors; raise ParameterError otherwise."""
-        for name in ('a', 'b', 'g', 'h'):
-            matrix = np.array(getattr(self, name), dtype=float)
-            if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
-                raise ParameterError(f'friction system: {name} must be a matrix of finite numbers')
-            matrix.setflags(write=False)
-            object.__setattr__(self, name, matrix)
-        states, elements = self.g.shape
-        shapes = {'a': (states, states), 'b': (states, self.b.shape[1]), 'h': (elements, states)}
-        for name, shape in shapes.items():
-            if getattr(self, name).shape != shape:
-                raise ParameterError(
-                    f'friction system: {name} is {getattr(self, name).shape}, it must be {shape}'
-                )
+        own_matrices(self, 'friction system', g='nN', a='nn', b='nm', h='Nn')
         self._require_positive_minors()
 
     @property
     def elements(self) -> int:
         """N, the number of friction elements."""
         return len(self.h)
-
-    @cached_property
-    def slip_sizes(self) -> np.ndarray:
-        """(N, n): times |x| how large the sums are whose rounding the slips have."""
-        return np.abs(self.h)
 
     def _require_positive_minors(self) -> None:
         mobility = -self.h @ self.g
@@ -75,3 +62,85 @@ class FrictionSystem:
                         f'friction system: h g of the elements {stuck} is singular: they cannot '
                         'stick together, as their slips or torques depend on each other'
                     )
+
+
+def require_capacities(element: int, kinetic: Values, static: Values) -> None:
+    """Raise ParameterError where one of an element is negative, or static below kinetic."""
+    if min(kinetic) < 0.0:
+        raise ParameterError(
+            f'friction element {element}: its capacity {min(kinetic)} must not be negative'
+        )
+    for low, high in zip(kinetic, static, strict=True):
+        if high < low:
+            raise ParameterError(
+                f'friction element {element}: its static capacity {high} is below the kinetic '
+                f'one {low}: give at least that'
+            )
+
+
+class Layout:
+    """
+    Where inputs u (m) and capacities c (N) stand over an interval, in flat lists of each.
+
+    An entry has one value if it is held over the interval, else one at each of P + 1 nodes.
+    """
+
+    def __init__(self, inputs: int, elements: int, pieces: int, held: Sequence[int]) -> None:
+        """Lay out m inputs and N capacities; `held` lists the entries of [u, c] that are held."""
+        sizes = [1 if i in held else pieces + 1 for i in range(inputs + elements)]
+        ends = [0, *accumulate(sizes)]
+        self.pieces, self.inputs, self.width = pieces, ends[inputs], ends[-1]
+        """P, and how many values the inputs have and all entries together."""
+        ends_of_capacities = pairwise(end - self.inputs for end in ends[inputs:])
+        self.capacities = [slice(start, stop) for start, stop in ends_of_capacities]
+        """Where the values of each element are in a list of capacities."""
+        node = np.arange(pieces + 1)[:, None]
+        self.nodes = np.minimum(np.array(ends[:-1]) + node, np.array(ends[1:]) - 1)
+        """(P + 1, m + N): where in [*u, *c] the value of each entry at a node is."""
+        last = np.repeat(np.array(ends[1:]) - 1, sizes)
+        self.shifts = np.minimum(np.arange(self.width) + node, last)
+        """(P + 1, width): where in [*u, *c] they are when the interval starts later by nodes."""
+
+    def in_force(self, signs: Signs, kinetic: Values, static: Values) -> Values:
+        """
+        Return the capacities in a mode: the static ones of the elements that stick.
+
+        Raise ParameterError where they are impossible or not as many as they should be.
+        """
+        if static is kinetic and min(kinetic) >= 0.0:
+            return kinetic
+        count = self.width - self.inputs
+        if (len(kinetic), len(static)) != (count, count):
+            raise ParameterError(
+                f'friction: {len(kinetic)} kinetic and {len(static)} static capacities do not fit '
+                f'the interval, which has {count} of each'
+            )
+        capacities = list(kinetic)
+        for element, where in enumerate(self.capacities):
+            require_capacities(element, kinetic[where], static[where])
+            if not signs[element]:
+                capacities[where] = static[where]
+        return capacities
+
+
+class Forcing:
+    """The inputs w = [u, c] over an interval, in whichever mode they are asked."""
+
+    def __init__(self, layout: Layout, inputs: Values, kinetic: Values, static: Values) -> None:
+        """Take in the flat values of u and of both kinds of capacities."""
+        self.layout = layout
+        self._inputs, self._kinetic, self._static = inputs, kinetic, static
+        self._by_mode: dict[Signs, np.ndarray] = {}
+
+    def values(self, signs: Signs) -> np.ndarray:
+        """Return [*u, *c] in a mode."""
+        if signs not in self._by_mode:
+            capacities = self.layout.in_force(signs, self._kinetic, self._static)
+            self._by_mode[signs] = np.array([*self._inputs, *capacities])
+        return self._by_mode[signs]
+
+    def at(self, signs: Signs, piece: int, part: float) -> np.ndarray:
+        """Return [w, dw] (2 (m + N),) after a `part` of a piece, 0 to 1; dw: over the piece."""
+        start, end = self.values(signs)[self.layout.nodes[piece : piece + 2]]
+        change = end - start
+        return np.concatenate((start + part * change, change))

@@ -2,17 +2,21 @@
 
 import struct
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
+from math import isfinite
 
 import numpy as np
 
-from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.hybrid.forcing import Forcing, Layout, Signs, Values
-from ddct_plant.hybrid.friction_system import FrictionSystem
-from ddct_plant.hybrid.interval_map import Interval, IntervalMap
-from ddct_plant.hybrid.mode_choice import SLACKS
-from ddct_plant.hybrid.mode_flow import ModeFlow
-from ddct_plant.hybrid.motion import Motion
+from ddct_plant.hybrid.friction_system import Forcing, FrictionSystem, Layout, Signs, Values
+from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
+from ddct_plant.hybrid.mode_choice import choose_mode
+from ddct_plant.hybrid.mode_flow import Course, ModeFlow
+
+MOST_EVENTS = 1000
+"""Most events in one piece. Dry friction between inertias gives fewer."""
 
 
 class HybridIntegrator:
@@ -38,34 +42,20 @@ class HybridIntegrator:
     ) -> None:
         """Prepare all modes; `held` lists the entries of [u, c] that are held over an interval."""
         self.system = system
-        self._piece_s = require_number('piece_s', piece_s, above=0.0)
+        self.piece_s = require_number('piece_s', piece_s, above=0.0)
         count = int(require_number('pieces', pieces, at_least=1))
         self._layout = Layout(system.b.shape[1], system.elements, count, held)
         # A third faster than numpy, which looks at every value before it makes an array.
         self._pack = struct.Struct(f'{len(system.a) + self._layout.width}d').pack
-        self._flows = {
-            signs: ModeFlow(system, signs, piece_s)
-            for signs in product((-1, 0, 1), repeat=system.elements)
-        }
-        self._maps = {
-            signs: IntervalMap(flow, piece_s, self._layout) for signs, flow in self._flows.items()
+        modes = product((-1, 0, 1), repeat=system.elements)
+        self.flows = {signs: ModeFlow(system, signs, piece_s) for signs in modes}
+        self.maps = {
+            signs: IntervalMap(flow, piece_s, self._layout) for signs, flow in self.flows.items()
         }
 
-    def mode_of(self, state: Values, locked: Sequence[int] = ()) -> Signs:
-        """
-        Return the mode of a state (n,): an element whose slip is 0 sticks until its torque tells.
-
-        Raise ParameterError when one that is called `locked` has a slip.
-        """
-        slips = self.system.h @ state
-        sizes = SLACKS[0] * np.abs(self.system.h) @ np.abs(state)
-        for element in locked:
-            if abs(slips[element]) > sizes[element]:
-                raise ParameterError(
-                    f'element {element} is called locked, but its slip is {slips[element]:g}'
-                )
-            slips[element] = 0.0
-        return tuple(np.sign(slips).astype(int).tolist())
+    def mode_of(self, state: Values) -> Signs:
+        """Return the mode of a state (n,): what has no slip sticks until its torque tells."""
+        return tuple(np.sign(self.system.h @ state).astype(int).tolist())
 
     def advance(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
@@ -84,10 +74,102 @@ class HybridIntegrator:
             raise ParameterError(
                 f'friction: the inputs {inputs} do not fit the interval: {error}'
             ) from error
-        interval = self._maps[signs].whole(v, capacities)
+        interval = self.maps[signs].whole(v, capacities)
         if interval is not None:
             return interval
         forcing = Forcing(self._layout, inputs, kinetic, static)
-        start = v[: len(state)]
-        motion = Motion(self.system, self._flows, self._maps, self._piece_s, forcing, start, signs)
-        return motion.to_the_end()
+        return _Motion(self, forcing, v[: len(state)], signs).to_the_end()
+
+
+class _Motion:
+    """State, mode, events and friction work as they come about in an interval with events."""
+
+    def __init__(
+        self, integrator: HybridIntegrator, forcing: Forcing, state: np.ndarray, signs: Signs
+    ) -> None:
+        self._integrator, self._forcing = integrator, forcing
+        self._state, self._signs = state, signs
+        self._events: list[Event] = []
+        self._work = [0.0] * len(signs)
+
+    def to_the_end(self) -> Interval:
+        """Go on to the end of the interval."""
+        piece, pieces = 0, self._forcing.layout.pieces
+        while piece < pieces:
+            piece = self._pass_pieces(piece)
+            if piece < pieces:
+                self._through_events(piece)
+                piece += 1
+        flow = self._integrator.flows[self._signs]
+        w = self._forcing.at(self._signs, pieces - 1, 1.0)[: flow.inputs]
+        friction = flow.force.dot(np.concatenate((self._state, w)))
+        return Interval(
+            self._state.tolist(), self._signs, self._events, self._work, friction.tolist()
+        )
+
+    def _pass_pieces(self, first: int) -> int:
+        """Go on to the next piece in which there is an event; return its number."""
+        layout, values = self._forcing.layout, self._forcing.values(self._signs)
+        passage = self._integrator.maps[self._signs].by_piece(
+            np.concatenate((self._state, values[layout.shifts[first]]))
+        )
+        count = min(passage.lasts, layout.pieces - first)
+        if count:
+            self._state = passage.ends[count - 1]
+            nodes = values[layout.nodes[first : first + count + 1]]
+            for place, element in enumerate(self._integrator.flows[self._signs].slipping):
+                capacities = nodes[:, element - len(self._signs)]
+                before, after = passage.slips[:count, place].T
+                self._work[element] += float(
+                    before.dot(capacities[:-1]) + after.dot(capacities[1:])
+                )
+        return first + count
+
+    def _through_events(self, piece: int) -> None:
+        """Go on to the end of a piece from event to event."""
+        done, piece_s = 0.0, self._integrator.piece_s
+        orders: list[int] | None = None
+        course = self._integrator.flows[self._signs].course(
+            self._state, self._forcing.at(self._signs, piece, 0.0)
+        )
+        for _ in range(MOST_EVENTS):
+            if not isfinite(course.states.sum()):
+                raise DdctError(
+                    'friction: a state, an input or a capacity is not finite or far too large'
+                )
+            part, guard, guards = course.first_event(orders, 1.0 - done)
+            self._add_work(course, guards, part)
+            self._state = course.at(part)
+            done += part
+            if guard is None:
+                return
+            course, orders = choose_mode(
+                self._integrator.system,
+                self._integrator.flows,
+                self._state,
+                self._signs,
+                course.flow.guarded[guard],
+                partial(self._forcing.at, piece=piece, part=done),
+            )
+            self._note_change((piece + done) * piece_s, course.flow.signs)
+        raise DdctError(
+            f'friction: more than {MOST_EVENTS} events in {piece_s:g} s: '
+            'look for values that are far too large'
+        )
+
+    def _add_work(self, course: Course, guards: np.ndarray, part: float) -> None:
+        """Add slip times capacity over a part of a piece; `guards` in Bernstein form on it."""
+        flow = course.flow
+        capacities, changes = course.capacities()
+        integrals = flow.slip_integrals(guards).tolist()
+        for element, (before, after) in zip(flow.slipping, integrals, strict=True):
+            work = (before + after) * capacities[element] + after * part * changes[element]
+            self._work[element] += part * self._integrator.piece_s * work
+
+    def _note_change(self, time_s: float, signs: Signs) -> None:
+        """Take the new mode, and note what changes."""
+        for i, (old, new) in enumerate(zip(self._signs, signs, strict=True)):
+            if old != new:
+                kind = 'lock' if new == 0 else 'release' if old == 0 else 'reverse'
+                self._events.append(Event(time_s, i, kind))
+        self._signs = signs

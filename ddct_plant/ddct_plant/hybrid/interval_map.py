@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddct_plant.hybrid.forcing import Layout, Signs, Values
+from ddct_plant.hybrid.friction_system import Layout, Signs, Values
 from ddct_plant.hybrid.mode_flow import ModeFlow
 from ddct_plant.hybrid.polynomials import linear_weights
 

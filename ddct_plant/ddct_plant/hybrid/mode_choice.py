@@ -7,8 +7,7 @@ from itertools import product
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.hybrid.forcing import Signs
-from ddct_plant.hybrid.friction_system import FrictionSystem
+from ddct_plant.hybrid.friction_system import FrictionSystem, Signs
 from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 
 SLACKS = (2.0**-44, 2.0**-34)
@@ -43,7 +42,7 @@ def choose_mode(
     derivative that is not zero; below it the coefficients are rounding, and become zero.
     """
     slips = np.abs(system.h.dot(state)).tolist()
-    sizes = system.slip_sizes.dot(np.abs(state)).tolist()
+    sizes = np.abs(system.h).dot(np.abs(state)).tolist()
     for slack in SLACKS:
         stuck = tuple(
             0 if i == element or slip <= slack * size else sign

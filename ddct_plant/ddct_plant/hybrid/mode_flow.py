@@ -5,9 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.hybrid.forcing import Signs
-from ddct_plant.hybrid.friction_system import FrictionSystem
-from ddct_plant.hybrid.polynomials import bernstein_of_powers, linear_weights
+from ddct_plant.hybrid.friction_system import FrictionSystem, Signs
+from ddct_plant.hybrid.polynomials import (
+    bernstein_of_powers,
+    first_negative,
+    linear_weights,
+    on_interval,
+)
 
 LONGEST = 2.0
 """A piece may be this long in units of 1 / (the balanced norm of a)."""
@@ -126,6 +130,27 @@ class Course(NamedTuple):
         """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
         sizes = self.flow.sizes.dot(np.abs(self.y))
         return sizes.reshape(self.guards.shape[1], -1).T
+
+    def first_event(
+        self, orders: list[int] | None, end: float
+    ) -> tuple[float, int | None, np.ndarray]:
+        """
+        Return when within [0, end] the first guard turns negative, and which; or `end` and None.
+
+        The third are the guards in Bernstein form up to then. A guard of order k is zero at 0 with
+        k - 1 derivatives, so that its next root is that of the guard divided by t^k.
+        """
+        first, which = end, None
+        coefficients = on_interval(self.guards, end)
+        for guard, least in enumerate(coefficients.min(axis=1).tolist()):
+            if least < 0.0:
+                order = orders[guard] if orders else 0
+                at = first_negative(self.guards[guard, order:], end)
+                if at is not None and (which is None or at < first):
+                    first, which = at, guard
+        if which is not None:
+            coefficients = on_interval(self.guards, first)
+        return first, which, coefficients
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:

@@ -37,20 +37,27 @@ class StateSpace:
 
     def __post_init__(self) -> None:
         """Check the shapes and that all is finite; raise ParameterError otherwise."""
-        for name in ('a', 'b', 'c', 'd'):
-            matrix = np.array(getattr(self, name), dtype=float)
-            if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
-                raise ParameterError(f'state space: {name} must be a matrix of finite numbers')
-            matrix.setflags(write=False)
-            object.__setattr__(self, name, matrix)
-        states, inputs, outputs = len(self.a), self.b.shape[1], len(self.c)
-        shapes = {'a': (states, states), 'b': (states, inputs), 'c': (outputs, states)}
-        shapes['d'] = (outputs, inputs)
-        for name, shape in shapes.items():
-            if getattr(self, name).shape != shape:
-                raise ParameterError(
-                    f'state space: {name} is {getattr(self, name).shape}, it must be {shape}'
-                )
+        own_matrices(self, 'state space', a='nn', b='nm', c='pn', d='pm')
+
+
+def own_matrices(owner: object, what: str, **letters: str) -> None:
+    """
+    Copy the matrices of `owner`, called `what`, so that they cannot be written.
+
+    `letters` stand for the numbers of rows and columns of each; where one comes again, so must
+    its number. Raise ParameterError otherwise, and for what is no matrix of finite numbers.
+    """
+    sizes: dict[str, int] = {}
+    for name, rows_and_columns in letters.items():
+        matrix = np.array(getattr(owner, name), dtype=float)
+        if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
+            raise ParameterError(f'{what}: {name} must be a matrix of finite numbers')
+        pairs = zip(rows_and_columns, matrix.shape, strict=True)
+        shape = tuple(sizes.setdefault(letter, size) for letter, size in pairs)
+        if matrix.shape != shape:
+            raise ParameterError(f'{what}: {name} is {matrix.shape}, it must be {shape}')
+        matrix.setflags(write=False)
+        object.__setattr__(owner, name, matrix)
 
 
 @dataclass(frozen=True)
@@ -177,7 +184,8 @@ def discretise_zoh(system: StateSpace, period_s: float) -> StateSpace:
 
     exp([[a, b], [0, 0]] T) = [[a_d, b_d], [0, 1]].
     """
-    _require_continuous(system)
+    if system.period_s is not None:
+        raise ParameterError(f'state space is already sampled at {system.period_s:g} s')
     require_number('period_s', period_s, above=0.0)
     a_d, b_d = hold_inputs(system.a, system.b, period_s)
     return StateSpace(a_d, b_d, system.c, system.d, period_s)
@@ -249,8 +257,3 @@ def _exponential(matrix: np.ndarray) -> np.ndarray:
     from scipy.linalg import expm
 
     return expm(matrix)
-
-
-def _require_continuous(system: StateSpace) -> None:
-    if system.period_s is not None:
-        raise ParameterError(f'state space is already sampled at {system.period_s:g} s')

@@ -373,12 +373,10 @@ def test_a_piece_must_be_longer_than_zero_and_short_enough_for_the_rates():
         HybridIntegrator(block(a=-1e4), PIECE_S, PIECES)
 
 
-def test_an_element_called_locked_must_not_slip():
+def test_an_element_sticks_only_with_no_slip_at_all():
     integrator = HybridIntegrator(block(), PIECE_S, PIECES)
     assert integrator.mode_of(np.array([1e-9])) == (1,)
-    assert integrator.mode_of(np.array([0.0]), locked=[0]) == (0,)
-    with pytest.raises(ParameterError, match='element 0 is called locked, but its slip is 1e-09'):
-        integrator.mode_of(np.array([1e-9]), locked=[0])
+    assert integrator.mode_of(np.array([0.0])) == (0,)
 
 
 def test_values_that_are_not_finite_end_in_an_error():
