@@ -9,7 +9,7 @@ import scipy
 from ddct_bringup.verdict.comfort import at_rest
 from ddct_bringup.verdict.criteria import JudgedRun, Values
 from ddct_bringup.verdict.lock import step_at
-from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, band_pass, SHORTEST_JUDDER_S
+from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, band_pass
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, time_of_step
 
 _PADDING = 3 * (2 * BAND_PASS_ORDER + 1)

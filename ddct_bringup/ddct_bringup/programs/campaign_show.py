@@ -6,11 +6,9 @@ from textwrap import fill
 
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
-from ddct_plant.base.printable import printable
 
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write_campaign_page
-from ddct_bringup.campaign_report.tables import summary_tables
 from ddct_bringup.campaign_report.words import RULES, replay_command, summary_tables
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text

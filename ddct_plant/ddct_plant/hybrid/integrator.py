@@ -9,7 +9,6 @@ from math import isfinite
 import numpy as np
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
-from ddct_plant.hybrid.forcing import Forcing, Layout, Signs, Values
 from ddct_plant.hybrid.friction_system import Forcing, FrictionSystem, Layout, Signs, Values
 from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 from ddct_plant.hybrid.mode_choice import choose_mode
