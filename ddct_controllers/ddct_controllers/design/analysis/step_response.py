@@ -3,12 +3,14 @@
 import numpy as np
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
-from ddct_controllers.design.state_space import to_control
+from ddct_controllers.design.state_space import close_loop
 from ddct_plant.base.errors import require_number
-from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
 TIME_STEP_S = 0.001
 """Between the points at which a continuous loop is evaluated, each of them exact."""
+_BLOCK = 128
+"""Points that are computed at once: python-control takes one after another, 10 to 80 times as long."""
 
 
 def step_response(
@@ -24,10 +26,26 @@ def step_response(
     system = loop.to_state_space() if isinstance(loop, ContinuousLoop) else loop
     period_s = system.period_s or TIME_STEP_S
     time = period_s * np.arange(round(duration_s / period_s) + 1)
-    import control  # takes a second
+    closed = close_loop(system)
+    sampled = closed if closed.period_s else discretise_zoh(closed, period_s)
+    return time, _output_of_step(sampled, len(time))
 
-    closed = control.feedback(to_control(system))
-    return time, np.asarray(control.step_response(closed, time).outputs)
+
+def _output_of_step(system: StateSpace, points: int) -> np.ndarray:
+    """Return the (points,) output of a sampled system at rest whose input becomes 1 at 0."""
+    order = len(system.a)
+    # With the input as a further state, which stays 1, the system runs by itself.
+    a = np.block([[system.a, system.b], [np.zeros(order), 1.0]])
+    rows = [np.hstack([system.c[0], system.d[0]])]
+    for _ in range(_BLOCK - 1):
+        rows.append(rows[-1] @ a)
+    over_block = np.linalg.matrix_power(a, _BLOCK)
+    state = np.eye(order + 1)[-1]
+    blocks = []
+    for _ in range(0, points, _BLOCK):
+        blocks.append(np.array(rows) @ state)
+        state = over_block @ state
+    return np.concatenate(blocks)[:points]
 
 
 def step_figures(
