@@ -1,7 +1,7 @@
 """Metrics, criteria and limits as the programs name them."""
 
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_plant.program.table import Table
 

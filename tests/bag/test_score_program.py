@@ -17,7 +17,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 ENTRY_KEYS = [

@@ -14,7 +14,7 @@ import numpy as np
 from ddct_bringup.batch.results import stacked_results
 from ddct_bringup.batch.run_batch import MOST_RUNS, Run, trajectories
 from ddct_bringup.scores.metrics import metric_values
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import load_scenario

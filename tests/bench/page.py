@@ -11,7 +11,7 @@ from ddct_bringup.report.page import report_page
 from ddct_bringup.report.runs import read_run
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

@@ -9,7 +9,7 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

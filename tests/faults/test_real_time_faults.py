@@ -18,7 +18,7 @@ from support.tampering import Tamperer, tampered_remap
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.run_timing import read_timing
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS

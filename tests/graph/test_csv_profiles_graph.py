@@ -6,7 +6,7 @@ from pathlib import Path
 from support.runs import bag_bytes, expected, plan, record
 
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
 
 COLUMNS = {'engine': 'N m', 'slope': 'deg', 'slip_reference': 'rpm'}

@@ -14,7 +14,7 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 
 NEAR = 0.1
 """How near the slip speed stays to that of lock-step if a few steps are missed, of its peak."""

@@ -7,7 +7,7 @@ from support.in_process_graph import GraphOf
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 
 LAUNCH = (
     'initial.shaft_speed_rad_s=0',

@@ -17,7 +17,7 @@ from ddct_bringup.scores.measured import NEEDS
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES
 
 OURS = """\

@@ -5,7 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ddct_bringup.programs.compare import main
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import load_limits
 
 
 def test_compare_ends_with_the_report(tmp_path: Path) -> None:

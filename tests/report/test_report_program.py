@@ -18,7 +18,7 @@ from ddct_bringup.programs.report import main
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.thesis.predictions import predicted_range
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.settings import RunSettings
 
 

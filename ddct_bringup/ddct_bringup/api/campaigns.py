@@ -12,7 +12,7 @@ from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import read_table, results_of, write_campaign_page
 from ddct_bringup.campaign_report.summary import Summary, summary_of
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import load_limits
 
 
 class CampaignResults(NamedTuple):

@@ -21,8 +21,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.scoring import Entry, score_recording, score_run
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import Limits, load_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
     Chosen,

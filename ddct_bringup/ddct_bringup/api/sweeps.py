@@ -8,7 +8,7 @@ from ddct_bringup.api.runs import base_from, controllers_from, pandas_module, pl
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.sweep.sweep import Sweep
-from ddct_bringup.verdict.limits_file import load_limits
+from ddct_bringup.verdict.limits import load_limits
 from ddct_controllers.registry import controller_label
 
 

@@ -15,7 +15,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OptionGroup, option, require_known
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
-from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
+from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
 from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.measured.log import MeasuredLog, read_log

@@ -17,8 +17,7 @@ from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.files.input_file import mcap_of
-from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
+from ddct_plant.files.input_file import SCHEMA_KEY, mcap_of
 from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.topics import (

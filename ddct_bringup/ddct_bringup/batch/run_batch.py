@@ -18,8 +18,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import batchable
 from ddct_bringup.batch.loops import reference_kind, simulate_batch
 from ddct_bringup.batch.results import BatchResult, one_or_more, stacked_results
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import Limits, packaged_limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import StateSpace

@@ -8,12 +8,10 @@ from typing import Any
 
 from ddct_bringup.campaign.distributions import Distribution, distribution_of
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, require_known
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
-from ddct_plant.files.schema_version import require_schema_version
-from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
+from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
+from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 SCHEMA_VERSION = 1
 """Of a specification."""
@@ -60,18 +58,10 @@ class CampaignSpec:
 def read_spec(file: str | Path) -> CampaignSpec:
     """Read a specification; raise DdctError that names file, line and key."""
     path = Path(file)
-    try:
-        content, lines = parse_yaml_with_lines(read_text_file(path))
-    except OSError as error:
-        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
-    except ParameterError as error:
-        raise ParameterError(f'{path}: {error}') from error
-    try:
+    with located(str(path)):
+        content, lines = parse_yaml_with_lines(user_text(path))
+    with located(str(path), lines):
         return spec_of(content, path.absolute().parent)
-    except ParameterError as error:
-        line = line_of(str(error), lines)
-        where = f'{path}: line {line}' if line else str(path)
-        raise ParameterError(f'{where}: {error}') from error
 
 
 def spec_of(content: Any, folder: Path) -> CampaignSpec:

@@ -25,8 +25,8 @@ from ddct_bringup.report.typeset import number_text
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
 from ddct_plant.files.output_file import write_json, write_text
-from ddct_plant.files.schema_version import KEY, require_schema_version
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.program.command_line import package_version
@@ -65,7 +65,9 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     try:
         table = parquet.read_table(path)
         known = table.schema.metadata or {}
-        require_schema_version({KEY: int(known.get(KEY.encode(), 0))}, SCHEMA_VERSION)
+        require_schema_version(
+            {SCHEMA_KEY: int(known.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
+        )
     except FileNotFoundError as error:
         raise DdctError(
             f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_AGAIN}'

@@ -15,8 +15,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.tables import slow_notes
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program

@@ -18,8 +18,7 @@ from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import Entry, score_recording
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain

@@ -26,8 +26,7 @@ from ddct_bringup.run.output_folder import StagedFolder, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, printable

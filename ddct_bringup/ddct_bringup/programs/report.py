@@ -18,8 +18,7 @@ from ddct_bringup.report.runs import (
 )
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bags_in
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.measured.columns import load_columns

@@ -18,8 +18,7 @@ from ddct_bringup.scores.scoring import (
     unreadable_entry,
 )
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, write_json, write_text

@@ -22,7 +22,7 @@ from ddct_bringup.scores.tables import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import Sweep, SweptRun, sweep_document
 from ddct_bringup.sweep.sweep_table import sweep_notes, sweep_table
-from ddct_bringup.verdict.limits_file import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable

@@ -1,8 +1,33 @@
-"""What a run is judged by: the rules of the states, and the limits of the criteria."""
+"""
+What a run is judged by: the rules of the states, and the limits of the criteria, from a file.
 
+Whatever is wrong with a limits file is named with file, line and key.
+"""
+
+import argparse
+import dataclasses
+import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
+from importlib.resources import files
+from operator import attrgetter
+from pathlib import Path
 from typing import Any
+
+from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
+from ddct_plant.files.yaml_text import parse_yaml_with_lines
+
+SCHEMA_VERSION = 1
+"""Of a limits file."""
+PACKAGED = 'packaged'
+"""What the limits that come with the package are called."""
+_RULE_KEYS = ('value', 'unit', 'reason')
+_LIMIT_KEYS = ('criterion', 'value', 'unit', 'applies_to')
+_CITATION = ('source', 'clause')
+_MOST = 1e9
 
 
 def _rule(unit: str, at_least: float | None = None) -> float:
@@ -43,10 +68,6 @@ class Limit:
     source: str
     """Where it is published and in which clause, or that it is a convention."""
 
-    def holds_for(self, scenario: str) -> bool:
-        """Say whether it applies to runs of a scenario."""
-        return self.applies_to is None or scenario in self.applies_to
-
 
 @dataclass(frozen=True)
 class Limits:
@@ -54,7 +75,7 @@ class Limits:
 
     rules: Rules
     limits: tuple[Limit, ...]
-    origin: dict[str, Any] = field(compare=False, default_factory=dict)
+    origin: dict[str, Any] = field(compare=False)
     """`name`, `digest` and `schema_version` of the file, as `scores.json` has them."""
 
     def of(self, criterion: str, scenario: str) -> Limit | None:
@@ -64,9 +85,10 @@ class Limits:
             found = [
                 limit
                 for limit in self.limits
-                if limit.criterion == criterion and limit.holds_for(scenario)
+                if limit.criterion == criterion
+                and (limit.applies_to is None or scenario in limit.applies_to)
             ]
-            self._strictest[asked] = min(found, key=_value, default=None)
+            self._strictest[asked] = min(found, key=attrgetter('value'), default=None)
         return self._strictest[asked]
 
     @cached_property
@@ -75,5 +97,133 @@ class Limits:
         return {}
 
 
-def _value(limit: Limit) -> float:
-    return limit.value
+@cache
+def packaged_limits() -> Limits:
+    """Return the limits that come with the package."""
+    file = files('ddct_bringup.verdict') / 'limits.yaml'
+    return limits_of_text(file.read_text(encoding='utf-8'), PACKAGED)
+
+
+def add_limits_option(parser: argparse.ArgumentParser) -> None:
+    """Add --limits to a program's options; `load_limits` takes it."""
+    parser.add_argument(
+        '--limits',
+        type=Path,
+        metavar='FILE',
+        help='limits to judge runs by, see docs/use/verdict.md; default: the packaged ones',
+    )
+
+
+def load_limits(file: str | Path | None) -> Limits:
+    """Return the limits of a file, the packaged ones for None; raise DdctError that names it."""
+    if file is None:
+        return packaged_limits()
+    path = Path(file)
+    with located(f'limits {path}'):
+        text = user_text(path)
+    return limits_of_text(text, str(path))
+
+
+def limits_of_text(text: str, name: str) -> Limits:
+    """
+    Return the limits of a text, called `name`; raise ParameterError that names what is bad.
+
+    Their origin has the name without its folders, and a digest that tells two files of one name
+    apart.
+    """
+    with located(f'limits {name}'):
+        content, lines = parse_yaml_with_lines(text)
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    origin = {'name': Path(name).name, 'digest': digest, 'schema_version': SCHEMA_VERSION}
+    with located(f'limits {name}', lines):
+        top = _mapping('', content, ('rules', 'limits'), (SCHEMA_KEY,))
+        require_schema_version(top, SCHEMA_VERSION)
+        if not isinstance(top['limits'], list):
+            raise ParameterError('limits: give a list of limits')
+        limits = [_limit(f'limits[{i}]', item) for i, item in enumerate(top['limits'])]
+        return Limits(_rules(top['rules']), tuple(limits), origin)
+
+
+def _rules(content: Any) -> Rules:
+    described = dataclasses.fields(Rules)
+    rules = _mapping('rules', content, [each.name for each in described])
+    return Rules(
+        **{
+            each.name: _rule_value(f'rules.{each.name}', rules[each.name], **each.metadata)
+            for each in described
+        }
+    )
+
+
+def _rule_value(path: str, content: Any, unit: str, at_least: float | None) -> float:
+    rule = _mapping(path, content, _RULE_KEYS)
+    _require_text(f'{path}.reason', rule['reason'])
+    _require_unit(f'{path}.unit', rule['unit'], unit)
+    return require_number(
+        f'{path}.value: it', rule['value'], above=0.0, at_least=at_least, at_most=_MOST
+    )
+
+
+def _limit(path: str, content: Any) -> Limit:
+    limit = _mapping(path, content, _LIMIT_KEYS, (*_CITATION, 'convention'))
+    criterion = limit['criterion']
+    if criterion not in CRITERION_UNITS:
+        known = ', '.join(CRITERION_UNITS)
+        raise ParameterError(f'{path}.criterion: {criterion!r} is unknown: choose from {known}')
+    _require_unit(f'{path}.unit', limit['unit'], CRITERION_UNITS[criterion])
+    return Limit(
+        criterion,
+        require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=_MOST),
+        limit['unit'],
+        _scenarios(f'{path}.applies_to', limit['applies_to']),
+        _source(path, limit),
+    )
+
+
+def _source(path: str, limit: Mapping[str, Any]) -> str:
+    if limit.get('convention') is True:
+        return 'convention'
+    if limit.get('convention', False) is not False:
+        raise ParameterError(f'{path}.convention: give true or false')
+    for key in _CITATION:
+        if key not in limit:
+            raise ParameterError(f'{path}: {key} is missing: cite it, or add `convention: true`')
+        _require_text(f'{path}.{key}', limit[key])
+    return f'{limit["source"]}, {limit["clause"]}'
+
+
+def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:
+    if value == 'all':
+        return None
+    names = isinstance(value, list) and value
+    if not names or not all(isinstance(name, str) for name in value):
+        raise ParameterError(f"{path}: give 'all' or a list of scenarios")
+    return tuple(value)
+
+
+def _mapping(
+    path: str, content: Any, required: Sequence[str], optional: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return what stands at `path`, '' for the whole file, if it has these keys and no other."""
+    where = path or 'line 1'
+    if not isinstance(content, dict):
+        raise ParameterError(f'{where}: give keys and values')
+    known = (*required, *optional)
+    for key in content:
+        if key not in known:
+            full = f'{path}.{key}' if path else key
+            raise ParameterError(f'{full}: unknown key: known are {", ".join(known)}')
+    for key in required:
+        if key not in content:
+            raise ParameterError(f'{where}: the key {key} is missing')
+    return content
+
+
+def _require_unit(path: str, value: Any, unit: str) -> None:
+    if value != unit:
+        raise ParameterError(f'{path}: it is {value!r}: give the value in {unit!r}')
+
+
+def _require_text(path: str, value: Any) -> None:
+    if not isinstance(value, str) or not value.strip():
+        raise ParameterError(f'{path}: it is {value!r}: give text')

@@ -8,7 +8,7 @@ import pytest
 from ddct_bringup.batch.batchable import HEEDED, batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.linear import LinearController

@@ -9,7 +9,7 @@ import pytest
 from ddct_bringup.batch.run_batch import batchable, run_batch, trajectories
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.linear import LinearController
 from ddct_controllers.pi import PiController

@@ -4,7 +4,7 @@ import pytest
 
 from ddct_bringup import api
 from ddct_bringup.campaign.rows import WALL_CLOCK, RunBase, result_row, scored_headless
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario

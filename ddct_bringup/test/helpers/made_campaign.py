@@ -10,7 +10,7 @@ from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 GRID = {

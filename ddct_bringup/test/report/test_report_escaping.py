@@ -17,7 +17,7 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.typeset import symbols
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording, unreadable_entry
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

@@ -10,7 +10,7 @@ from ddct_bringup.report.page import report_page
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 

@@ -12,7 +12,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording, why_invalid
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

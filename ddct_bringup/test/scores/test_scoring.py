@@ -12,7 +12,7 @@ from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.engine_limits import EngineLimits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings

@@ -6,7 +6,7 @@ from importlib.resources import files
 import pytest
 
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
-from ddct_bringup.verdict.limits_file import limits_of_text, load_limits, packaged_limits
+from ddct_bringup.verdict.limits import limits_of_text, load_limits, packaged_limits
 from ddct_plant.base.errors import DdctError
 
 TEXT = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import slip_state
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import STATES
 
 PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict.md').read_text(

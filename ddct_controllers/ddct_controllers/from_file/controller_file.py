@@ -2,16 +2,16 @@
 
 import hashlib
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import read_file, read_text_file
-from ddct_plant.files.yaml_text import line_of, parse_yaml_with_lines
+from ddct_plant.files.input_file import located, read_file, user_text
+from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
 """Largest size of a library or an FMU that a controller file names."""
@@ -83,28 +83,17 @@ class ControllerFile:
         self.digests[f'{kind}_sha256'] = hashlib.sha256(data).hexdigest()
         return path
 
-    @contextmanager
-    def located(self) -> Iterator[None]:
+    def located(self) -> AbstractContextManager[None]:
         """Put file, and line where the error names a key of it, before each DdctError within."""
-        try:
-            yield
-        except DdctError as error:
-            line = line_of(str(error), self.lines)
-            where = f'line {line}: ' if line else ''
-            raise type(error)(f'controller file {self.path}: {where}{error}') from error
+        return located(f'controller file {self.path}', self.lines)
 
 
 def read_controller_file(file: str) -> ControllerFile:
     """Read a file of any kind; raise DdctError that names it when it cannot be read."""
     path = Path(file)
-    try:
-        text = read_text_file(path)
-    except OSError as error:
-        raise DdctError(f'controller file {path}: cannot be read ({error.strerror})') from error
-    try:
+    with located(f'controller file {path}'):
+        text = user_text(path)
         content, lines = parse_yaml_with_lines(text)
-    except ParameterError as error:
-        raise ParameterError(f'controller file {path}: {error}') from error
     digest = hashlib.sha256(text.encode()).hexdigest()
     return ControllerFile(path, content, lines, {'controller_file_sha256': digest})
 

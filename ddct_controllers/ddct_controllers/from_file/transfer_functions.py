@@ -12,7 +12,7 @@ from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.linear import BILINEAR, HOLD, Given, in_z, linear_spec, sampled
 from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.files.yaml_text import line_of
+from ddct_plant.files.input_file import line_of
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 

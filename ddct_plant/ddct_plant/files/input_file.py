@@ -1,11 +1,19 @@
-"""Read files that a user names: regular ones only, and no more than fits into memory."""
+"""
+Read files that a user names, and say where in them something is wrong.
+
+Only regular files are read, and no more than fits into memory.
+"""
 
 import errno
 import os
+import re
 import stat
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 MOST_TEXT_BYTES = 1_000_000
 """Largest scenario, controller or page that is read: hundreds of times their usual size."""
@@ -16,6 +24,10 @@ _KINDS = {
     stat.S_IFBLK: 'a device',
     stat.S_IFSOCK: 'a socket',
 }
+SCHEMA_KEY = 'schema_version'
+"""Key of the version of a file's keys."""
+_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
+_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
 def read_file(path: Path, most_bytes: int) -> bytes:
@@ -47,6 +59,60 @@ def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
         return read_file(path, most_bytes).decode('utf-8')
     except UnicodeDecodeError as error:
         raise OSError(errno.EILSEQ, 'it is not UTF-8 text', str(path)) from error
+
+
+def user_text(path: Path) -> str:
+    """Return what `read_text_file` does; raise DdctError, to be `located`, where it cannot."""
+    try:
+        return read_text_file(path)
+    except OSError as error:
+        raise DdctError(f'cannot be read ({error.strerror})') from error
+
+
+@contextmanager
+def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]:
+    """
+    Put the name of a file before each DdctError within, and the line of the key that it names.
+
+    `lines` are those of `parse_yaml_with_lines`; without them no line is looked for.
+    """
+    try:
+        yield
+    except DdctError as error:
+        line = line_of(str(error), lines or {})
+        where = f'{name}: line {line}' if line else name
+        raise type(error)(f'{where}: {error}') from error
+
+
+def line_of(complaint: str, lines: Mapping[str, int]) -> int:
+    """
+    Return the line of the first key that a complaint names, or else of what the key is in.
+
+    Complaints name first what must be changed. 0 where no line holds it.
+    """
+    for word in _PATH.findall(complaint):
+        while word and word not in lines:
+            word = _PARENT.sub('', word) if _PARENT.search(word) else ''
+        if word:
+            return lines[word]
+    return 0
+
+
+def require_schema_version(content: Mapping[str, Any], newest: int) -> None:
+    """
+    Raise ParameterError unless the version of a file's keys, `newest` if not given, can be read.
+
+    So an older program says why it cannot read a newer file.
+    """
+    version = content.get(SCHEMA_KEY, newest)
+    if isinstance(version, bool) or not isinstance(version, int) or version < 1:
+        raise ParameterError(
+            f'{SCHEMA_KEY} is {version!r}: give a whole number from 1 to {newest}'
+        )
+    if version > newest:
+        raise ParameterError(
+            f'{SCHEMA_KEY} is {version}, this version reads up to {newest}: update the project'
+        )
 
 
 def mcap_of(path: Path) -> Path:

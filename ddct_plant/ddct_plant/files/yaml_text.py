@@ -6,7 +6,7 @@ They are built here from the parser's events, so text cannot make any other obje
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import yaml
@@ -21,8 +21,6 @@ MOST_DEPTH = 20
 MOST_DIGITS = 40
 """Characters of a number; a double needs 24."""
 
-_PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
-_PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 _PARSER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _SURROGATE = re.compile('[\ud800-\udfff]')
 _WORDS = {
@@ -65,20 +63,6 @@ def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
         raise ParameterError(f'not valid YAML: line {line}: {error.problem}') from error
     except yaml.YAMLError as error:
         raise ParameterError(f'not valid YAML: {" ".join(str(error).split())}') from error
-
-
-def line_of(complaint: str, lines: Mapping[str, int]) -> int:
-    """
-    Return the line of the first key that a complaint names, or else of what the key is in.
-
-    Complaints name first what must be changed. 0 where no line holds it.
-    """
-    for word in _PATH.findall(complaint):
-        while word and word not in lines:
-            word = _PARENT.sub('', word) if _PARENT.search(word) else ''
-        if word:
-            return lines[word]
-    return 0
 
 
 def dump_yaml(value: Any, **options: Any) -> str:

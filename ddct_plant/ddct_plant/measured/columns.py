@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
 from ddct_plant.base.units import si_values
-from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.yaml_text import parse_yaml
 
 TIME = 'time'
@@ -82,12 +82,8 @@ def own_columns(*names: str) -> ColumnMap:
 
 def load_columns(file: str) -> ColumnMap:
     """Read a column map from YAML; raise DdctError that names the file and what is wrong."""
-    try:
-        return _column_map(parse_yaml(read_text_file(Path(file))))
-    except OSError as error:
-        raise DdctError(f'--columns {file}: cannot be read ({error.strerror})') from error
-    except ParameterError as error:
-        raise DdctError(f'--columns {file}: {error}') from error
+    with located(f'--columns {file}'):
+        return _column_map(parse_yaml(user_text(Path(file))))
 
 
 def _column_map(content: Any) -> ColumnMap:

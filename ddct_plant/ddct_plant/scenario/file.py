@@ -13,10 +13,8 @@ from typing import Any
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, require_known
 from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.schema_version import KEY as SCHEMA_KEY
-from ddct_plant.files.schema_version import require_schema_version
-from ddct_plant.files.yaml_text import dump_yaml, line_of, parse_yaml, parse_yaml_with_lines
+from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.csv_profiles import with_points
@@ -49,14 +47,10 @@ class ScenarioFile:
     def read(cls, name_or_file: str) -> 'ScenarioFile':
         """Read a scenario; raise the errors of `load_scenario`."""
         text, default_name = _read(name_or_file)
-        try:
+        with located(f'scenario {name_or_file}'):
             content, lines = parse_yaml_with_lines(text)
-        except ParameterError as error:
-            raise ParameterError(f'scenario {name_or_file}: {error}') from error
-        if not isinstance(content, dict):
-            raise DdctError(
-                f'scenario {name_or_file}: the file must be a mapping of keys to values'
-            )
+            if not isinstance(content, dict):
+                raise DdctError('the file must be a mapping of keys to values')
         content.setdefault('name', default_name)
         return cls(name_or_file, content, lines)
 
@@ -72,17 +66,13 @@ class ScenarioFile:
             else map(parsed_override, overrides)
         )
         set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
-        try:
+        with located(f'scenario {self.name}', _in_file(self.lines, set_keys)):
             content = with_points(content, Path(self.name).parent, set_keys)
             scenario = scenario_from_mapping(content)
             origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
             scenario = consistent(scenario, origins, _number(start_before))
             require_driveline(scenario.driveline, clutch)
             return scenario
-        except ParameterError as error:
-            line = line_of(str(error), _in_file(self.lines, set_keys))
-            where = f'scenario {self.name}: line {line}' if line else f'scenario {self.name}'
-            raise ParameterError(f'{where}: {error}') from error
 
 
 def load_scenario(
@@ -160,10 +150,8 @@ def _read(name_or_file: str) -> tuple[str, str]:
         resource = _packaged() / f'{name_or_file}.yaml'
         return resource.read_text(encoding='utf-8'), name_or_file
     path = Path(name_or_file)
-    try:
-        return read_text_file(path), path.stem
-    except OSError as error:
-        raise DdctError(f'scenario {path}: cannot be read ({error.strerror})') from error
+    with located(f'scenario {path}'):
+        return user_text(path), path.stem
 
 
 def _own(content: Mapping[str, Any]) -> dict[str, Any]:

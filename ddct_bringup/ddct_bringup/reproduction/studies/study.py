@@ -15,7 +15,7 @@ from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import not_finite
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_bringup.verdict.criteria import JudgedRun
-from ddct_bringup.verdict.limits_file import packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge
