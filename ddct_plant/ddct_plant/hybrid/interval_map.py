@@ -79,18 +79,12 @@ class IntervalMap:
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
         """For each element that slips: its number, its integrals, its capacity."""
-        self._held_work: list[tuple[int, int, int]] = []
-        """The same of those whose capacity is held."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
-            where = layout.capacities[element]
-            held = where.stop - where.start == 1
-            rows.append(_by_value(slips[:, place], held=held))
+            capacity = layout.capacities[element]
+            rows.append(_by_value(slips[:, place], held=capacity.stop - capacity.start == 1))
             integrals = slice(first, first + len(rows[-1]))
-            if held:
-                self._held_work.append((element, first, where.start))
-            else:
-                self._work.append((element, integrals, where))
+            self._work.append((element, integrals, capacity))
             first = integrals.stop
         units, directions = _shortfalls(flow.guards, starts)
         nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
@@ -106,10 +100,8 @@ class IntervalMap:
         if not min(values[self._guards]) >= sum(map(abs, values[self._shortfalls])):
             return None
         work = [0.0] * len(self._signs)
-        for element, integrals, where in self._work:
-            work[element] = sum(map(mul, values[integrals], capacities[where]))
-        for element, integral, place in self._held_work:
-            work[element] = values[integral] * capacities[place]
+        for element, integrals, capacity in self._work:
+            work[element] = sum(map(mul, values[integrals], capacities[capacity]))
         return Interval(values[: self._states], self._signs, [], work, values[self._friction])
 
     def by_piece(self, v: np.ndarray) -> Passage:
