@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Sequence
 
 from ddct_bringup.bag.measured_run import MeasuredRun
-from ddct_controllers.mpc.costs import BASIS, thesis_settings
-from ddct_controllers.mpc.options import program_options
+from ddct_controllers.mpc.costs import BASIS
+from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.options import (
     OPTION_HEADERS,
@@ -63,7 +63,7 @@ def _code(row: Sequence[str]) -> tuple[str, ...]:
     return (f'`{row[0]}`', *row[1:])
 
 
-_OF_EVERY_MPC = tuple(program_options(thesis_settings(BASIS)))
+_OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
     'scenario': _scenario(),
     'run': _without_source(RunSettings),

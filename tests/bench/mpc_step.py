@@ -12,7 +12,7 @@ from replay import measurements_of, times_of
 
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import BASIS, thesis_settings
+from ddct_controllers.mpc.costs import PREVIEW
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.program.settings import MpcSettings
@@ -34,7 +34,7 @@ def measure() -> dict[str, Any]:
     All answer the measurements of one closed-loop run of `mpc_preview`, in turn. What is not
     installed is named in `skipped`.
     """
-    settings = thesis_settings(BASIS, preview=True)
+    settings = PREVIEW.settings()
     heard = measurements_of(RUN, _controller(settings))
     ways: dict[str, tuple[Controller, int]] = {
         'ours, daqp': (_controller(settings), _ROUNDS),

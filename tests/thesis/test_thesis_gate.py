@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.numbers.gate_tables import count_facts, page_tabl
 from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS, is_number
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
-from ddct_controllers.mpc.costs import TABLE_4_1, mpc4_settings
+from ddct_controllers.mpc.costs import TABLE_4_1, TwoInputCost
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -166,7 +166,7 @@ def test_list_has_table_4_1_as_the_controllers_use_it() -> None:
 
 def test_list_has_the_horizon_and_the_weights_that_mpc4_uses() -> None:
     printed = printed_in('4.3')
-    settings = mpc4_settings()
+    settings = TwoInputCost().settings()
     assert printed['MPC4: T_p'] == pytest.approx(settings.prediction_steps * PERIOD_S)
     assert [printed['MPC4: Q(1,1)'], printed['MPC4: Q(2,2)']] == pytest.approx(
         [terms.weight**2 for terms in settings.outputs]

@@ -19,7 +19,7 @@ from ddct_bringup.reproduction.studies.study import (
 from ddct_bringup.reproduction.studies.torque_level import closed_loop, growth
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import mpc4_settings
+from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
@@ -75,7 +75,7 @@ def test_without_the_pull_the_slip_error_decays_as_the_weights_say(weight):
     rate = np.sum(times) / (np.sum(times**2) + 7 * weight**2)
     model = transmission_model(SETTINGS.scenario.driveline)
     observer = make_observer(SETTINGS, model)
-    settings = mpc4_settings(weight, demand_weight=0.0)
+    settings = TwoInputCost(weight, demand_weight=0.0).settings()
     mpc4 = MpcController(model, observer, settings, SETTINGS.scenario.engine_authority)
     modes = np.linalg.eigvals(closed_loop(mpc4.program, observer, model))
     level, coasting, slip = sorted(modes[modes.imag == 0.0].real)[:-4:-1]

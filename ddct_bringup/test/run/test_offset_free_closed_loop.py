@@ -14,8 +14,8 @@ from ddct_bringup.reproduction.studies.wear import (
     wear_estimate,
 )
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
-from ddct_controllers.mpc.estimate.gains import NoiseLevels
-from ddct_controllers.mpc.estimate.wear_model import HIGHEST_GAIN, LOWEST_GAIN
+from ddct_controllers.mpc.estimate.observer import NoiseLevels
+from ddct_controllers.mpc.estimate.wear_observer import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s

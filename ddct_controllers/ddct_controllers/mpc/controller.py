@@ -1,5 +1,6 @@
 """The model predictive controller: one step, from the measurement to the command."""
 
+from dataclasses import replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -9,13 +10,17 @@ from ddct_controllers.measured import measured_speeds
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.inputs import CLUTCH, ENGINE, ClutchInput, CommandedEngine, KnownEngine
-from ddct_controllers.mpc.model.augmented import with_engine
-from ddct_controllers.mpc.model.transmission_model import TransmissionModel
-from ddct_controllers.mpc.program.ahead import divided, references
+from ddct_controllers.mpc.model.transmission_model import (
+    SLIP_ACCELERATION,
+    SLIP_SPEED,
+    TransmissionModel,
+    with_engine,
+)
 from ddct_controllers.mpc.program.horizon import condense
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 
 Estimator = TypeVar('Estimator', bound=Observer | WearObserver)
@@ -137,3 +142,41 @@ class MpcController(Controller, Generic[Estimator]):
             *said,
         )
         return Command(own_torque, status, asked)
+
+
+def divided(measurement: Measurement, gain: float) -> Measurement:
+    """
+    Return what drives the slip divided by K_usura = `gain`: C_m, C_load and the references.
+
+    Slip is linear in K_usura times the request. With these and the driveline's states divided by
+    K_usura, the request obeys the equations of a new clutch.
+    """
+    if gain == 1.0:
+        return measurement
+    return replace(
+        measurement,
+        engine_torque=measurement.engine_torque / gain,
+        load_torque=measurement.load_torque / gain,
+        slip_reference=[speed / gain for speed in measurement.slip_reference],
+        slip_reference_rate=[rate / gain for rate in measurement.slip_reference_rate],
+    )
+
+
+def references(settings: MpcSettings, measurement: Measurement) -> np.ndarray:
+    """
+    Return the references of the weighted outputs at the periods 1..p, (p, outputs).
+
+    They are the coming ones with preview, else the present ones, or that of the slip along its
+    tangent; those of other outputs than the slip and its rate are zero.
+    """
+    values = np.zeros((settings.prediction_steps, len(settings.outputs)))
+    coming = slice(1, None) if settings.preview else slice(0, 1)
+    for column, terms in enumerate(settings.outputs):
+        if terms.output == SLIP_SPEED:
+            values[:, column] = measurement.slip_reference[coming]
+            if settings.along_tangent and not settings.preview:
+                steps = np.arange(1, settings.prediction_steps + 1)
+                values[:, column] += PERIOD_S * measurement.slip_reference_rate[0] * steps
+        elif terms.output == SLIP_ACCELERATION:
+            values[:, column] = measurement.slip_reference_rate[coming]
+    return values

@@ -1,20 +1,24 @@
 """What the predictive controllers minimise: Table 4.1, Section 4.3, and what we make of them."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ddct_controllers.mpc.model.transmission_model import (
     SLIP_ACCELERATION,
     SLIP_SPEED,
     TORSION_SPEED,
 )
-from ddct_controllers.mpc.options import weight
-from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
-from ddct_plant.base.options import OptionGroup, Options, with_values
+from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms, weight
+from ddct_plant.base.options import OptionGroup
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.parameters import DrivelineParameters
+
+PREDICTION_STEPS = 7
+"""T_p = 0.07 s of MPC4."""
+SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
+"""Weights of w_d per rad/s and dw_d/dt per rad/s^2: roots, as (4.1) does not square Q."""
+DEMAND_WEIGHT = 0.14
+"""Weight per N m between C_m and the demand; docs/controllers/mpc4.md has the argument."""
 
 
 @dataclass(frozen=True)
@@ -29,47 +33,25 @@ class TableRow(OptionGroup):
     final_weight: float = weight(0.0, 'P: weight per rpm of the slip error at the end')
     move_weight: float = weight(0.39, 'R: weight per N m of a move of the torque u')
     torque_weight: float = weight(0.0, 's: weight per N m of u: R on u, as Section 4.1 has it')
+    preview: bool = False
+
+    def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
+        """Return what it means; docs/thesis/mpc_readings.md gives other readings of Q and R."""
+        slip, at_the_end = map(rpm_from_rad_s, (self.output_weight, self.final_weight))
+        return MpcSettings(
+            prediction_steps=self.prediction_steps,
+            control_steps=self.control_steps,
+            outputs=(OutputTerms(SLIP_SPEED, slip, at_the_end),),
+            inputs=(InputTerms(self.move_weight, self.torque_weight),),
+            preview=self.preview,
+        )
 
 
 TABLE_4_1 = {'mpc1': TableRow(12, 3), 'mpc2': TableRow(16, 6), 'mpc3': TableRow(22, 4)}
 BASIS = TABLE_4_1['mpc3']
 """Whose horizon and weights our own controllers take over."""
-PREDICTION_STEPS = 7
-"""T_p = 0.07 s of MPC4."""
-SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
-"""Weights of w_d per rad/s and dw_d/dt per rad/s^2: roots, as (4.1) does not square Q."""
-DEMAND_WEIGHT = 0.14
-"""Weight per N m between C_m and the demand; docs/controllers/mpc4.md has the argument."""
-
-
-def thesis_settings(row: TableRow, *, preview: bool = False) -> MpcSettings:
-    """Return what the row means; docs/thesis/mpc_readings.md gives other readings of Q and R."""
-    per_rad_s, final_per_rad_s = map(rpm_from_rad_s, (row.output_weight, row.final_weight))
-    return MpcSettings(
-        prediction_steps=row.prediction_steps,
-        control_steps=row.control_steps,
-        outputs=(OutputTerms(SLIP_SPEED, per_rad_s, final_per_rad_s),),
-        inputs=(InputTerms(row.move_weight, row.torque_weight),),
-        preview=preview,
-    )
-
-
-def mpc4_settings(
-    slip_acceleration_weight: float = SLIP_ACCELERATION_WEIGHT,
-    demand_weight: float = DEMAND_WEIGHT,
-) -> MpcSettings:
-    """Return what Section 4.3 means; R = P = 0 and inputs are constant over the horizon."""
-    return MpcSettings(
-        prediction_steps=PREDICTION_STEPS,
-        control_steps=1,
-        outputs=(
-            OutputTerms(SLIP_SPEED, SLIP_WEIGHT),
-            OutputTerms(SLIP_ACCELERATION, slip_acceleration_weight),
-        ),
-        inputs=(InputTerms(), InputTerms(target_weight=demand_weight)),
-        preview=False,
-        along_tangent=True,
-    )
+PREVIEW = replace(BASIS, preview=True)
+"""What they make of it."""
 
 
 def default_torsion_weight(total_ratio: float) -> float:
@@ -83,37 +65,19 @@ def default_torsion_weight(total_ratio: float) -> float:
 
 
 @dataclass(frozen=True)
-class SlipCost:
-    """A row of Table 4.1, whose weights a scenario may change if they are `changeable`."""
-
-    row: TableRow = BASIS
-    preview: bool = True
-    changeable: bool = False
-
-    @property
-    def options(self) -> Options:
-        """What a scenario may change beside `program_options`."""
-        return self.row.options if self.changeable else {}
-
-    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
-        """Return what the values of its options make of it."""
-        return thesis_settings(with_values(self.row, values), preview=self.preview)
-
-
-@dataclass(frozen=True)
 class TorsionCost(OptionGroup):
-    """`BASIS` with preview, and w_sr as a second output."""
+    """`PREVIEW`, and w_sr as a second output."""
 
     torsion_weight: float | None = weight(
         None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`', '0.26 tau'
     )
 
-    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
-        """Return what the values of its options make of it."""
-        per_rpm = with_values(self, values).torsion_weight
+    def settings(self, driveline: DrivelineParameters) -> MpcSettings:
+        """Return what its weight, or else the default for the driveline, makes of it."""
+        per_rpm = self.torsion_weight
         if per_rpm is None:
             per_rpm = default_torsion_weight(driveline.total_ratio)
-        settings = thesis_settings(BASIS, preview=True)
+        settings = PREVIEW.settings()
         torsion = OutputTerms(TORSION_SPEED, rpm_from_rad_s(per_rpm))
         return replace(settings, outputs=(*settings.outputs, torsion))
 
@@ -128,7 +92,16 @@ class TwoInputCost(OptionGroup):
     )
     demand_weight: float = weight(DEMAND_WEIGHT, 'r: weight per N m between C_m and the demand')
 
-    def settings(self, values: Mapping[str, Any], driveline: DrivelineParameters) -> MpcSettings:
-        """Return what the values of its options make of it."""
-        chosen = with_values(self, values)
-        return mpc4_settings(chosen.slip_acceleration_weight, chosen.demand_weight)
+    def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
+        """Return what it means; R = P = 0 and inputs are constant over the horizon."""
+        return MpcSettings(
+            prediction_steps=PREDICTION_STEPS,
+            control_steps=1,
+            outputs=(
+                OutputTerms(SLIP_SPEED, SLIP_WEIGHT),
+                OutputTerms(SLIP_ACCELERATION, self.slip_acceleration_weight),
+            ),
+            inputs=(InputTerms(), InputTerms(target_weight=self.demand_weight)),
+            preview=False,
+            along_tangent=True,
+        )

@@ -1,26 +1,25 @@
 """Models with their observers, of which the predictive controllers are composed."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
-from ddct_controllers.mpc.estimate.gains import (
+from ddct_controllers.mpc.estimate.observer import (
     CLUTCH_DRIFT_N_M,
     LOAD_DRIFT_N_M,
+    AtRest,
     NoiseLevels,
+    Observer,
     kalman_gain,
-    offset_free_noise,
     unit_noise_gain,
 )
-from ddct_controllers.mpc.estimate.observer import AtRest, Observer
-from ddct_controllers.mpc.estimate.wear_model import WearNoise
-from ddct_controllers.mpc.estimate.wear_observer import WearObserver
-from ddct_controllers.mpc.knowledge import Knowledge
-from ddct_controllers.mpc.model.augmented import offset_free_model
-from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
-from ddct_controllers.mpc.options import MOST
-from ddct_plant.base.options import OptionGroup, Options, option, with_values
+from ddct_controllers.mpc.estimate.wear_observer import WearNoise, WearObserver
+from ddct_controllers.mpc.model.transmission_model import (
+    TransmissionModel,
+    offset_free_model,
+    transmission_model,
+)
+from ddct_controllers.mpc.program.settings import MOST
+from ddct_plant.base.options import REQUIRED, OptionGroup, option
 from ddct_plant.scenario.initial import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
@@ -51,44 +50,51 @@ def make_observer(
     return Observer(model.without_load(), gain, replace(start, halfshaft_stiffness=math.inf))
 
 
-def stationary_filter(
-    run: RunSettings,
-    knowledge: Knowledge,
-    model: TransmissionModel | None = None,
-    *,
-    noise_rpm: float = 1.0,
-) -> tuple[TransmissionModel, Observer]:
-    """
-    Return the model that is known of, and its filter.
-
-    `model` takes the place of the one that is known of; `noise_rpm` is that of w_d where it is
-    measured alone.
-    """
-    if model is None:
-        model = transmission_model(run.scenario.driveline, delay=knowledge.delay_in_model)
-    known = model if knowledge.load_known else model.without_load()
-    if knowledge.measured == 'slip':
-        return known, Observer(known, unit_noise_gain(known, noise_rpm), start=None)
-    return known, make_observer(run, model, load_known=knowledge.load_known)
-
-
 @dataclass(frozen=True)
-class Filter:
-    """`stationary_filter`, whose knowledge a scenario may change if it is `changeable`."""
+class Knowledge(OptionGroup):
+    """
+    What a stationary filter is told, and what its model holds.
 
-    knowledge: Knowledge
-    changeable: bool = False
+    The signals, each set with the filter that it takes, and the model; C_m and C_fOL are always
+    known.
+    """
 
-    @property
-    def options(self) -> Options:
-        """What a scenario may change."""
-        return self.knowledge.options if self.changeable else {}
+    measured: str = option(
+        REQUIRED,
+        '`slip` is w_d alone, `speeds` are w_m, w_p and w_r',
+        kind=str,
+        choices=('slip', 'speeds'),
+    )
+    load_known: bool = option(
+        REQUIRED,
+        'whether C_load, computed from V_x and the slope, is an input of the model',
+        kind=bool,
+    )
+    delay_in_model: bool = option(
+        REQUIRED, 'whether the model has the delay of 10 ms, beside G_a(s)', kind=bool
+    )
 
     def parts(
-        self, values: Mapping[str, Any], run: RunSettings
+        self, run: RunSettings, model: TransmissionModel | None = None, *, noise_rpm: float = 1.0
     ) -> tuple[TransmissionModel, Observer]:
-        """Return model and observer for the values of its options."""
-        return stationary_filter(run, with_values(self.knowledge, values))
+        """
+        Return the model that is known of, and its filter.
+
+        `model` takes the place of the one that is known of; `noise_rpm` is that of w_d where it
+        is measured alone.
+        """
+        if model is None:
+            model = transmission_model(run.scenario.driveline, delay=self.delay_in_model)
+        known = model if self.load_known else model.without_load()
+        if self.measured == 'slip':
+            return known, Observer(known, unit_noise_gain(known, noise_rpm), start=None)
+        return known, make_observer(run, model, load_known=self.load_known)
+
+
+AS_DRAWN = Knowledge('slip', load_known=False, delay_in_model=False)
+"""Figure 4.2: mo is w_d, md is C_m; the plant of Section 3.2.1.3 is P_2 G_a."""
+FULL = Knowledge('speeds', load_known=True, delay_in_model=True)
+"""All that the car measures and the plant does."""
 
 
 @dataclass(frozen=True)
@@ -102,46 +108,18 @@ class DisturbanceObserver(OptionGroup):
         LOAD_DRIFT_N_M, 'drift of the error of C_load, per period', 'N m', above=0.0, at_most=MOST
     )
 
-    def parts(
-        self, values: Mapping[str, Any], run: RunSettings
-    ) -> tuple[TransmissionModel, Observer]:
-        """Return model and observer for the values of its options."""
-        chosen = with_values(self, values)
-        noise = offset_free_noise(chosen.clutch_drift_n_m, chosen.load_drift_n_m)
+    def parts(self, run: RunSettings) -> tuple[TransmissionModel, Observer]:
+        """Return the model with both errors as its states, and its filter."""
+        noise = NoiseLevels(drift=(self.clutch_drift_n_m, self.load_drift_n_m))
         model = offset_free_model(run.scenario.driveline)
         return model, make_observer(run, model, noise)
 
 
 @dataclass(frozen=True)
-class WearEstimate(OptionGroup):
+class WearEstimate(WearNoise):
     """The filter that estimates the wear of the clutch, with the model of a new one."""
 
-    gain_drift: float = option(
-        WearNoise.gain_drift,
-        'drift of K_usura per period; the bounds of its estimate are 0.5 and 1.5',
-        at_least=0.0,
-        at_most=1.0,
-    )
-    clutch_drift_n_m: float = option(
-        WearNoise.clutch_drift_n_m,
-        'drift of the error of C_f per period while a bound holds K_usura; 0 leaves a slip '
-        'error there',
-        'N m',
-        at_least=0.0,
-        at_most=MOST,
-    )
-    load_drift_n_m: float = option(
-        WearNoise.load_drift_n_m,
-        'drift of the error of C_load per period',
-        'N m',
-        at_least=0.0,
-        at_most=MOST,
-    )
-
-    def parts(
-        self, values: Mapping[str, Any], run: RunSettings
-    ) -> tuple[TransmissionModel, WearObserver]:
-        """Return model and observer for the values of its options."""
-        noise = WearNoise(**asdict(with_values(self, values)))
+    def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
+        """Return the model with the errors of C_f and C_load, and its filter."""
         model = offset_free_model(run.scenario.driveline)
-        return model, WearObserver(model, NoiseLevels(), noise, run_start(run))
+        return model, WearObserver(model, NoiseLevels(), self, run_start(run))

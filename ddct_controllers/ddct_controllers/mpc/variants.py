@@ -1,11 +1,19 @@
 """The predictive controllers by their names in the registry: what each is composed of."""
 
+from collections.abc import Collection
+
 from ddct_controllers.interface import ControllerContext, ControllerSpec
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import TABLE_4_1, SlipCost, TorsionCost, TwoInputCost
-from ddct_controllers.mpc.estimators import DisturbanceObserver, Filter, WearEstimate
-from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL
-from ddct_controllers.mpc.options import program_options, with_options
+from ddct_controllers.mpc.costs import PREVIEW, TABLE_4_1, TableRow, TorsionCost, TwoInputCost
+from ddct_controllers.mpc.estimators import (
+    AS_DRAWN,
+    FULL,
+    DisturbanceObserver,
+    Knowledge,
+    WearEstimate,
+)
+from ddct_controllers.mpc.program.settings import program_options, with_options
+from ddct_plant.base.options import Option, OptionGroup, with_values
 from ddct_plant.models.parameters import DrivelineParameters
 
 Predictive = ControllerSpec[MpcController]
@@ -13,40 +21,42 @@ Predictive = ControllerSpec[MpcController]
 
 def predictive(
     name: str,
-    cost: SlipCost | TorsionCost | TwoInputCost,
-    estimate: Filter | DisturbanceObserver | WearEstimate,
+    cost: TableRow | TorsionCost | TwoInputCost,
+    estimate: Knowledge | DisturbanceObserver | WearEstimate,
     *,
+    fixed: Collection[OptionGroup] = (),
     commands_engine: bool = False,
 ) -> Predictive:
-    """Compose a controller: the program follows from the cost, and the model of the estimate."""
+    """
+    Compose a controller: the program follows from the cost, and the model of the estimate.
+
+    A scenario may change what of both is not `fixed`, and the program.
+    """
 
     def make(context: ControllerContext) -> MpcController:
         values, run = context.gains, context.settings
-        settings = with_options(cost.settings(values, run.scenario.driveline), values)
-        model, observer = estimate.parts(values, run)
+        chosen = with_values(cost, values).settings(run.scenario.driveline)
+        model, observer = with_values(estimate, values).parts(run)
         authority = run.scenario.engine_authority if commands_engine else None
-        return MpcController(model, observer, settings, authority)
+        return MpcController(model, observer, with_options(chosen, values), authority)
 
-    program = program_options(cost.settings({}, DrivelineParameters()))
-    return ControllerSpec(name, make, {**cost.options, **estimate.options, **program})
+    options: dict[str, Option] = {}
+    for group in (cost, estimate):
+        if group not in fixed:
+            options |= group.options
+    options |= program_options(cost.settings(DrivelineParameters()))
+    return ControllerSpec(name, make, options)
 
 
 PREDICTIVE: dict[str, Predictive] = {
     spec.name: spec
     for spec in (
-        *(
-            predictive(
-                name,
-                SlipCost(row, preview=False, changeable=True),
-                Filter(AS_DRAWN, changeable=True),
-            )
-            for name, row in TABLE_4_1.items()
-        ),
-        predictive('mpc4', TwoInputCost(), Filter(FULL), commands_engine=True),
-        predictive('mpc_preview', SlipCost(changeable=True), Filter(FULL, changeable=True)),
-        predictive('mpc_offset_free', SlipCost(), DisturbanceObserver()),
+        *(predictive(name, row, AS_DRAWN) for name, row in TABLE_4_1.items()),
+        predictive('mpc4', TwoInputCost(), FULL, fixed=[FULL], commands_engine=True),
+        predictive('mpc_preview', PREVIEW, FULL),
+        predictive('mpc_offset_free', PREVIEW, DisturbanceObserver(), fixed=[PREVIEW]),
         predictive('mpc_torsion', TorsionCost(), DisturbanceObserver()),
-        predictive('mpc_wear', SlipCost(), WearEstimate()),
+        predictive('mpc_wear', PREVIEW, WearEstimate(), fixed=[PREVIEW]),
         # An error of the slip then decays with a time constant of 0.11 s, and C_m returns to the
         # demand with one of 0.8 s, far slower. With a gain beyond its bounds an estimated error
         # of C_f would make this loop oscillate.

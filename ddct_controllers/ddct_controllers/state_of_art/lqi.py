@@ -6,7 +6,7 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext, ControllerSpec
 from ddct_controllers.linear import LinearController
-from ddct_controllers.mpc.estimate.gains import NoiseLevels, riccati
+from ddct_controllers.mpc.estimate.observer import NoiseLevels, riccati
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S

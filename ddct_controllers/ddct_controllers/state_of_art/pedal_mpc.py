@@ -10,9 +10,7 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.mpc.estimate.gains import offset_free_noise
-from ddct_controllers.mpc.estimators import make_observer
-from ddct_controllers.mpc.model.augmented import offset_free_model
+from ddct_controllers.mpc.estimators import DisturbanceObserver
 from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
@@ -50,8 +48,7 @@ class PedalMpc(Controller):
     def __init__(self, context: ControllerContext) -> None:
         """Condense the programs; raise ParameterError for a bad option."""
         settings = context.settings
-        model = offset_free_model(settings.scenario.driveline)
-        self._observer = make_observer(settings, model, offset_free_noise())
+        model, self._observer = DisturbanceObserver().parts(settings)
         self._start_step = settings.scenario.control_start_step
         self._longest = round(engagement_time_s(context) / PERIOD_S)
         self._shortest = self._longest // SHORTEST_SHARE

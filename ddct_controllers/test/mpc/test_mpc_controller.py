@@ -8,9 +8,8 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import TABLE_4_1, thesis_settings
-from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain
-from ddct_controllers.mpc.estimate.observer import AtRest, Observer
+from ddct_controllers.mpc.costs import PREVIEW, TABLE_4_1
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.program.settings import InputTerms
@@ -22,7 +21,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)
-MPC3 = thesis_settings(TABLE_4_1['mpc3'], preview=True)
+MPC3 = PREVIEW.settings()
 
 
 def controller(settings=MPC3):
@@ -87,8 +86,8 @@ def test_without_active_limits_it_is_the_least_squares_solution():
 
 def test_final_and_torque_weights_are_in_the_least_squares():
     """P on the error at the end, and R on the controller's own torque, C_fOL less."""
-    row = replace(TABLE_4_1['mpc3'], final_weight=2.0, move_weight=0.1, torque_weight=0.3)
-    settings = thesis_settings(row, preview=True)
+    row = replace(PREVIEW, final_weight=2.0, move_weight=0.1, torque_weight=0.3)
+    settings = row.settings()
     free = replace(settings.inputs[0], lowest=-math.inf)
     mpc = controller(replace(settings, inputs=(free,)))
     own = mpc.update(measurement(60)).clutch_torque

@@ -8,17 +8,16 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import mpc4_settings
-from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain
-from ddct_controllers.mpc.estimate.observer import AtRest, Observer
+from ddct_controllers.mpc.costs import TwoInputCost
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels, Observer, kalman_gain
 from ddct_controllers.mpc.estimators import make_observer
-from ddct_controllers.mpc.model.augmented import with_engine
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     SLIP_ACCELERATION,
     SLIP_SPEED,
     STATES,
     transmission_model,
+    with_engine,
 )
 from ddct_controllers.mpc.program.settings import InputTerms, OutputTerms
 from ddct_controllers.mpc.variants import PREDICTIVE
@@ -31,7 +30,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))
 MODEL = transmission_model(RUN.scenario.driveline)
-MPC4 = mpc4_settings()
+MPC4 = TwoInputCost().settings()
 FREE = EngineAuthority()
 START = RUN.scenario.control_start_step
 STIFFNESS = RUN.scenario.driveline.halfshaft_stiffness

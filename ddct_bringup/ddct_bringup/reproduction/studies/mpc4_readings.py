@@ -24,7 +24,7 @@ from ddct_bringup.reproduction.studies.torque_level import growth
 from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import mpc4_settings
+from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
@@ -93,9 +93,9 @@ def _held(settings: MpcSettings) -> MpcSettings:
     return replace(settings, along_tangent=False)
 
 
-_SETTINGS = mpc4_settings()
-_SQUARED = mpc4_settings(0.05, STIFFER_PULL)
-_MIXED = mpc4_settings(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL)
+_SETTINGS = TwoInputCost().settings()
+_SQUARED = TwoInputCost(0.05, STIFFER_PULL).settings()
+_MIXED = TwoInputCost(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL).settings()
 _NOWHERE = model_without_actuator, model_without_actuator
 """Neither the controller nor the plant has an actuator."""
 READINGS: Mapping[str, Reading] = {

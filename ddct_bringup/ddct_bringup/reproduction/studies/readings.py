@@ -19,9 +19,8 @@ from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow, thesis_settings
-from ddct_controllers.mpc.estimators import stationary_filter
-from ddct_controllers.mpc.knowledge import AS_DRAWN, FULL, Knowledge
+from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow
+from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, Knowledge
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
@@ -49,8 +48,8 @@ class Reading:
     def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
         """Return its run in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
-        settings = self.change(thesis_settings(row))
-        parts = stationary_filter(run, self.knowledge, self.model, noise_rpm=self.noise_rpm)
+        settings = self.change(row.settings())
+        parts = self.knowledge.parts(run, self.model, noise_rpm=self.noise_rpm)
         return study_run(run, self.beside(MpcController(*parts, settings)))
 
 

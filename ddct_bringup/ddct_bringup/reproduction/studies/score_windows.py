@@ -19,7 +19,7 @@ from ddct_bringup.thesis.table_5_1 import (
     ROW_OF,
 )
 from ddct_controllers.mpc.costs import TABLE_4_1
-from ddct_controllers.mpc.knowledge import FULL
+from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -7,7 +7,7 @@ import numpy as np
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO
 from ddct_bringup.reproduction.studies.study import TWO_INPUTS, Study, cells, headers, study_run
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import mpc4_settings
+from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import (
@@ -38,7 +38,7 @@ def torque_level() -> Study:
     rows = []
     for pull in PULLS:
         observer = make_observer(SETTINGS, model)
-        settings = mpc4_settings(demand_weight=pull)
+        settings = TwoInputCost(demand_weight=pull).settings()
         mpc4 = MpcController(model, observer, settings, EngineAuthority())
         run = study_run(SETTINGS, mpc4)
         left = run.trajectory.engine_torque[-1] - run.trajectory.torque_demand[-1]

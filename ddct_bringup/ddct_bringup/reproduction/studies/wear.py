@@ -12,7 +12,7 @@ from ddct_bringup.reproduction.studies.study import (
     study_run,
 )
 from ddct_controllers.interface import ControllerContext
-from ddct_controllers.mpc.estimate.gains import NoiseLevels
+from ddct_controllers.mpc.estimate.observer import NoiseLevels
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S, steps_in

@@ -1,11 +1,130 @@
-"""Observer of the states that are not measured, with a constant gain."""
+"""Observer of the states that are not measured, with a constant gain, and the gains."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ddct_controllers.interface import Status
-from ddct_controllers.mpc.model.transmission_model import MEASURED, TransmissionModel
+from ddct_controllers.mpc.model.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    MEASURED,
+    SLIP_SPEED,
+    STATES,
+    TransmissionModel,
+)
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.units import rpm_from_rad_s
+
+CLUTCH_DRIFT_N_M = 13.0
+"""
+Per period. A random walk reaches it times the root of the number of periods: a clutch worn by 0.3
+is wrong by 90 N m when C_f has risen to 300 N m, half a second after the start.
+"""
+LOAD_DRIFT_N_M = 47.0
+"""Drift per period: in a second it reaches the load of a 10 % slope, 470 N m for 1500 kg."""
+
+
+@dataclass(frozen=True)
+class NoiseLevels:
+    """Standard deviations that set how far the filter trusts its model and the measurements."""
+
+    speed_rad_s: float = 0.05
+    """Noise of each measured speed: about the resolution of a wheel-speed sensor."""
+    engine_torque_n_m: float = 2.0
+    """Deviation of C_m from its known value."""
+    clutch_torque_n_m: float = 5.0
+    """Deviation of C_f from what the actuator's model gives."""
+    load_torque_n_m: float = 20.0
+    """Deviation of C_load from its computed value."""
+    drift: tuple[float, ...] = ()
+    """Drift of each estimated disturbance per period, in its unit."""
+
+
+def torque_noise(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
+    """Return the covariance (n, n) that a period adds, its torques' noise held over it."""
+    torques = np.column_stack(
+        [
+            noise.engine_torque_n_m * model.b[:, ENGINE_TORQUE],
+            noise.load_torque_n_m * model.b[:, LOAD_TORQUE],
+            noise.clutch_torque_n_m * model.clutch,
+        ]
+    )
+    covariance: np.ndarray = torques @ torques.T
+    return covariance
+
+
+def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
+    """
+    Return the stationary filter gain (n, 3) of p c' (c p c' + r)^-1.
+
+    p solves the filter's algebraic Riccati equation. Torque noise enters as held over a period;
+    raise ParameterError when no stationary gain exists.
+    """
+    if len(noise.drift) != model.disturbances:
+        raise ParameterError(
+            f'observer: {len(noise.drift)} drifts given for {model.disturbances} disturbances: '
+            'give one for each'
+        )
+    process = torque_noise(model, noise)
+    process[STATES:, STATES:] += np.diag(np.square(noise.drift))
+    measured = np.eye(MEASURED, len(model.a))
+    error = noise.speed_rad_s**2 * np.eye(MEASURED)
+    complaint = f'observer: no stationary Kalman gain for {noise} (%s): give positive levels'
+    covariance = riccati(model.a.T, measured.T, process, error, complaint)
+    innovation = measured @ covariance @ measured.T + error
+    gain: np.ndarray = np.linalg.solve(innovation, measured @ covariance).T
+    return gain
+
+
+def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndarray:
+    """
+    Return the stationary filter gain (n, 3) for w_d in rpm as the only measured output.
+
+    It is that of the filter that the MPC Toolbox gives an MPC for which nothing else is said. By
+    default the toolbox's estimator believes in white noise of unit variance on each manipulated
+    variable and measured disturbance, held over a period, and on each measured output:
+
+        x_(k+1) = a x_k + b (u_k + w_k), y_k = c x_k + v_k, E[w w'] = I, E[v v'] = 1.
+
+    So its Kalman filter has Q = b b' (1 N m on C_f, C_m and, where it is known, C_load) and R = 1
+    (1 rpm on w_d, `noise_rpm`), and l = p c' (c p c' + R)^-1 with
+
+        p = a p a' - a p c' (c p c' + R)^-1 c p a' + Q.
+
+    The integrator that it would add to the output is dropped: C_m to w_d is an integrator
+    already, P_1 = 4/s, and two that act on one output cannot be told apart.
+
+    l acts on the error of w_d, which is [1, -1, 0] times that of w_m, w_p and w_r. Raise
+    ParameterError when there is no stationary gain.
+    """
+    output = rpm_from_rad_s(1.0) * model.c[SLIP_SPEED : SLIP_SPEED + 1]
+    noise = noise_rpm**2 * np.eye(1)
+    complaint = (
+        'observer: no stationary Kalman gain of w_d for this driveline (%s): measure the speeds'
+    )
+    covariance = riccati(model.a.T, output.T, model.b @ model.b.T, noise, complaint)
+    gain = covariance @ output.T / (output @ covariance @ output.T + noise)
+    effective: np.ndarray = gain @ output[:, :MEASURED]
+    return effective
+
+
+def riccati(
+    a: np.ndarray, b: np.ndarray, q: np.ndarray, r: np.ndarray, complaint: str
+) -> np.ndarray:
+    """
+    Return the stabilising solution p of p = a' p a - a' p b (b' p b + r)^-1 b' p a + q.
+
+    Without one raise ParameterError that says `complaint` with the reason for its %s.
+    """
+    # Imported here: only runs with such a gain need it.
+    from scipy.linalg import solve_discrete_are
+
+    try:
+        solution: np.ndarray = solve_discrete_are(a, b, q, r)
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        raise ParameterError(complaint % failure) from failure
+    return solution
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,16 @@
 """Kalman filter that estimates the wear gain of the clutch while torque flows."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ddct_controllers.interface import Status
-from ddct_controllers.mpc.estimate.gains import NoiseLevels
-from ddct_controllers.mpc.estimate.observer import AtRest
-from ddct_controllers.mpc.estimate.wear_model import (
-    CLUTCH_ERROR,
-    DRIVELINE,
-    GAIN,
-    HIGHEST_GAIN,
-    LOAD_ERROR,
-    LOWEST_GAIN,
-    SIZE,
-    WearNoise,
-    process_noise,
-    within_bounds,
+from ddct_controllers.mpc.estimate.observer import (
+    CLUTCH_DRIFT_N_M,
+    LOAD_DRIFT_N_M,
+    AtRest,
+    NoiseLevels,
+    torque_noise,
 )
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
@@ -25,9 +20,47 @@ from ddct_controllers.mpc.model.transmission_model import (
     STATES,
     TransmissionModel,
 )
+from ddct_controllers.mpc.program.settings import MOST
+from ddct_plant.base.options import OptionGroup, option
 
+DRIVELINE = 4
+"""w_m, w_p, w_r and theta_sr come first."""
+GAIN, CLUTCH_ERROR, LOAD_ERROR = range(DRIVELINE, DRIVELINE + 3)
+"""Then K_usura, and the errors of C_f and C_load in N m."""
+SIZE = LOAD_ERROR + 1
+LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
+"""Bounds of the estimate. We take a clutch to reach 0.7 to 1.3."""
 LEAST_TORQUE_N_M = 5.0
 """Torque of the actuator below which K_usura does not drift: C_f may be wrong by as much."""
+
+
+@dataclass(frozen=True)
+class WearNoise(OptionGroup):
+    """Standard deviations; a scenario may change the drifts, which are per period."""
+
+    initial_gain: float = 0.2
+    """Deviation of K_usura from 1 before the first measurement."""
+    gain_drift: float = option(
+        0.01,  # 0.1 within a second, an engagement: the fade of a hot clutch
+        'drift of K_usura per period; the bounds of its estimate are 0.5 and 1.5',
+        at_least=0.0,
+        at_most=1.0,
+    )
+    clutch_drift_n_m: float = option(
+        CLUTCH_DRIFT_N_M,
+        'drift of the error of C_f per period while a bound holds K_usura; 0 leaves a slip '
+        'error there',
+        'N m',
+        at_least=0.0,
+        at_most=MOST,
+    )
+    load_drift_n_m: float = option(
+        LOAD_DRIFT_N_M,
+        'drift of the error of C_load per period',
+        'N m',
+        at_least=0.0,
+        at_most=MOST,
+    )
 
 
 class WearObserver:
@@ -62,7 +95,9 @@ class WearObserver:
         self._transmission = model.a[driveline, actuator]
         self._actuator_a = model.a[actuator, actuator]
         self._actuator_b = model.b[actuator, REQUEST]
-        self._process = process_noise(model, noise, wear)
+        self._process = np.zeros((SIZE, SIZE))
+        self._process[driveline, driveline] = torque_noise(model, noise)[driveline, driveline]
+        self._process[LOAD_ERROR, LOAD_ERROR] = wear.load_drift_n_m**2
         self._measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
         self.reset()
 
@@ -155,3 +190,21 @@ class WearObserver:
         kept[:, :MEASURED] -= gain
         self._covariance = kept @ covariance @ kept.T + gain @ self._measurement_noise @ gain.T
         self._state = within_bounds(self._state, self._covariance)
+
+
+def within_bounds(state: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """
+    Return the likeliest state (SIZE,) whose K_usura is within the bounds.
+
+    What K_usura gives up goes to the states that `covariance` (SIZE, SIZE) ties to it, the error
+    of C_f above all: the projection of Simon and Chia (IEEE Trans. Aerospace and Electronic
+    Systems 38, 2002) with W = P^-1.
+    """
+    gain = state[GAIN]
+    bound = min(max(gain, LOWEST_GAIN), HIGHEST_GAIN)
+    if bound == gain:
+        return state
+    state = state + covariance[:, GAIN] / covariance[GAIN, GAIN] * (bound - gain)
+    # Exactly, whatever is rounded.
+    state[GAIN] = bound
+    return state

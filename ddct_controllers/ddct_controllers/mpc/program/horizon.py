@@ -1,17 +1,38 @@
-"""Condense a prediction over the horizon into a quadratic program in the input moves alone."""
+"""Predict over the horizon, and condense it into a quadratic program in the input moves alone."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.mpc.model.transmission_model import TransmissionModel
-from ddct_controllers.mpc.program.prediction import Prediction, predict
+from ddct_controllers.mpc.model.transmission_model import (
+    ENGINE_TORQUE,
+    LOAD_TORQUE,
+    REQUEST,
+    TransmissionModel,
+)
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 
+DECIDED = (REQUEST, ENGINE_TORQUE)
+"""Inputs that a controller may decide, in their order; it knows the others."""
 INPUT_NAMES = ('the clutch torque request', 'C_m')
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """
+    Outputs over the horizon, y_i, i = 1..p, stacked period by period, p outputs long.
+
+    y = from_moves @ z + from_known @ v, with z the moves of the inputs, m after m, and v the state
+    x_k, the inputs before the first move, and the known inputs, constant over the horizon.
+    """
+
+    from_moves: np.ndarray
+    """(p outputs, m inputs)."""
+    from_known: np.ndarray
+    """(p outputs, n + inputs + known inputs)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,34 +56,69 @@ class CondensedProgram:
 
 def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
     """Return the program; raise ParameterError when horizons or weights leave moves open."""
-    prediction = predict(model, settings)
-    hessian, gradient = _cost(model, settings, prediction)
-    _require_felt(settings, prediction)
+    prediction, inputs = predict(model, settings), len(settings.inputs)
+    weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
+    weights[-len(settings.outputs) :] += [terms.final_weight**2 for terms in settings.outputs]
+    hessian, gradient = _cost(model, settings, prediction, weights)
+    _require_felt(settings, prediction, weights > 0.0)
     _require_weighed(settings, hessian)
     hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
     rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
-    is_soft = np.arange(len(rows)) >= len(hard[0])
+    limited = np.flatnonzero(np.isfinite(lower) | np.isfinite(upper))
+    levels = limited[limited < settings.control_steps * inputs]
     return CondensedProgram(
-        QpStructure(hessian, rows, is_soft, settings.soft_limit_weight),
+        QpStructure(hessian, rows[limited], limited >= len(hard[0]), settings.soft_limit_weight),
         gradient,
-        lower,
-        upper,
-        shift,
-        _level_rows(settings),
+        lower[limited],
+        upper[limited],
+        shift[limited],
+        tuple(np.flatnonzero(levels % inputs == each) for each in range(inputs)),
     )
 
 
-def _require_felt(settings: MpcSettings, prediction: Prediction) -> None:
-    """Raise ParameterError when outputs are weighted, but no move can change one of them."""
-    inputs, horizon = len(settings.inputs), settings.prediction_steps
-    weighted = np.tile([terms.weight > 0.0 for terms in settings.outputs], horizon)
-    weighted[-len(settings.outputs) :] |= [terms.final_weight > 0.0 for terms in settings.outputs]
-    felt = prediction.from_moves[weighted, :inputs].any(axis=0)
+def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
+    """Return how the weighted outputs follow from moves, state and inputs."""
+    inputs = len(settings.inputs)
+    decided = list(DECIDED[:inputs])
+    known = [column for column in (ENGINE_TORQUE, LOAD_TORQUE) if column not in decided]
+    rows = [terms.output for terms in settings.outputs]
+    c, d = model.c[rows], model.d[rows]
+    states = np.eye(len(model.a))
+    held = np.zeros((len(model.a), 3))
+    responses, free = [], []
+    for _ in range(settings.prediction_steps):
+        held = model.a @ held + model.b
+        states = model.a @ states
+        responses.append(c @ held + d)
+        free.append(np.hstack([c @ states, responses[-1][:, decided + known]]))
+    steps = np.array([response[:, decided] for response in responses])
+    feedthrough = d[:, decided]
+    return Prediction(_moves(steps, feedthrough, settings.control_steps), np.vstack(free))
+
+
+def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np.ndarray:
+    """
+    Return the response to a move at each of the first `control_steps` periods.
+
+    `steps` (p, outputs, inputs) is that to a unit step from period 0 on, at periods 1..p.
+    """
+    horizon, outputs, inputs = steps.shape
+    moves = np.zeros((horizon, outputs, control_steps, inputs))
+    for j in range(control_steps):
+        moves[j:, :, j, :] = steps[: horizon - j]
+        if j > 0:
+            moves[j - 1, :, j, :] = feedthrough
+    return moves.reshape(horizon * outputs, control_steps * inputs)
+
+
+def _require_felt(settings: MpcSettings, prediction: Prediction, weighted: np.ndarray) -> None:
+    """Raise ParameterError when outputs are `weighted`, but no move can change one of them."""
+    felt = prediction.from_moves[weighted, : len(settings.inputs)].any(axis=0)
     if weighted.any() and not felt.all():
         name = INPUT_NAMES[int(np.argmin(felt))]
         raise ParameterError(
-            f'MPC: prediction_steps is {horizon}: within them no weighted output feels a move of '
-            f'{name}: choose more'
+            f'MPC: prediction_steps is {settings.prediction_steps}: within them no weighted '
+            f'output feels a move of {name}: choose more'
         )
 
 
@@ -78,12 +134,10 @@ def _require_weighed(settings: MpcSettings, hessian: np.ndarray) -> None:
 
 
 def _cost(
-    model: TransmissionModel, settings: MpcSettings, prediction: Prediction
+    model: TransmissionModel, settings: MpcSettings, prediction: Prediction, weights: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return H and the gradient matrix; levels = levels before + cumulated moves."""
     moves, inputs = settings.control_steps, len(settings.inputs)
-    weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
-    weights[-len(settings.outputs) :] += [terms.final_weight**2 for terms in settings.outputs]
     penalty = np.tile([terms.move_weight**2 for terms in settings.inputs], moves)
     pull = np.tile([terms.target_weight**2 for terms in settings.inputs], moves)
     levels, repeated = _levels(moves, inputs), np.tile(np.eye(inputs), (moves, 1))
@@ -100,7 +154,7 @@ _Rows = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
-    """Return rows for the inputs' levels and rates, only where they are limited."""
+    """Return rows for the inputs' levels, move by move, then for their rates."""
     moves, inputs, states = settings.control_steps, len(settings.inputs), len(model.a)
     known = 2 - (inputs - 1)
     lowest, highest, rate = np.array(
@@ -111,33 +165,20 @@ def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
     jump = np.zeros_like(before)
     jump[:inputs, -inputs:] = np.eye(inputs)
     change = np.tile(rate * PERIOD_S, moves)
-    rows = np.vstack([_levels(moves, inputs), np.eye(moves * inputs)])
-    lower = np.concatenate([np.tile(lowest, moves), -change])
-    upper = np.concatenate([np.tile(highest, moves), change])
-    limited = np.isfinite(lower) | np.isfinite(upper)
-    return rows[limited], lower[limited], upper[limited], np.vstack([before, jump])[limited]
-
-
-def _level_rows(settings: MpcSettings) -> tuple[np.ndarray, ...]:
-    """Return where among the rows of `_input_rows` each input's levels are."""
-    limited = [np.isfinite((terms.lowest, terms.highest)).any() for terms in settings.inputs]
-    owner = np.tile(np.flatnonzero(limited), settings.control_steps)
-    return tuple(np.flatnonzero(owner == each) for each in range(len(limited)))
+    return (
+        np.vstack([_levels(moves, inputs), np.eye(moves * inputs)]),
+        np.concatenate([np.tile(lowest, moves), -change]),
+        np.concatenate([np.tile(highest, moves), change]),
+        np.vstack([before, jump]),
+    )
 
 
 def _output_rows(settings: MpcSettings, prediction: Prediction) -> _Rows:
-    """Return rows for the outputs that have a soft limit."""
+    """Return rows for the outputs, period by period."""
     limits = [(terms.lowest, terms.highest) for terms in settings.outputs]
     lower, upper = np.tile(np.array(limits).T, settings.prediction_steps)
-    limited = np.isfinite(lower) | np.isfinite(upper)
-    shift = prediction.from_known[limited]
-    no_jump = np.zeros((len(shift), len(settings.inputs)))
-    return (
-        prediction.from_moves[limited],
-        lower[limited],
-        upper[limited],
-        np.hstack([shift, no_jump]),
-    )
+    no_jump = np.zeros((len(lower), len(settings.inputs)))
+    return prediction.from_moves, lower, upper, np.hstack([prediction.from_known, no_jump])
 
 
 def _levels(moves: int, inputs: int) -> np.ndarray:

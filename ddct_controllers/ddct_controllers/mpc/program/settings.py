@@ -1,10 +1,43 @@
-"""What a predictive controller minimises, over which horizon and within which limits."""
+"""What a predictive controller minimises, over which horizon and limits; its options of these."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
+from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
 from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND
-from ddct_plant.base.errors import ParameterError, require_choice, require_number
+from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.base.options import REQUIRED, Option, OptionGroup, Options, option, with_values
+from ddct_plant.base.units import rad_s_from_rpm
+
+MOST_STEPS = 1000
+MOST = 1e6
+"""Largest value of any other number, in its unit: far too large, but its products are finite."""
+_LIMITS = {
+    'highest_torque_n_m': Option(
+        None, 'largest clutch torque request', 'N m', above=0.0, at_most=MOST
+    ),
+    'torque_rate_n_m_s': Option(
+        None,
+        'largest rate of the clutch torque request; it wins over the level',
+        'N m/s',
+        above=0.0,
+        at_most=MOST,
+    ),
+    'lowest_slip_rpm': Option(
+        None,
+        'soft lower limit of the slip; 0 keeps the plates from passing each other',
+        'rpm',
+        at_least=-MOST,
+        at_most=MOST,
+    ),
+}
+_HORIZON, _SOLVER = (
+    ('prediction_steps', 'control_steps', 'preview'),
+    ('backend', 'iteration_limit'),
+)
+_CLUTCH_LIMITS = {'highest_torque_n_m': 'highest', 'torque_rate_n_m_s': 'rate_n_m_s'}
 
 
 @dataclass(frozen=True)
@@ -62,7 +95,7 @@ class OutputTerms:
 
 
 @dataclass(frozen=True)
-class MpcSettings:
+class MpcSettings(OptionGroup, prefix='MPC: '):
     """
     Cost, horizon, limits and solver of a predictive controller.
 
@@ -72,38 +105,79 @@ class MpcSettings:
     Weights are squared with what they weigh, as in MATLAB's mpcDesigner.
     """
 
-    prediction_steps: int
-    """p, how many periods ahead outputs are weighted."""
-    control_steps: int
-    """m, after how many periods the inputs stay constant."""
     outputs: tuple[OutputTerms, ...]
     inputs: tuple[InputTerms, ...]
     """The clutch torque request, then C_m if it is commanded."""
-    preview: bool = True
-    """Whether the coming reference is used; otherwise its present value is held."""
+    prediction_steps: int = option(
+        REQUIRED,
+        'p: number of periods over which the outputs are weighted',
+        kind=int,
+        at_least=1,
+        at_most=MOST_STEPS,
+    )
+    control_steps: int = option(
+        REQUIRED,
+        'm: number of periods after which the inputs stay constant',
+        kind=int,
+        at_least=1,
+        at_most=MOST_STEPS,
+    )
+    preview: bool = option(True, 'true uses the coming reference; false holds its present value')
     along_tangent: bool = False
     """Whether the slip reference continues along its tangent if there is no preview."""
-    soft_limit_weight: float = 1e4
-    """Weight of the squared violation of an output's limit, in its unit, at each period ahead."""
-    backend: str = DEFAULT_BACKEND
-    """Which QP solver."""
-    iteration_limit: int | None = None
-    """Limit of the solver per step, None for its ITERATION_LIMITS; a time would differ by run."""
+    soft_limit_weight: float = option(
+        1e4,
+        "weight of the squared violation of an output's limit, in its unit, at each period ahead",
+        above=0.0,
+    )
+    backend: str = option(DEFAULT_BACKEND, 'QP solver', choices=BACKENDS)
+    iteration_limit: int | None = option(
+        None,  # a time would differ by run
+        'largest number of iterations of the QP solver per step',
+        otherwise='1000 (daqp), 20000 (osqp)',
+        kind=int,
+        at_least=1,
+        at_most=1_000_000,
+    )
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one and what fits."""
-        for name in ('prediction_steps', 'control_steps', 'iteration_limit'):
-            value = getattr(self, name)
-            if value is None and name == 'iteration_limit':
-                continue
-            if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-                raise ParameterError(f'MPC: {name} is {value!r}: give a whole number above 0')
+        super().__post_init__()
         if self.control_steps > self.prediction_steps:
             raise ParameterError(
                 f'MPC: control_steps is {self.control_steps}, longer than prediction_steps, '
                 f'{self.prediction_steps}: choose at most that'
             )
-        require_choice('QP backend', self.backend, BACKENDS)
-        require_number('MPC: soft_limit_weight', self.soft_limit_weight, above=0.0)
         if not self.outputs or not 1 <= len(self.inputs) <= 2:
             raise ParameterError('MPC: give at least one output, and one or two inputs')
+
+
+def weight(default: float | None, meaning: str, otherwise: str = '') -> Any:
+    """Return the field of an option group for a weight, which is squared with what it weighs."""
+    return option(default, meaning, otherwise=otherwise, at_least=0.0, at_most=MOST)
+
+
+def program_options(settings: MpcSettings) -> Options:
+    """Return the options of horizon, limits and solver; their defaults are those of `settings`."""
+    options = {**settings.options, **_LIMITS}
+    if settings.along_tangent:
+        meaning = f'{options["preview"].meaning} or continues along its tangent'
+        options['preview'] = replace(options['preview'], meaning=meaning)
+    return {key: options[key] for key in (*_HORIZON, *_LIMITS, *_SOLVER)}
+
+
+def with_options(settings: MpcSettings, values: Mapping[str, Any]) -> MpcSettings:
+    """Return `settings` changed by the values of its `program_options`."""
+    limits = {
+        field: values[key] for key, field in _CLUTCH_LIMITS.items() if values[key] is not None
+    }
+    clutch = replace(settings.inputs[0], **limits)
+    outputs = settings.outputs
+    if values['lowest_slip_rpm'] is not None:
+        lowest = rad_s_from_rpm(values['lowest_slip_rpm'])
+        outputs = tuple(
+            replace(terms, lowest=lowest) if terms.output == SLIP_SPEED else terms
+            for terms in outputs
+        )
+    changed = with_values(settings, values)
+    return replace(changed, inputs=(clutch, *settings.inputs[1:]), outputs=outputs)

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from ddct_controllers.interface import ControllerContext
-from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain, offset_free_noise
-from ddct_controllers.mpc.estimate.observer import AtRest, Observer
-from ddct_controllers.mpc.model.augmented import (
-    offset_free_model,
-    require_detectable,
-    with_disturbances,
+from ddct_controllers.mpc.estimate.observer import (
+    CLUTCH_DRIFT_N_M,
+    LOAD_DRIFT_N_M,
+    AtRest,
+    NoiseLevels,
+    Observer,
+    kalman_gain,
 )
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
@@ -19,7 +20,10 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     STATES,
     TORSION_SPEED,
+    offset_free_model,
+    require_detectable,
     transmission_model,
+    with_disturbances,
 )
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
@@ -82,7 +86,8 @@ def estimate(errors_n_m, drift=(), model=PLANT, periods=400, driveline=DRIVELINE
     return innovation, corrected
 
 
-OFFSET_FREE = {'drift': offset_free_noise().drift, 'model': offset_free_model(DRIVELINE)}
+OFFSET_FREE_NOISE = NoiseLevels(drift=(CLUTCH_DRIFT_N_M, LOAD_DRIFT_N_M))
+OFFSET_FREE = {'drift': OFFSET_FREE_NOISE.drift, 'model': offset_free_model(DRIVELINE)}
 
 
 def test_observer_finds_the_errors_of_clutch_and_load():
@@ -109,7 +114,7 @@ def test_every_disturbance_needs_a_drift():
 
 def test_the_gain_is_what_the_covariance_recursion_settles_on():
     """Joseph's form for 5000 periods, noise by its levels: no Riccati solver."""
-    model, noise = offset_free_model(DRIVELINE), offset_free_noise()
+    model, noise = offset_free_model(DRIVELINE), OFFSET_FREE_NOISE
     columns = [
         noise.engine_torque_n_m * model.b[:, ENGINE_TORQUE],
         noise.load_torque_n_m * model.b[:, LOAD_TORQUE],
@@ -178,7 +183,7 @@ def test_a_torsion_weight_is_no_key_of_the_other_controller():
 def test_behind_a_stiffer_half_shaft_the_errors_are_found_too():
     """Fifteen times as stiff: the rank condition must not take it for rigid."""
     stiff = replace(DRIVELINE, halfshaft_stiffness=1e5)
-    parts = {'drift': offset_free_noise().drift, 'model': offset_free_model(stiff)}
+    parts = {'drift': OFFSET_FREE_NOISE.drift, 'model': offset_free_model(stiff)}
     innovation, corrected = estimate({'clutch': -30.0, 'load': 200.0}, **parts, driveline=stiff)
     assert corrected[STATES:] == pytest.approx([-30.0, 200.0], rel=1e-3)
     assert innovation < 1e-4

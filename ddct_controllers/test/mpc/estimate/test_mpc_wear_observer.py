@@ -3,23 +3,23 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.estimate.gains import NoiseLevels
-from ddct_controllers.mpc.estimate.observer import AtRest
-from ddct_controllers.mpc.estimate.wear_model import (
+from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels
+from ddct_controllers.mpc.estimate.wear_observer import (
     GAIN,
     HIGHEST_GAIN,
+    LEAST_TORQUE_N_M,
     LOWEST_GAIN,
     SIZE,
     WearNoise,
+    WearObserver,
     within_bounds,
 )
-from ddct_controllers.mpc.estimate.wear_observer import LEAST_TORQUE_N_M, WearObserver
-from ddct_controllers.mpc.model.augmented import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     MEASURED,
     STATES,
+    offset_free_model,
     transmission_model,
 )
 from ddct_plant.models.actuator import Actuator

@@ -4,9 +4,13 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.estimate.gains import NoiseLevels, kalman_gain, unit_noise_gain
-from ddct_controllers.mpc.estimate.observer import AtRest, Observer
-from ddct_controllers.mpc.model.augmented import with_disturbances
+from ddct_controllers.mpc.estimate.observer import (
+    AtRest,
+    NoiseLevels,
+    Observer,
+    kalman_gain,
+    unit_noise_gain,
+)
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -16,6 +20,7 @@ from ddct_controllers.mpc.model.transmission_model import (
     STATES,
     TORSION_SPEED,
     transmission_model,
+    with_disturbances,
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rpm_from_rad_s

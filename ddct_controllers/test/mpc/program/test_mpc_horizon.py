@@ -20,13 +20,13 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 MODEL = transmission_model(DrivelineParameters())
 ONE = MpcSettings(
-    9, 3, (OutputTerms(SLIP_SPEED, 2.0), OutputTerms(TORSION_SPEED, 5.0)), (InputTerms(0.4),)
+    (OutputTerms(SLIP_SPEED, 2.0), OutputTerms(TORSION_SPEED, 5.0)), (InputTerms(0.4),), 9, 3
 )
 TWO = MpcSettings(
-    7,
-    2,
     (OutputTerms(SLIP_SPEED, 1.0), OutputTerms(SLIP_ACCELERATION, 0.05)),
     (InputTerms(move_weight=0.1), InputTerms(move_weight=0.2, target_weight=0.3)),
+    7,
+    2,
 )
 RANDOM = np.random.default_rng(2)
 STATE = np.array([180.0, 150.0, 16.0, 0.01, *RANDOM.normal(size=4), 40.0])
@@ -189,7 +189,7 @@ def test_a_horizon_that_no_move_reaches_is_refused():
 @pytest.mark.parametrize('inputs', [(InputTerms(),), (InputTerms(),) * 2])
 def test_moves_that_nothing_weighs_are_refused(inputs):
     """The request's last move acts beyond the horizon."""
-    loose = MpcSettings(3, 3, (OutputTerms(SLIP_SPEED, 1.0),), inputs)
+    loose = MpcSettings((OutputTerms(SLIP_SPEED, 1.0),), inputs, 3, 3)
     with pytest.raises(ParameterError, match='control_steps is 3, too long .* at most 2'):
         condense(MODEL, loose)
     weighed = tuple(replace(terms, move_weight=0.1) for terms in inputs)
@@ -200,6 +200,6 @@ def test_moves_that_nothing_weighs_are_refused(inputs):
 
 def test_weights_that_leave_the_program_singular_are_refused():
     """Slip alone does not tell C_m from the clutch."""
-    loose = MpcSettings(60, 20, (OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(), InputTerms()))
+    loose = MpcSettings((OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(), InputTerms()), 60, 20)
     with pytest.raises(ParameterError, match='hessian is singular'):
         condense(MODEL, loose)
