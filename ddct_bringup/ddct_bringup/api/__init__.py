@@ -8,10 +8,9 @@ Arguments are called as the options of `ddct bringup`. What cannot be used raise
 `ParameterError`, which is one. Nothing is printed; what a scenario moved by itself is warned of.
 """
 
-from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign
+from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep
 from ddct_bringup.api.figures import figure
 from ddct_bringup.api.runs import Run, compare, load, run, table
-from ddct_bringup.api.sweeps import sweep
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError

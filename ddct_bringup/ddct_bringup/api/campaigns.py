@@ -1,18 +1,22 @@
-"""Compute campaigns, and read finished ones."""
+"""Sweeps and campaigns: many runs from Python."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.runs import pandas_module
+from ddct_bringup.api.runs import base_from, controllers_from, pandas_module, plain
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import read_table, results_of, write_campaign_page
 from ddct_bringup.campaign_report.summary import Summary, summary_of
+from ddct_bringup.sweep.axis import Axis, axis, axis_of
+from ddct_bringup.sweep.sweep import OVER, Sweep
 from ddct_bringup.verdict.limits import load_limits
+from ddct_controllers.registry import controller_label
 
 
 class CampaignResults(NamedTuple):
@@ -57,3 +61,32 @@ def read_campaign(folder: str | Path) -> CampaignResults:
     table = read_table(Path(folder), manifest)
     summary = summary_of(results_of(manifest, table))
     return CampaignResults(table.to_pandas().set_index(INDEX), summary)
+
+
+def sweep(
+    controllers: str | Iterable[Any] | Mapping[str, Any],
+    over: Mapping[str, str | Iterable[Any]],
+    *,
+    limits: str | Path | None = None,
+    **options: Any,
+) -> Any:
+    """
+    Run controllers over values, headless on all cores; return a pandas DataFrame.
+
+    `controllers` are given as for `compare`, `options` as for `run`. `over` has by key the values,
+    or the text 'START:STOP:COUNT'; of several keys every combination runs. A row per run holds
+    the controller, the values under their keys, every metric, `valid` and `reason`,
+    `verdict_state`, `verdict_limits`, and the criteria as `criterion.NAME`.
+    """
+    chosen = controllers_from(controllers)
+    base = base_from([controller_label(each) for each in chosen], **options)
+    judged_by = load_limits(limits)
+    planned = Sweep(base, [_axis(key, over[key]) for key in over], chosen, judged_by)
+    with planned.runs() as runs:
+        return pandas_module().DataFrame([result_row(each, each[OVER]) for each in runs])
+
+
+def _axis(key: str, values: str | Iterable[Any]) -> Axis:
+    if isinstance(values, str):
+        return axis_of(f'{key}={values}')
+    return axis(key, [plain(value) for value in values])

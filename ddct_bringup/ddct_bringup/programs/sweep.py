@@ -18,10 +18,10 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
 )
+from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.scores.tables import table_console
 from ddct_bringup.sweep.axis import axis_of
-from ddct_bringup.sweep.sweep import Sweep, SweptRun, sweep_document
-from ddct_bringup.sweep.sweep_table import sweep_notes, sweep_table
+from ddct_bringup.sweep.sweep import Sweep, sweep_document, sweep_notes, sweep_table
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
@@ -74,7 +74,7 @@ def _sweep(argv: list[str]) -> int:
         from ddct_bringup.sweep.sweep_figure import write_sweep_figure
 
         write_sweep_figure(sweep, runs, metrics, Path(options.figure))
-    failed = sum(not run.entry['valid'] for run in runs)
+    failed = sum(not run['valid'] for run in runs)
     if failed:
         complain(PROGRAM, f'{failed} of {len(runs)} runs are not valid: the lines above say why')
     return 1 if failed else 0
@@ -94,7 +94,7 @@ def _planned(options: argparse.Namespace) -> Sweep:
     return sweep
 
 
-def _carried_out(sweep: Sweep) -> list[SweptRun]:
+def _carried_out(sweep: Sweep) -> list[Entry]:
     started = time.monotonic()
     with sweep.runs() as runs:
         done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))
@@ -102,9 +102,7 @@ def _carried_out(sweep: Sweep) -> list[SweptRun]:
     return done
 
 
-def _print(
-    sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Figure], stream: TextIO
-) -> None:
+def _print(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure], stream: TextIO) -> None:
     console = table_console(stream)
     console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
     for text in sweep_notes(runs, metrics):

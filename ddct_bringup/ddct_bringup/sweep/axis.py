@@ -30,18 +30,14 @@ class Axis:
 
     def __post_init__(self) -> None:
         """Refuse values that are none, too many or equal."""
-        if (problem := self._problem()) is not None:
-            raise ParameterError(f'--over {printable(self.key)}: {problem}')
-
-    def _problem(self) -> str | None:
+        where = f'--over {printable(self.key)}'
         if not 1 <= len(self.values) <= MOST:
-            return f'{len(self.values)} values: give 1 to {MOST}'
+            raise ParameterError(f'{where}: {len(self.values)} values: give 1 to {MOST}')
         for value in self.values:
             if isinstance(value, (list, tuple, dict)) or value is None:
-                return f'{value!r} is no single value: {_HOW}'
+                raise ParameterError(f'{where}: {value!r} is no single value: {_HOW}')
             if self.values.count(value) > 1:
-                return f'{value} is there twice: give each value once'
-        return None
+                raise ParameterError(f'{where}: {value} is there twice: give each value once')
 
     @property
     def heading(self) -> str:

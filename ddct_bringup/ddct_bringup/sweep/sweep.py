@@ -1,6 +1,6 @@
-"""A sweep: every controller at every point of its axes, headless, scored and judged."""
+"""A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,35 +10,20 @@ from typing import Any
 from ddct_bringup.campaign.rows import RunBase, scored_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.tables import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.table import Column, Figure, Table, table_of
 from ddct_plant.program.workers import in_processes
+from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 SCHEMA_VERSION = 1
 """Of what `ddct sweep --json` writes."""
-
-
-@dataclass(frozen=True)
-class SweptRun:
-    """One run of a sweep."""
-
-    varied: Mapping[str, Any]
-    """Values by the keys of the axes."""
-    entry: Entry
-    """As in `scores.json`."""
-
-    @property
-    def state(self) -> str:
-        """The verdict's word."""
-        return self.entry['verdict']['state']
-
-    @property
-    def place(self) -> str:
-        """The point, such as `wear_gain=0.7`."""
-        return ', '.join(f'{key}={value_text(value)}' for key, value in self.varied.items())
+OVER = 'over'
+"""In a run's entry the values by the keys of the axes."""
 
 
 @dataclass(frozen=True)
@@ -90,23 +75,24 @@ class Sweep:
         """Return the number of runs."""
         return len(self.controllers) * len(self.points)
 
-    def run(self, index: int) -> SweptRun:
-        """Carry out one run: those of the first controller come first."""
+    def run(self, index: int) -> Entry:
+        """
+        Carry out one run: those of the first controller come first.
+
+        Its entry is that of `scores.json`, but that its place, `OVER`, stands for a bag.
+        """
         controller, point = divmod(index, len(self.points))
         entry = scored_headless(self.settings[point], self.controllers[controller], self.limits)
-        return SweptRun(self.points[point], entry)
+        del entry['bag']
+        return {OVER: self.points[point], **entry}
 
-    def runs(self) -> AbstractContextManager[Iterator[SweptRun]]:
+    def runs(self) -> AbstractContextManager[Iterator[Entry]]:
         """Carry out all runs on all cores, as they are taken; as `in_processes`."""
         return in_processes(self.run, len(self))
 
 
-def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> dict[str, Any]:
-    """
-    Return what `--json` writes: the axes, the limits, and a row per run.
-
-    A row has its place, and what `scores.json` has.
-    """
+def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
+    """Return what `--json` writes: the axes, the limits, and a row per run."""
     return {
         'schema_version': SCHEMA_VERSION,
         'over': [
@@ -115,11 +101,36 @@ def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> dict[str, Any]:
         ],
         'controllers': [controller_label(each) for each in sweep.controllers],
         'limits': sweep.limits.origin,
-        'rows': [
-            {
-                'over': dict(run.varied),
-                **{key: value for key, value in run.entry.items() if key != 'bag'},
-            }
-            for run in runs
-        ],
+        'rows': list(runs),
     }
+
+
+def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Table:
+    """Return a row per run: the controller, where it ran, its metrics and its state."""
+    settings = sweep.settings[0]
+    changes = [f'{key}={value}' for key, value in sweep.base.changes.items()]
+    swept = [axis.key for axis in sweep.axes]
+    wear = '' if 'wear_gain' in swept else f', wear gain {settings.wear_gain:g}'
+    title = (
+        f'{scenario_title(settings.scenario.name, changes)}; {settings.architecture}, '
+        f'{settings.clutch} clutch{wear}; over {", ".join(swept)}'
+    )
+    columns = [CONTROLLER, *map(_place, sweep.axes), *map(metric, metrics), STATE]
+    return table_of(title, columns, runs)
+
+
+def _place(axis: Axis) -> RunColumn:
+    heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
+    return Column(heading, '', lambda run: value_text(run[OVER][axis.key]), number=axis.numeric)
+
+
+def sweep_notes(runs: Sequence[Entry], metrics: Sequence[Figure]) -> list[str]:
+    """Return what dashes mean, and why runs are not valid and where, as `wear_gain=0.7`."""
+    failed: dict[str, list[str]] = {}
+    for run in runs:
+        if not run['valid']:
+            reason = f'{run["controller"]} is not valid: {run["reason"]}'
+            place = ', '.join(f'{key}={value_text(value)}' for key, value in run[OVER].items())
+            failed.setdefault(reason, []).append(place)
+    notes = [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]
+    return [*dash_notes(runs, [metric(each) for each in metrics]), *notes]

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.sweep.state_map import (
     draw_states,
     edges_of,
@@ -17,7 +18,7 @@ from ddct_bringup.sweep.state_map import (
     places_of,
     state_legend,
 )
-from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.chart_style import (
     GREY,
@@ -45,14 +46,14 @@ size, to be shown at itself: one that runs away would leave no room for the othe
 
 
 def write_sweep_figure(
-    sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Figure], path: Path
+    sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure], path: Path
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
         save_chart(sweep_figure(sweep, runs, metrics), path)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Figure]) -> Drawing:
+def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Drawing:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
     each = len(sweep.points)
@@ -63,7 +64,7 @@ def sweep_figure(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Figur
 
 
 def _lines(
-    sweep: Sweep, by_name: Mapping[str, Sequence[SweptRun]], metrics: Sequence[Figure]
+    sweep: Sweep, by_name: Mapping[str, Sequence[Entry]], metrics: Sequence[Figure]
 ) -> Drawing:
     lane = 0.5 + _LANE_IN * len(by_name)
     heights = [*(_PANEL_IN for _ in metrics), lane]
@@ -77,12 +78,12 @@ def _lines(
     _draw_lanes(panels[-1], places, by_name)
     label_values(sweep.axes[0], panels[-1].xaxis)
     marks = [Line2D([], [], color=GREY, label=meaning, **mark) for mark, meaning in _MARKS_OF_RUNS]
-    state_legend(drawing, {run.state for runs in by_name.values() for run in runs}, marks)
+    state_legend(drawing, {_state(run) for runs in by_name.values() for run in runs}, marks)
     return drawing
 
 
 def _draw_metric(
-    axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[SweptRun]], figure: Figure
+    axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[Entry]], figure: Figure
 ) -> None:
     """
     Draw lines through engaged runs; a cross marks another, at the edge if it is far beyond.
@@ -91,11 +92,11 @@ def _draw_metric(
     """
     axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
     values = {
-        name: np.array([_number(run.entry['metrics'][figure.key]) for run in runs])
+        name: np.array([run['metrics'][figure.key] for run in runs], dtype=float)
         for name, runs in by_name.items()
     }
     engaged = {
-        name: np.array([run.state == ENGAGED for run in runs]) for name, runs in by_name.items()
+        name: np.array([_state(run) == ENGAGED for run in runs]) for name, runs in by_name.items()
     }
     low, high = _range(
         np.concatenate([values[name][engaged[name]] for name in by_name]),
@@ -115,17 +116,17 @@ def _draw_metric(
                 axes.plot(places[chosen], at[chosen], color=style['color'], clip_on=False, **mark)
 
 
-def _draw_lanes(axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[SweptRun]]) -> None:
+def _draw_lanes(axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[Entry]]) -> None:
     """Draw the states, a lane per controller, the first on top."""
     rows = np.arange(len(by_name))
-    states = [[run.state for run in runs] for runs in by_name.values()]
+    states = [[_state(run) for run in runs] for runs in by_name.values()]
     draw_states(axes, (edges_of(places), edges_of(rows.astype(float))), states)
     axes.set_yticks(rows, list(by_name))
     axes.invert_yaxis()
     axes.set_ylabel('state')
 
 
-def _maps(sweep: Sweep, by_name: Mapping[str, Sequence[SweptRun]]) -> Drawing:
+def _maps(sweep: Sweep, by_name: Mapping[str, Sequence[Entry]]) -> Drawing:
     """Draw a map of states per controller, the first axis across, the second up."""
     across, up = sweep.axes
     columns = min(_ACROSS, len(by_name))
@@ -134,7 +135,7 @@ def _maps(sweep: Sweep, by_name: Mapping[str, Sequence[SweptRun]]) -> Drawing:
     panels = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     edges = (edges_of(places_of(across)), edges_of(places_of(up)))
     for axes, (name, runs) in zip(panels.flat, by_name.items(), strict=False):
-        states = np.array([run.state for run in runs]).reshape(len(across.values), -1).T
+        states = np.array([_state(run) for run in runs]).reshape(len(across.values), -1).T
         draw_states(axes, edges, states.tolist())
         axes.set_title(name)
         axes.label_outer()
@@ -146,12 +147,12 @@ def _maps(sweep: Sweep, by_name: Mapping[str, Sequence[SweptRun]]) -> Drawing:
         lowest.xaxis.set_tick_params(labelbottom=True)
     for axes in panels[:, 0]:
         label_values(up, axes.yaxis)
-    state_legend(drawing, {run.state for runs in by_name.values() for run in runs})
+    state_legend(drawing, {_state(run) for runs in by_name.values() for run in runs})
     return drawing
 
 
-def _number(value: Any) -> float:
-    return np.nan if value is None else float(value)
+def _state(run: Entry) -> str:
+    return run['verdict']['state']
 
 
 def _range(engaged: np.ndarray, every: np.ndarray) -> tuple[float, float]:

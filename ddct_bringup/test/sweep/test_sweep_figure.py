@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex
 from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
-from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep import OVER, Sweep
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
@@ -27,7 +27,7 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
         for state, value in runs
     ]
     places = sweep.points * len(controllers)
-    swept = [SweptRun(place, entry) for place, entry in zip(places, entries, strict=True)]
+    swept = [{OVER: place, **entry} for place, entry in zip(places, entries, strict=True)]
     with chart_style():
         return sweep_figure(sweep, swept, TIME)
 
