@@ -10,7 +10,7 @@ from ddct_plant.linear.lti import StateSpace, discretise_zoh
 TIME_STEP_S = 0.001
 """Between the points at which a continuous loop is evaluated, each of them exact."""
 _BLOCK = 128
-"""Points that are computed at once: python-control takes one after another, 10 to 80 times as long."""
+"""Points computed at once; python-control takes one after another, 10 to 80 times as long."""
 
 
 def step_response(
