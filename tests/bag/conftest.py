@@ -13,7 +13,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.graph.topics import RunKind, all_topics, recorded_topics
 
-RUN_INFO = {'load': [('version', '1.0')], 'engine': [('version', '1.0'), ('seed', '0')]}
+RUN_INFO = {'load': {'version': '1.0'}, 'engine': {'version': '1.0', 'seed': '0'}}
 
 
 def facts(steps, **changes):

@@ -100,7 +100,7 @@ def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
 
     run = _made_up_run()
     facts = {**FACTS, 'clutch': 'stick_slip'}
-    write_trajectory(run, tmp_path, 'made-up', facts, {'controller': [('two_input', 'true')]})
+    write_trajectory(run, tmp_path, 'made-up', facts, {'controller': {'two_input': 'true'}})
     bag = read_messages(tmp_path)
     drawn = {
         (panel, series['label']): series['value']
@@ -141,7 +141,7 @@ def test_no_panel_is_empty_in_the_bag_of_a_two_input_controller(tmp_path: Path) 
     two_input = Trajectory(
         {**trajectory.signals, 'engine_torque_request': trajectory.engine_torque}
     )
-    run_info = {'controller': [('controller', 'made-up'), ('two_input', 'true')]}
+    run_info = {'controller': {'controller': 'made-up', 'two_input': 'true'}}
     write_trajectory(two_input, tmp_path, 'made-up', FACTS, run_info)
     bag = read_messages(tmp_path)
     assert '/engine/torque_request' in bag

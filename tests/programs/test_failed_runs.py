@@ -27,7 +27,7 @@ def ended_early(run: RunPlan, folder: Path) -> None:
     half = plan(run.name, 'headless', duration_s=SHORT_S / 2.0)
     trajectory = run_headless(half.settings, half.controller)
     data = custom_data(run.settings, run.name, run.steps)
-    write_trajectory(trajectory, folder, run.name, data, {'load': (('version', '0.1.0'),)})
+    write_trajectory(trajectory, folder, run.name, data, {'load': {'version': '0.1.0'}})
 
 
 def failed(run: RunPlan, folder: Path) -> None:

@@ -154,7 +154,7 @@ def test_a_run_that_ended_early_is_marked(demo: Path, tmp_path: Path) -> None:
         tmp_path / 'pi',
         'pi',
         custom_data(whole.settings, 'pi', whole.steps),
-        {'load': (('version', '0.1.0'),)},
+        {'load': {'version': '0.1.0'}},
     )
     out = tmp_path / 'report.html'
     assert main([str(tmp_path / 'pi'), str(demo / 'ls8'), '--out', str(out)]) == 1

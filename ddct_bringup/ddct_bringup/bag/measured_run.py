@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.reader import Recording, read_bag
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RealtimeFacts, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OptionGroup, option, require_known

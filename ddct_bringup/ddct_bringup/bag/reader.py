@@ -10,9 +10,13 @@ from typing import Any
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.file.records import BagRecords, read_records
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts
-from ddct_bringup.bag.run_info import RunInfoOfNodes, note_run_info
+from ddct_bringup.bag.run_facts import (
+    MEASURED,
+    RealtimeFacts,
+    RunFacts,
+    RunInfoOfNodes,
+    note_run_info,
+)
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError

@@ -1,14 +1,21 @@
-"""What a recording says about its run, kept as text in the bag's custom data."""
+"""What a recording says about its run: facts as text, the nodes' own words, real-time counts."""
 
 import json
-from collections.abc import Container, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_text import parse_json
-from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_TOPICS, RunKind
+from ddct_plant.graph.topics import (
+    ENGINE_REQUEST,
+    SAFE_STATE,
+    SENSED_TOPICS,
+    SINCE,
+    TICKS_STATUS,
+    RunKind,
+)
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names: they go into tables, labels and names of files."""
@@ -16,9 +23,13 @@ _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 _LARGEST = 2.0**31
 """Of any number, in its unit; the largest seed is one less."""
 
-
 MEASURED = 'measured'
 """Mode of the log of another tool, and what stands where it tells no fact."""
+
+RunInfoOfNodes = dict[str, Mapping[str, str]]
+"""Per node name what it says of itself on `run_info`."""
+
+_CONTROLLER_NODE = 'controller'
 
 
 @dataclass(frozen=True)
@@ -70,16 +81,16 @@ class RunFacts:
     def to_custom_data(self) -> dict[str, str]:
         """Return the facts as text; numbers as JSON, which gives them back to the last bit."""
         return {
-            field.name: value if isinstance(value, str) else json.dumps(value)
-            for field in fields(self)
-            for value in [getattr(self, field.name)]
+            each.name: value if isinstance(value, str) else json.dumps(value)
+            for each in fields(self)
+            for value in [getattr(self, each.name)]
         }
 
     @classmethod
     def from_custom_data(cls, custom_data: Mapping[str, str]) -> 'RunFacts':
         """Return the facts; raise DdctError that names a missing or unusable one."""
         values: dict[str, Any] = {}
-        for name in (field.name for field in fields(cls)):
+        for name in (each.name for each in fields(cls)):
             if name not in custom_data:
                 raise DdctError(f'no {name} in the custom data: not a recording of this project')
             text = custom_data[name]
@@ -101,3 +112,61 @@ def _parsed(name: str, text: str) -> Any:
             f'{name} is {text!r} in the custom data: not a recording of this project'
         ) from error
     return value
+
+
+@dataclass
+class RealtimeFacts:
+    """What a real-time run says on `/diagnostics`: the driveline's last counts, safe states."""
+
+    steps: int = 0
+    """Step at which the driveline counted."""
+    missed_steps: int = 0
+    resends: int = 0
+    late_messages: int = 0
+    worst_lateness_us: float | None = None
+    """How much too late the driveline took a step at most; None in lock-step."""
+    safe_states: dict[str, int] = field(default_factory=dict)
+    """Per node the stamp in ns since when it is in its safe state."""
+
+    def hear(self, name: str, pairs: Mapping[str, str]) -> bool:
+        """Take one status; say whether it was one of ours."""
+        try:
+            if name.endswith(SAFE_STATE):
+                self.safe_states[name.removesuffix(SAFE_STATE)] = int(pairs[SINCE])
+                return True
+            if name != TICKS_STATUS:
+                return False
+            for count in ('steps', 'missed_steps', 'resends', 'late_messages'):
+                setattr(self, count, int(pairs[count]))
+            if 'worst_tick_lateness_us' in pairs:
+                self.worst_lateness_us = float(pairs['worst_tick_lateness_us'])
+        except (KeyError, ValueError):
+            return False
+        return True
+
+
+def note_run_info(said: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
+    """
+    Add what `node` says on `run_info`.
+
+    Raise DdctError when a node of this name has said another thing.
+    """
+    before = said.setdefault(node, pairs)
+    if pairs == before:
+        return
+    key = next(key for key in (*before, *pairs) if before.get(key) != pairs.get(key))
+    raise DdctError(
+        f'run_info of node {node} came twice, with {key} {before.get(key, "missing")} and '
+        f'{pairs.get(key, "missing")}: two nodes had this name, record the run again with one of '
+        'them, or in another ROS_DOMAIN_ID'
+    )
+
+
+def run_info_order(nodes: Iterable[str]) -> list[str]:
+    """
+    Return the names of the nodes sorted, `controller` last.
+
+    Viewers such as Foxglove keep only the last message of a topic when they are opened or moved
+    in time; the controller's is the one that says which controller runs, and with which gains.
+    """
+    return sorted(nodes, key=lambda node: (node == _CONTROLLER_NODE, node))

@@ -1,18 +1,25 @@
-"""Write a trajectory as the bag that the graph's recorder would have left of the same run."""
+"""
+Write a trajectory as the bag that the graph's recorder would have left of the same run.
 
-from collections.abc import Mapping, Sequence
+Without ROS: messages are made and serialised by the MCAP library, from their definitions.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
+from typing import Any
 
-from ddct_bringup.bag.file.plain_message import plain_class, serialiser
-from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.bag.run_info import run_info_order
+from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
+
+from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_bringup.bag.run_facts import RunFacts, run_info_order
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.topics import RUN_INFO, recorded_topics
 
-RunInfo = Mapping[str, Sequence[tuple[str, str]]]
-"""Per node name the (key, value) pairs that it latches on `run_info`."""
+_ZEROS = b'\x00\x01' + bytes(510)
+"""More than any of the types needs: zeros decode as zeros, empty texts and empty lists."""
 
 
 def write_trajectory(
@@ -20,7 +27,7 @@ def write_trajectory(
     folder: Path,
     name: str,
     custom_data: Mapping[str, str],
-    run_info: RunInfo,
+    run_info: Mapping[str, Mapping[str, str]],
 ) -> Path:
     """
     Write `<folder>/<name>_0.mcap` and `metadata.yaml`, and return the path of the former.
@@ -34,7 +41,7 @@ def write_trajectory(
     with BagWriter(folder, name, topics, custom_data) as bag:
         write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)
         for node in run_info_order(run_info):
-            message = write_info(START_NS, run_info[node], name=node)
+            message = write_info(START_NS, run_info[node].items(), name=node)
             bag.write(RUN_INFO.name, START_NS, serialise_info(message))
         writers = [
             (topic, topic.writer(plain_class), serialiser(topic.type), topic.signals_in(run))
@@ -47,3 +54,23 @@ def write_trajectory(
                 values = (trajectory.signals[signal.name][k] for signal in signals)
                 bag.write(topic.name, stamp, serialise(write(stamp, *values)))
     return bag.path
+
+
+@cache
+def plain_class(type_name: str) -> Callable[..., Any]:
+    """Return what makes messages of a type, as its ROS class does: `new(field=value)`."""
+    decode = generate_dynamic(type_name, load_definition(type_name).schema_text)[type_name]
+
+    def new(**values: Any) -> Any:
+        message = decode(_ZEROS)
+        for name, value in values.items():
+            setattr(message, name, value)
+        return message
+
+    return new
+
+
+@cache
+def serialiser(type_name: str) -> Callable[[Any], bytes]:
+    """Return what turns a message of a type into CDR, the same bytes as ROS's own."""
+    return serialize_dynamic(type_name, load_definition(type_name).schema_text)[type_name]

@@ -7,7 +7,7 @@ from typing import Any
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
-from ddct_bringup.bag.run_info import run_info_order
+from ddct_bringup.bag.run_facts import run_info_order
 from ddct_bringup.bag.wire import stamp_of_cdr
 from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import HEARS_ALL, VIEWER_CAME

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 
-from ddct_bringup.bag.run_info import RunInfoOfNodes, note_run_info, run_info_order
+from ddct_bringup.bag.run_facts import RunInfoOfNodes, note_run_info, run_info_order
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.topics import RUN_INFO

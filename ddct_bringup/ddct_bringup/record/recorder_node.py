@@ -10,7 +10,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.wire import stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.processes.graph_nodes import NODE_NAMES

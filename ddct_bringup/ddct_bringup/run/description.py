@@ -1,6 +1,6 @@
 """What a run says of itself in its bag, the same from every process layout."""
 
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import RunFacts, RunInfoOfNodes
 from ddct_bringup.run.source_commit import source_commit
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
@@ -11,9 +11,6 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.ticks.tick_owner import driveline_info
-
-RunInfo = dict[str, tuple[tuple[str, str], ...]]
-"""Per node name the (key, value) pairs that it latches on `run_info`."""
 
 
 def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
@@ -45,7 +42,9 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
     }
 
 
-def run_info_of(settings: RunSettings, name: str, controller: Controller, steps: int) -> RunInfo:
+def run_info_of(
+    settings: RunSettings, name: str, controller: Controller, steps: int
+) -> RunInfoOfNodes:
     """Return what the nodes of a graph with these settings say on `run_info`."""
     extra: dict[str, dict[str, str]] = {
         'engine': engine_info(controller.commands_engine),
@@ -57,4 +56,4 @@ def run_info_of(settings: RunSettings, name: str, controller: Controller, steps:
         'controller': controller.info(name),
         'recorder': {},
     }
-    return {node: run_info_pairs(settings, pairs) for node, pairs in extra.items()}
+    return {node: dict(run_info_pairs(settings, pairs)) for node, pairs in extra.items()}

@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.bag.reader import Recording
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
@@ -147,9 +147,9 @@ def _execute_single_process(
 
 def _execute_headless(plan: RunPlan, folder: Path) -> None:
     recording, timing = simulate(plan)
-    data = recording.custom_data
-    run_info = {node: tuple(pairs.items()) for node, pairs in recording.run_info.items()}
-    write_trajectory(recording.trajectory, folder, plan.name, data, run_info)
+    write_trajectory(
+        recording.trajectory, folder, plan.name, recording.custom_data, recording.run_info
+    )
     timing.write(folder)
 
 
@@ -162,11 +162,10 @@ def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
     controller = make_controller(plan.controller, plan.settings)
     timing = RunTiming()
     trajectory = run_headless(plan.settings, controller, timing)
-    run_info = run_info_of(plan.settings, plan.name, controller, plan.steps)
     recording = replace(
         in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),
-        run_info={node: dict(pairs) for node, pairs in run_info.items()},
+        run_info=run_info_of(plan.settings, plan.name, controller, plan.steps),
     )
     return recording, timing
 

@@ -13,7 +13,7 @@ from ddct_bringup.bag.file.message_definitions import (
     load_definition,
     message_types,
 )
-from ddct_bringup.bag.file.plain_message import plain_class
+from ddct_bringup.bag.trajectory_bag import plain_class
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.topics import TOPICS
 
@@ -69,7 +69,7 @@ def test_every_type_on_the_graph_is_defined_and_no_other():
 def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
     serialization = pytest.importorskip('rclpy.serialization', reason='ROS is not installed')
     from ddct_bringup.bag.file.cdr import CdrNormaliser
-    from ddct_bringup.bag.file.plain_message import serialiser
+    from ddct_bringup.bag.trajectory_bag import serialiser
     from ddct_plant.graph.message_kinds import ros_class
 
     clean = CdrNormaliser(load_definition(type_name)).normalise
