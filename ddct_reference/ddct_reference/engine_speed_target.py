@@ -4,7 +4,7 @@ import math
 from collections import deque
 
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.references import EngineSpeedReference
 from ddct_reference.slip_reference import SlipReference
 
 SHAFT_RATE_STEPS = 10
@@ -64,7 +64,7 @@ class EngineSpeedTarget(SlipReference):
     def _led_to(self, step: int, before: int, speed: float) -> tuple[int, float]:
         """Return `step` and w* there, of w* at the step `before`."""
         most = self._slope * PERIOD_S * (step - before)
-        change = self._target.speed(time_of_step(step)) - speed
+        change = self._target.at(time_of_step(step)) - speed
         return step, speed + min(max(change, -most), most)
 
     def _ahead(self, step: int, slip_speed: float, shaft_speed: float) -> list[float]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
+from ddct_plant.base.profile import Profile
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.models.engine_limits import EngineLimits, LimitedEngine
 
@@ -14,7 +15,7 @@ MOST_AUTHORITY = 1e6
 
 
 @dataclass(frozen=True)
-class TorqueProfile(OptionGroup, prefix='engine.'):
+class TorqueProfile(Profile, prefix='engine.'):
     """Engine torque over scenario time, linear between its points and constant outside them."""
 
     time_s: tuple[float, ...] = option(
@@ -34,11 +35,6 @@ class TorqueProfile(OptionGroup, prefix='engine.'):
         super().__post_init__()
         if not self.time_s:
             raise ParameterError('engine.time_s is empty: give at least one point')
-        if len(self.time_s) != len(self.torque_n_m):
-            raise ParameterError(
-                f'engine has {len(self.time_s)} times and {len(self.torque_n_m)} torques: '
-                'give one torque for each time'
-            )
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ from ddct_plant.models.load import LoadParameters, SlopeProfile
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
 from ddct_plant.scenario.closing import ClosingParameters
-from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
-from ddct_plant.scenario.slip_profile import SlipProfile
+from ddct_plant.scenario.references import EngineSpeedReference, SlipProfile
 from ddct_plant.sensors.parameters import SensorParameters
 
 LONGEST_S = 3600.0

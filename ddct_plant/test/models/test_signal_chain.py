@@ -29,7 +29,7 @@ def test_engine_follows_its_profile_and_holds_its_ends():
     ('times', 'torques', 'named'),
     [
         ((0.0, 0.0), (1.0, 2.0), 'engine.time_s'),
-        ((0.0, 1.0), (1.0,), '2 times and 1 torques'),
+        ((0.0, 1.0), (1.0,), 'engine.torque_n_m has 1 values for the 2 of'),
         ((0.0,), (float('nan'),), r'engine.torque_n_m\[0\] is nan'),
         ((0.0,), (-1.0,), r'engine.torque_n_m\[0\]'),
         ((), (), 'engine.time_s is empty'),

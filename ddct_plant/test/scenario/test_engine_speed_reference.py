@@ -3,14 +3,14 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.references import EngineSpeedReference
 
 
 def test_it_is_linear_between_its_points_and_constant_outside():
     reference = EngineSpeedReference((0.5, 1.5), (200.0, 220.0))
     assert reference.given
-    assert [reference.speed(time) for time in (0.0, 1.0, 9.0)] == [200.0, 210.0, 220.0]
+    assert [reference.at(time) for time in (0.0, 1.0, 9.0)] == [200.0, 210.0, 220.0]
 
 
 def test_the_thesis_scenario_gives_none_and_half_a_pedal():
@@ -29,7 +29,7 @@ def test_both_survive_their_yaml(tmp_path):
     path = tmp_path / 'mine.yaml'
     path.write_text(scenario_to_yaml(scenario), encoding='utf-8')
     assert load_scenario(str(path)) == scenario
-    assert scenario.engine_speed_reference.speed(0.9) == pytest.approx(245.25)
+    assert scenario.engine_speed_reference.at(0.9) == pytest.approx(245.25)
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,10 @@ def test_both_survive_their_yaml(tmp_path):
         (['pedal_position=half'], "pedal_position is 'half'"),
         (['engine_speed_reference=200'], 'engine_speed_reference: give keys and values'),
         (['engine_speed_reference.time=[1]'], 'did you mean engine_speed_reference.time_s'),
-        (['engine_speed_reference.time_s=[1.0]'], 'has 1 times and 0 speeds'),
+        (
+            ['engine_speed_reference.time_s=[1.0]'],
+            'engine_speed_reference.speed_rad_s has 0 values for the 1 of',
+        ),
         (['engine_speed_reference.time_s=1.0'], 'engine_speed_reference.time_s is 1.0'),
         (
             [

@@ -3,7 +3,7 @@
 from ddct_controllers.interface import Measurement
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.scenario.engine_speed_reference import EngineSpeedReference
+from ddct_plant.scenario.references import EngineSpeedReference
 
 
 class SpeedPlan:
@@ -34,7 +34,7 @@ class SpeedPlan:
         """
         if self._given.given:
             now, then = (
-                self._given.speed(time_of_step(step))
+                self._given.at(time_of_step(step))
                 for step in (measurement.step, measurement.step + 1)
             )
             return now, (then - now) / PERIOD_S
