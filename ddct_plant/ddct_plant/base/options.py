@@ -128,9 +128,26 @@ class Option:
         return f'{self.meaning}{unit}{limits}{live}'
 
 
-def option(default: Any, meaning: str, unit: str = '', **description: Any) -> Any:
+def option(
+    default: Any, meaning: str, unit: str = '', *, left_out: bool = False, **description: Any
+) -> Any:
     """Return the field of a dataclass for the `Option` that these describe."""
-    return option_field(Option(default, meaning, unit, **description))
+    return option_field(Option(default, meaning, unit, **description), left_out=left_out)
+
+
+def option_field(described: Option, *, left_out: bool = False) -> Any:
+    """Return the field for an option; files and hashes may leave it out while it is off."""
+    metadata = {'option': described, 'left_out': left_out}
+    return dataclasses.field(default=described.default, metadata=metadata)
+
+
+def section(default: 'OptionGroup | None', **marks: bool) -> Any:
+    """
+    Return the field of a dataclass for a group of options.
+
+    Of the marks `left_out` lets files and hashes leave it out while it is the default.
+    """
+    return dataclasses.field(default=default, metadata=marks)
 
 
 def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
@@ -139,11 +156,6 @@ def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
         if isinstance(kind, type) and issubclass(kind, OptionGroup):
             return kind
     return None
-
-
-def option_field(described: Option) -> Any:
-    """Return the field of a dataclass for an option."""
-    return dataclasses.field(default=described.default, metadata={'option': described})
 
 
 def options_of(group: type) -> Options:

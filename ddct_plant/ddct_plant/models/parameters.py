@@ -7,7 +7,7 @@ from typing import Any
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 
 
-def _identified(default: float, meaning: str, unit: str, **limits: float) -> Any:
+def _identified(default: float, meaning: str, unit: str, **limits: Any) -> Any:
     return option(default, meaning, unit, source='`identify`', **(limits or {'above': 0.0}))
 
 

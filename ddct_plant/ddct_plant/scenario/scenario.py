@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError, require_name
-from ddct_plant.base.options import ASSUMED, REQUIRED, Option, OptionGroup, option
+from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option, section
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.clutch_heat import HeatParameters
@@ -34,22 +34,6 @@ GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
 """Ratios of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
 """2.269 times this is the identified total ratio, to 0.03 %."""
-_ADJUSTED = Option(
-    (),
-    'what programs have moved to agree with what was given, in words; they write it',
-    kind=str,
-    many=True,
-)
-
-
-def _left_out(default: OptionGroup) -> Any:
-    """Return a field that files and hashes leave out while it is the default."""
-    return field(default=default, metadata={'left_out': True})
-
-
-def _section(default: OptionGroup) -> Any:
-    """Return a field that only the clutch that sticks heeds; left out while it is the default."""
-    return field(default=default, metadata={'left_out': True, 'stick_slip': True})
 
 
 @dataclass(frozen=True)
@@ -181,17 +165,17 @@ class Scenario(OptionGroup):
     )
     initial: InitialSpeeds = InitialSpeeds()
     reference: ReferenceParameters = ReferenceParameters()
-    slip_reference: SlipProfile = _left_out(SlipProfile())
-    slope: SlopeProfile = _left_out(SlopeProfile())
+    slip_reference: SlipProfile = section(SlipProfile(), left_out=True)
+    slope: SlopeProfile = section(SlopeProfile(), left_out=True)
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
     driveline: DrivelineParameters = DrivelineParameters()
-    actuator: ActuatorParameters = _left_out(ActuatorParameters())
-    friction: FrictionParameters = _section(FrictionParameters())
-    heat: HeatParameters = _section(HeatParameters())
-    brake: BrakeProfile = _section(BrakeProfile())
+    actuator: ActuatorParameters = section(ActuatorParameters(), left_out=True)
+    friction: FrictionParameters = section(FrictionParameters(), left_out=True, stick_slip=True)
+    heat: HeatParameters = section(HeatParameters(), left_out=True, stick_slip=True)
+    brake: BrakeProfile = section(BrakeProfile(), left_out=True, stick_slip=True)
     engine_limits: EngineLimits | None = None
-    closing: ClosingParameters | None = field(default=None, metadata={'stick_slip': True})
+    closing: ClosingParameters | None = section(None, stick_slip=True)
     sensors: SensorParameters | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name, checked by the controller that takes them."""
@@ -203,7 +187,13 @@ class Scenario(OptionGroup):
         at_least=1,
         at_most=len(GEAR_RATIOS),
     )
-    adjusted: tuple[str, ...] = field(default=(), metadata={'option': _ADJUSTED, 'left_out': True})
+    adjusted: tuple[str, ...] = option(
+        (),
+        'what programs have moved to agree with what was given, in words; they write it',
+        kind=str,
+        many=True,
+        left_out=True,
+    )
 
     def __post_init__(self) -> None:
         """Check name, options and score window; raise ParameterError that names a bad one."""

@@ -140,8 +140,8 @@ class WholePlant:
         if self._two_input:
             reply['engine_torque_request'] = engine_request
         if self._sensors is not None and self._estimate is not None:
-            reply |= self._sensors.measure(step, now).signals()
-            reply |= self._estimate.measure(step, engine_torque).signals()
+            reply |= self._sensors.measure(step, now)._asdict()
+            reply |= self._estimate.measure(step, engine_torque)._asdict()
         return reply
 
     @property

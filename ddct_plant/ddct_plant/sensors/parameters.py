@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import Option, OptionGroup, options_of
+from ddct_plant.base.options import OptionGroup, option, options_of, section
 from ddct_plant.base.timebase import steps_in
 
 _MOST = 1e6
@@ -21,51 +21,51 @@ class Errors(NamedTuple):
     bias: float
 
 
-def _off(default: Any, meaning: str, unit: str = '', **description: Any) -> Any:
-    """Return the field of an option that files and hashes leave out while it is off."""
-    described = Option(default, meaning, unit, **description)
-    return dataclasses.field(default=default, metadata={'option': described, 'left_out': True})
-
-
 def _noise(unit: str) -> Any:
     meaning = 'standard deviation of Gaussian noise, each sample by itself'
-    return _off(0.0, meaning, unit, at_least=0.0, at_most=_MOST)
+    return option(0.0, meaning, unit, left_out=True, at_least=0.0, at_most=_MOST)
 
 
 def _quantum(unit: str) -> Any:
     meaning = 'step between two values, to the nearest of which it is rounded; 0: none'
-    return _off(0.0, meaning, unit, at_least=0.0, at_most=_MOST)
+    return option(0.0, meaning, unit, left_out=True, at_least=0.0, at_most=_MOST)
 
 
 def _bias(unit: str) -> Any:
-    return _off(0.0, 'what it always says too much', unit, at_least=-_MOST, at_most=_MOST)
+    meaning = 'what it always says too much'
+    return option(0.0, meaning, unit, left_out=True, at_least=-_MOST, at_most=_MOST)
 
 
 @dataclass(frozen=True)
 class SensorOptions(OptionGroup):
     """What every sensor may have."""
 
-    gain: float = _off(1.0, 'what it says over what is true', above=0.0, at_most=10.0)
-    delay_s: float = _off(
+    gain: float = option(
+        1.0, 'what it says over what is true', left_out=True, above=0.0, at_most=10.0
+    )
+    delay_s: float = option(
         0.0,
         'age of what it says, a multiple of 10 ms; up to then it says its first value',
         's',
         at_least=0.0,
         at_most=10.0,
         whole_periods=True,
+        left_out=True,
     )
-    dropout: float = _off(
+    dropout: float = option(
         0.0,
         'share of samples that are lost, below 1: the last value that came is repeated',
         at_least=0.0,
         at_most=1.0,
+        left_out=True,
     )
-    dropout_burst: float | None = _off(
+    dropout_burst: float | None = option(
         None,
         'mean number of samples that are lost in a row',
         otherwise='1 / (1 - `dropout`): each sample is lost by itself',
         at_least=1.0,
         at_most=1e4,
+        left_out=True,
     )
 
     def __post_init__(self) -> None:
@@ -107,20 +107,22 @@ class SpeedSensor(SensorOptions):
     noise_rad_s: float = _noise('rad/s')
     quantum_rad_s: float = _quantum('rad/s')
     bias_rad_s: float = _bias('rad/s')
-    teeth: int = _off(
+    teeth: int = option(
         0,
         'teeth of an encoder that are counted: speeds then come in steps of '
         '2π / (`teeth` × `count_s`); 0: the speed itself is measured',
         at_least=0,
         at_most=100000,
+        left_out=True,
     )
-    count_s: float = _off(
+    count_s: float = option(
         0.01,
         'how long teeth are counted, a multiple of 10 ms; the speed is the mean over that time',
         's',
         above=0.0,
         at_most=10.0,
         whole_periods=True,
+        left_out=True,
     )
 
     @property
@@ -177,19 +179,15 @@ class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
         return Errors(self.noise_n_m, self.quantum_n_m, self.bias_n_m)
 
 
-def _group(default: OptionGroup) -> Any:
-    return dataclasses.field(default=default, metadata={'left_out': True})
-
-
 @dataclass(frozen=True)
 class SensorParameters(OptionGroup, prefix='sensors.'):
     """The sensors that controller and reference read; each is exact unless more is given."""
 
-    engine_speed: EngineSpeedSensor = _group(EngineSpeedSensor())
-    shaft_speed: ShaftSpeedSensor = _group(ShaftSpeedSensor())
-    wheel_speed: WheelSpeedSensor = _group(WheelSpeedSensor())
-    vehicle_speed: VehicleSpeedSensor = _group(VehicleSpeedSensor())
-    engine_torque: EngineTorqueEstimate = _group(EngineTorqueEstimate())
+    engine_speed: EngineSpeedSensor = section(EngineSpeedSensor(), left_out=True)
+    shaft_speed: ShaftSpeedSensor = section(ShaftSpeedSensor(), left_out=True)
+    wheel_speed: WheelSpeedSensor = section(WheelSpeedSensor(), left_out=True)
+    vehicle_speed: VehicleSpeedSensor = section(VehicleSpeedSensor(), left_out=True)
+    engine_torque: EngineTorqueEstimate = section(EngineTorqueEstimate(), left_out=True)
 
     @property
     def text(self) -> str:

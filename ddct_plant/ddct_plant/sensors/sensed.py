@@ -1,8 +1,7 @@
 """The sensors of a run, and what they say at one step."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.sensors.parameters import SensorParameters
@@ -25,19 +24,8 @@ class Seen(Protocol):
         """V_x in m/s."""
 
 
-class Signals:
-    """Base of what sensors say at a step: the fields are signals of the run."""
-
-    __slots__: tuple[str, ...] = ()
-
-    def signals(self) -> dict[str, Any]:
-        """Return the fields by name."""
-        return {name: getattr(self, name) for name in self.__slots__}
-
-
-@dataclass(frozen=True, slots=True)
-class Sensed(Signals):
-    """What the sensors at the driveline say."""
+class Sensed(NamedTuple):
+    """What the sensors at the driveline say, as signals of the run."""
 
     sensed_joint_speed: list[float]
     """(3,) rad/s: w_m, w_p, w_r."""
@@ -67,9 +55,8 @@ class Sensed(Signals):
         return self.sensed_vehicle_speed
 
 
-@dataclass(frozen=True, slots=True)
-class SensedTorque(Signals):
-    """What the engine says of its torque."""
+class SensedTorque(NamedTuple):
+    """What the engine says of its torque, as signals of the run."""
 
     sensed_engine_torque: float
     """C_m in N m over the coming period."""

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.sensors.draws import gaussian, losses
 from ddct_plant.sensors.parameters import EngineSpeedSensor, EngineTorqueEstimate, SensorOptions
-from ddct_plant.sensors.sensor import Sensor, ShaftSensor, ToothCount
+from ddct_plant.sensors.sensor import Sensor, ShaftSensor, ToothCount, gaussian, losses
 
 Z = 4.5
 """Standard errors that an estimate may be off: by chance once in 150 000 tests."""
