@@ -26,8 +26,7 @@ from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
 from ddct_plant.models.driveline import step_matrix
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.initial import initial_state
-from ddct_plant.scenario.plant import make_load
+from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.settings import RunSettings
 
 GOAL = 3.0

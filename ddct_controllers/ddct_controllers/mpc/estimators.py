@@ -20,7 +20,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
-from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 

@@ -11,8 +11,7 @@ from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
-from ddct_plant.scenario.initial import initial_state
-from ddct_plant.scenario.plant import make_actuator
+from ddct_plant.scenario.plant import initial_state, make_actuator
 
 REQUEST = TORQUE_REQUEST.name
 

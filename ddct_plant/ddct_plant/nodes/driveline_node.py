@@ -33,8 +33,7 @@ from ddct_plant.graph.topics import (
     RunKind,
     Topic,
 )
-from ddct_plant.scenario.initial import initial_state
-from ddct_plant.scenario.plant import driveline_sensors, end_cause, make_driveline
+from ddct_plant.scenario.plant import driveline_sensors, end_cause, initial_state, make_driveline
 from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info

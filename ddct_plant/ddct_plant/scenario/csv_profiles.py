@@ -5,12 +5,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.errors import ParameterError, require_number
-from ddct_plant.base.options import REQUIRED, Option, OptionGroup, close_name, options_of
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import (
+    REQUIRED,
+    Option,
+    OptionGroup,
+    Options,
+    options_of,
+    require_known,
+)
 from ddct_plant.base.profile import TIME, value_name
 from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
-from ddct_plant.files.input_file import MOST_TEXT_BYTES
+from ddct_plant.files.input_file import MOST_TEXT_BYTES, located
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.holding import BrakeProfile
 from ddct_plant.models.load import SlopeProfile
@@ -29,8 +36,15 @@ _FILE = 'csv'
 FACTOR = 'factor'
 """Key of a profile, which is in no scenario that has been loaded."""
 FACTOR_OPTION = Option(1.0, 'by which the values of a profile are multiplied')
-_REQUIRED = (_FILE, 'time', 'value', 'unit')
-_DEFAULTS: Mapping[str, Any] = {'time_unit': 's', 'start_s': 0.0}
+_SOURCE: Options = {
+    _FILE: Option(REQUIRED, 'the file', kind=str),
+    'time': Option(REQUIRED, 'its column of times', kind=str),
+    'value': Option(REQUIRED, 'its column of values', kind=str),
+    'unit': Option(REQUIRED, 'unit of the values', kind=str),
+    'time_unit': Option('s', 'unit of the times'),
+    'start_s': Option(0.0, "the file's time at scenario time 0", 's'),
+}
+"""What a section says of its file."""
 
 
 def with_points(
@@ -79,29 +93,23 @@ def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> 
     if f'{name}.{_FILE}' in given:
         return {key: item for key, item in section.items() if key not in points}
     if any(f'{name}.{key}' in given for key in points):
-        of_file = {*_REQUIRED, *_DEFAULTS}
-        return {key: item for key, item in section.items() if key not in of_file}
+        return {key: item for key, item in section.items() if key not in _SOURCE}
     raise ParameterError(f'{name} has points and {name}.{_FILE}: give one of them')
 
 
 def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
     prefix = group.prefix
-    for key in section:
-        if key not in (*_REQUIRED, *_DEFAULTS):
-            known = close_name(key, (*_REQUIRED, *_DEFAULTS), prefix)
-            raise ParameterError(f'unknown key {prefix}{key} beside {prefix}{_FILE}: {known}')
-    for key in _REQUIRED:
-        if not isinstance(section.get(key), str):
-            raise ParameterError(
-                f'{prefix}{key} is {section.get(key, "missing")!r}: give text, such as '
-                '{csv: pedal.csv, time: t, value: torque, unit: N m}'
-            )
-    spec = {**_DEFAULTS, **section}
-    require_number(f'{prefix}start_s', spec['start_s'], unit='s')
-    try:
+    require_known(section, _SOURCE, prefix=prefix)
+    spec = {key: section.get(key, described.default) for key, described in _SOURCE.items()}
+    if missing := [f'{prefix}{key}' for key, value in spec.items() if value is REQUIRED]:
+        raise ParameterError(
+            f'{prefix}{_FILE} needs {", ".join(missing)} beside it: give all that tells of the '
+            'file, such as {csv: pedal.csv, time: t, value: torque, unit: N m}'
+        )
+    for key, described in _SOURCE.items():
+        described.checked(f'{prefix}{key}', spec[key])
+    with located(f'{prefix}{_FILE}'):
         return _read(spec, group, base)
-    except ParameterError as error:
-        raise ParameterError(f'{prefix}{_FILE}: {error}') from error
 
 
 def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:

@@ -1,10 +1,10 @@
 """What a scenario has changed of the packaged one that it is called after."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from ddct_plant.scenario.file import load_scenario, scenario_content, scenario_names
+from ddct_plant.scenario.file import flat, load_scenario, scenario_content, scenario_names
 from ddct_plant.scenario.scenario import Scenario
 
 SHOWN = 6
@@ -42,22 +42,12 @@ def scenario_title(name: str, changes: Sequence[str]) -> str:
 
 def values_by_key(scenario: Scenario) -> dict[str, Any]:
     """Return the values of a scenario by their dotted keys."""
-    return _values(scenario_content(scenario))
+    return flat(scenario_content(scenario))
 
 
 @cache
 def _packaged_values(name: str) -> dict[str, Any]:
     return values_by_key(load_scenario(name))
-
-
-def _values(content: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for key, value in content.items():
-        if isinstance(value, Mapping):
-            values |= _values(value, f'{prefix}{key}.')
-        else:
-            values[f'{prefix}{key}'] = value
-    return values
 
 
 def _text(value: Any) -> str:

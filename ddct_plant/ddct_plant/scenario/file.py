@@ -5,6 +5,7 @@ import hashlib
 import importlib.resources
 import json
 from collections.abc import Iterable, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -58,7 +59,7 @@ class ScenarioFile:
         self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
     ) -> Scenario:
         """Return the scenario with overrides, as `load_scenario` tells."""
-        content = _own(self.content)
+        content = deepcopy(dict(self.content))
         start_before = content.get('control_start_s')
         given = (
             overrides.items()
@@ -69,7 +70,7 @@ class ScenarioFile:
         with located(f'scenario {self.name}', _in_file(self.lines, set_keys)):
             content = with_points(content, Path(self.name).parent, set_keys)
             scenario = scenario_from_mapping(content)
-            origins = dict.fromkeys(_leaves(content), FILE) | dict.fromkeys(set_keys, SET)
+            origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
             scenario = consistent(scenario, origins, _number(start_before))
             require_driveline(scenario.driveline, clutch)
             return scenario
@@ -154,13 +155,6 @@ def _read(name_or_file: str) -> tuple[str, str]:
         return user_text(path), path.stem
 
 
-def _own(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content with mappings of its own, which may be changed."""
-    return {
-        key: _own(value) if isinstance(value, Mapping) else value for key, value in content.items()
-    }
-
-
 def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
     """Change one value, or a group of them; return the keys of what was given."""
     *folders, leaf = key.split('.')
@@ -170,15 +164,17 @@ def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
         if not isinstance(target, dict):
             raise ParameterError(f'--set {key}: {folder} holds a value, not keys')
     target[leaf] = value
-    return _leaves(value, key)
+    return list(flat(value, key))
 
 
-def _leaves(content: Any, key: str = '') -> list[str]:
-    """Return the dotted keys of every value within `content`, which stands at `key`."""
+def flat(content: Any, key: str = '') -> dict[str, Any]:
+    """Return every value within `content`, which stands at `key`, by its dotted key."""
     if not isinstance(content, Mapping):
-        return [key]
-    prefix = f'{key}.' if key else ''
-    return [leaf for name, value in content.items() for leaf in _leaves(value, f'{prefix}{name}')]
+        return {key: content}
+    values: dict[str, Any] = {}
+    for name, value in content.items():
+        values |= flat(value, f'{key}.{name}' if key else str(name))
+    return values
 
 
 def _number(value: Any) -> float | None:

@@ -1,18 +1,24 @@
-"""The models of a run, as its settings choose them; nodes and the headless loop take them here."""
+"""
+The models of a run, as its settings choose them, and the state that they start from.
+
+Nodes and the headless loop take them here.
+"""
 
 import math
+from dataclasses import replace
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import STICK_SLIP, LinearClutch
 from ddct_plant.models.clutch_heat import ClutchHeat
-from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.driveline import OPEN, Driveline, InitialState
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.friction_clutch import FrictionClutch
 from ddct_plant.models.holding import HoldingTorque, air_and_slope
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.models.stick_slip_clutch import StickSlipClutch
 from ddct_plant.models.stick_slip_driveline import (
     StickSlipDriveline,
@@ -131,3 +137,75 @@ def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
     """Return what estimates C_m, None where control is told the truth."""
     sensors = settings.scenario.sensors
     return TorqueEstimate(sensors, settings.seed) if sensors else None
+
+
+def initial_state(settings: RunSettings) -> InitialState:
+    """Return the state at t_0 of a run with these settings."""
+    scenario = settings.scenario
+    driveline = scenario.driveline
+    wheel_speed = scenario.initial.shaft_speed_rad_s / driveline.total_ratio
+    load_torque = RoadLoad(scenario.load, scenario.vehicle, scenario.slope).torque(
+        wheel_speed * scenario.vehicle.wheel_radius_m
+    )
+    engine_speed = scenario.initial.engine_speed_rad_s
+    engine_torque = make_engine(settings).torque(0, speed=engine_speed)
+    static = StaticTorque(driveline, scenario.equilibrium)
+    shaft_speed = scenario.initial.shaft_speed_rad_s
+    static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
+    asked = settings.detailed and scenario.initial.clutch_phase != OPEN
+    torque_request = max(static_torque, 0.0) if asked else 0.0
+    clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
+    initial = InitialState(
+        engine_speed=engine_speed,
+        shaft_speed=shaft_speed,
+        wheel_speed=wheel_speed,
+        twist=static.twist(clutch_torque, load_torque, shaft_speed),
+        engine_torque=engine_torque,
+        load_torque=load_torque,
+        torque_request=torque_request,
+        clutch_torque=clutch_torque,
+    )
+    return _with_friction(settings, initial) if settings.stick_slip else initial
+
+
+def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
+    """
+    Return the start of a run whose clutch and wheels stick, from that of the linear clutch.
+
+    Plates that slip transmit the kinetic capacity of the first request against their slip. Plates
+    of one speed are locked, and carry the torque that keeps them so, as far as the static
+    capacity goes. So are wheels at rest, with the shaft between them and the clutch at rest too.
+    """
+    scenario = settings.scenario
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    load_torque = make_load(settings).torque(linear.wheel_speed * scenario.vehicle.wheel_radius_m)
+    holding = holding_torque(settings).capacity(0.0)
+    resisting = load_torque + holding
+    slip = linear.engine_speed - linear.shaft_speed
+    capacity = stick_slip_clutch(settings).reply(0, [linear.torque_request], slip, 0.0)
+    (kinetic,), (static_capacity,) = capacity.kinetic, capacity.static
+    if slip:
+        clutch_torque = kinetic if slip > 0.0 else -kinetic
+    else:
+        carried = static.torque(
+            linear.engine_torque, resisting, linear.engine_speed, linear.shaft_speed
+        )
+        clutch_torque = _within(carried, static_capacity)
+    wheel_torque = holding
+    twist = static.twist(clutch_torque, resisting, linear.shaft_speed)
+    if linear.wheel_speed == 0.0:
+        shaft_torque = scenario.driveline.total_ratio * clutch_torque
+        wheel_torque = _within(shaft_torque - load_torque, holding)
+        twist = shaft_torque / scenario.driveline.halfshaft_stiffness
+    return replace(
+        linear,
+        twist=twist,
+        load_torque=load_torque,
+        clutch_torque=clutch_torque,
+        wheel_torque=wheel_torque,
+        clutch_open=not static_capacity,
+    )
+
+
+def _within(torque: float, most: float) -> float:
+    return min(max(torque, -most), most)

@@ -110,12 +110,19 @@ def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, com
     ('spec', 'complaint'),
     [
         ('{csv: none.csv, time: t, value: torque, unit: N m}', 'No such file'),
-        ('{csv: data/pedal.csv, time: t, value: torque}', "engine.unit is 'missing'"),
-        (SPEC[8:-2] + ', colour: red}', 'unknown key engine.colour beside engine.csv'),
+        (
+            '{csv: data/pedal.csv, time: t, value: torque}',
+            'engine.csv needs engine.unit beside it',
+        ),
+        (
+            SPEC[8:-2] + ', colour: red}',
+            'unknown key engine.colour: known: csv, time, value, unit',
+        ),
         (SPEC[8:-2].replace('N m', 'rpm') + '}', "unit 'rpm': choose from N m, Nm, kN m"),
         (SPEC[8:-2] + ', time_unit: h}', "unit 'h': choose from s, ms"),
         (SPEC[8:-2] + ', time_s: [0.0]}', 'engine has points and engine.csv: give one'),
         (SPEC[8:-2] + ', start_s: soon}', "engine.start_s is 'soon': give a number s"),
+        (SPEC[8:-2].replace(': t,', ': 3,') + '}', 'engine.time is 3: give text'),
     ],
 )
 def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, complaint):
@@ -123,6 +130,13 @@ def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, complai
         load(folder, f'{HEAD}engine: {spec}\n')
     assert complaint in str(raised.value)
     assert 'mine.yaml: line 4: ' in str(raised.value)
+
+
+def test_a_file_that_is_set_without_what_tells_of_it_says_what_it_needs():
+    with pytest.raises(ParameterError) as raised:
+        load_scenario('thesis', ['engine.csv=pedal.csv'])
+    needed = 'engine.csv needs engine.time, engine.value, engine.unit beside it: give all'
+    assert needed in str(raised.value)
 
 
 def test_a_file_with_too_many_rows_is_refused_and_the_most_survive_their_yaml(folder):

@@ -12,7 +12,7 @@ from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.printed import ACTUATOR
-from ddct_plant.scenario.initial import initial_state
+from ddct_plant.scenario.plant import initial_state
 
 
 def _time_constant_s(factor: Factor) -> float:
