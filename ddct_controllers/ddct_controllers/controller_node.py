@@ -89,7 +89,7 @@ class ControllerNode(FollowerNode):
 
     def close(self) -> None:
         """Publish the update times that no batch has carried yet."""
-        if self._update_times_us and self.join.last_step is not None:
+        if self._update_times_us:
             self._publish_timing(self.join.last_step)
 
     def _read_reference(self, message: Any) -> tuple[list[float], list[float]]:

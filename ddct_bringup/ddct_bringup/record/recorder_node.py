@@ -23,7 +23,6 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
-from ddct_plant.graph.reports import Refusals
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
@@ -91,8 +90,8 @@ class RecorderNode(GraphNode):
         self._held: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
-        limit = None if self.settings.lockstep else StampLimit(tick_names(), from_t0=True)
-        self._refusals = Refusals(self, limit)
+        if not self.settings.lockstep:
+            self.refusals.limit = StampLimit(tick_names(), from_t0=True)
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
@@ -121,7 +120,7 @@ class RecorderNode(GraphNode):
             self._timing.late_messages = facts.late_messages + self._buffer.dropped
             self._timing.worst_lateness_us = facts.worst_lateness_us
             self._timing.safe_states = facts.safe_states
-            self._timing.refused_messages = self._refusals.count
+            self._timing.refused_messages = self.refusals.count
             self._timing.write(self._folder)
             if self._second_node is not None:
                 raise self._second_node
@@ -149,7 +148,7 @@ class RecorderNode(GraphNode):
 
     def _on_tick(self, topic: Topic, cdr: bytes) -> None:
         stamp = stamp_of_cdr(cdr)
-        if not self._refusals.admits(topic.name, stamp):
+        if not self.admits(topic.name, stamp):
             return
         try:
             ready = self._buffer.offer(topic.name, stamp, cdr)

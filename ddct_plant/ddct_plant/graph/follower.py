@@ -2,13 +2,12 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import GraphNode, Output
-from ddct_plant.graph.reports import Refusals
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.topics import CLOCK, Topic, tick_names
 from ddct_plant.ticks.join import StampJoin, Verdict
@@ -38,16 +37,16 @@ class FollowerNode(GraphNode):
         """
         lockstep = self.settings.lockstep
         self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
-        self.limit = None if lockstep else StampLimit(tick_names())
-        self.refusals = Refusals(self, self.limit)
+        if not lockstep:
+            self.refusals.limit = StampLimit(tick_names())
         self._reply: Reply = ()
         self._answered: Any = None
         self._disputed = False
         for topic in inputs:
-            read = (readers or {}).get(topic, topic.read)
-            self.listen(topic, self._receiver(topic.name, read))
+            read = (readers or {}).get(topic)
+            self.hear(topic, partial(self._receive, topic.name), read)
         if not lockstep and not any(topic.is_tick for topic in inputs):
-            self.listen(CLOCK, self._on_clock)
+            self.hear(CLOCK, lambda stamp, _: self.on_tick(step_of_stamp(stamp), stamp))
 
     @abstractmethod
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
@@ -56,40 +55,18 @@ class FollowerNode(GraphNode):
     def on_tick(self, step: int, stamp: int) -> None:
         """Take a tick in real time, after whatever else it stands for; may come again."""
 
-    def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; a refused message counts as missing."""
-        return self.refusals.admits(topic, stamp)
-
-    def _receiver(self, topic: str, read: Read) -> Callable[[Any], None]:
-        offer, complete, repeat = self.join.offer, Verdict.COMPLETE, Verdict.REPEAT
-
-        def receive(message: Any) -> None:
-            if self._disputed:
-                return
-            stamp = stamp_ns(message)
-            if self.limit is not None and not self.admits(topic, stamp):
-                return
-            try:
-                values = read(message)
-            except DdctError as error:
-                self.refusals.bad_values(stamp, error)
-                return
-            verdict = offer(topic, stamp, values)
-            if verdict is complete:
-                self._answer(stamp)
+    def _receive(self, topic: str, stamp: int, values: Any) -> None:
+        if self._disputed:
+            return
+        verdict = self.join.offer(topic, stamp, values)
+        if verdict is Verdict.COMPLETE:
+            self._answer(stamp)
+            self.publish_reply()
+        elif verdict is Verdict.REPEAT:
+            if values != self._answered:
+                self._on_second_publisher(topic, stamp)
+            else:
                 self.publish_reply()
-            elif verdict is repeat:
-                if values != self._answered:
-                    self._on_second_publisher(topic, stamp)
-                else:
-                    self.publish_reply()
-
-        return receive
-
-    def _on_clock(self, message: Any) -> None:
-        stamp = stamp_ns(message)
-        if self.admits(CLOCK.name, stamp):
-            self.on_tick(step_of_stamp(stamp), stamp)
 
     def _answer(self, stamp: int) -> None:
         step, inputs = self.join.take()

@@ -1,4 +1,4 @@
-"""Base of every node: settings, run information, and a way to end with a reason."""
+"""Base of every node: settings, run information, what it takes in, and how it ends."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
@@ -10,10 +10,12 @@ from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.graph.topics import RUN_INFO, Topic
+from ddct_plant.ticks.stamp_limit import StampLimit
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 """What every timer goes by: on a ROS clock it would wait for simulated time."""
@@ -41,6 +43,39 @@ class Output:
         self._publisher.publish(self._message)
 
 
+class Refusals:
+    """Count messages that count as missing in real time, as nothing in them can be relied on."""
+
+    def __init__(self, node: Node, *, lockstep: bool) -> None:
+        """Refuse for `node` bad values, and what its limit of stamps says once it has one."""
+        self._node = node
+        self._lockstep = lockstep
+        self.limit: StampLimit | None = None
+        self.count = 0
+
+    def admits(self, topic: str, stamp: int) -> bool:
+        """Say whether a stamp may be true; count and tell where it may not."""
+        reason = self.limit.why_refused(topic, stamp) if self.limit else ''
+        if reason:
+            self._add(reason)
+        return not reason
+
+    def bad_values(self, stamp: int, error: DdctError) -> None:
+        """Refuse a message for its values; raise DdctError in lock-step."""
+        reason = f'at stamp {stamp} ns: {error}'
+        if self._lockstep:
+            raise DdctError(reason) from error
+        self._add(reason)
+
+    def _add(self, reason: str) -> None:
+        self.count += 1
+        self._node.get_logger().warning(
+            f'{reason} (counts as missing; {self.count} so far)',
+            throttle_duration_sec=1.0,
+            throttle_time_source_type=self._node.get_clock(),
+        )
+
+
 class GraphNode(Node):
     """
     A plain node that shares the run's settings and says so on `run_info`.
@@ -55,6 +90,7 @@ class GraphNode(Node):
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
         self.settings = declare_settings(self)
+        self.refusals = Refusals(self, lockstep=self.settings.lockstep)
         self.done = Future()
         """Set when the node has nothing more to do, with the DdctError that ended it, or None."""
         # The same as done.done(), which takes long enough to matter for every message.
@@ -64,6 +100,37 @@ class GraphNode(Node):
         """Latch this node's settings, stamped t_0."""
         pairs = run_info_pairs(self.settings, extra)
         Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=self.get_name()).publish()
+
+    def hear(
+        self,
+        topic: Topic,
+        take: Callable[[int, Any], None],
+        read: Callable[[Any], Any] | None = None,
+    ) -> None:
+        """
+        Call `take(stamp, values)` with every message of a topic that can be relied on.
+
+        Its values are read as the topic says, or by `read`, which raises DdctError for bad ones.
+        In lock-step they end the node; in real time they count as missing.
+        """
+        values_of = read or topic.read
+
+        def receive(message: Any) -> None:
+            stamp = stamp_ns(message)
+            if not self.admits(topic.name, stamp):
+                return
+            try:
+                values = values_of(message)
+            except DdctError as error:
+                self.refusals.bad_values(stamp, error)
+            else:
+                take(stamp, values)
+
+        self.listen(topic, receive)
+
+    def admits(self, topic: str, stamp: int) -> bool:
+        """Say whether a stamp may be true; a refused message counts as missing."""
+        return self.refusals.admits(topic, stamp)
 
     def listen(self, topic: Topic, receive: Callable[[Any], None]) -> None:
         """Call `receive` with every message of a topic of the loop; a DdctError ends the node."""

@@ -1,15 +1,13 @@
 """Node `driveline`: owns time, integrates the stiff states and publishes them at every tick."""
 
-from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
-from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import GraphNode, Output
-from ddct_plant.graph.reports import Refusals, SafeStateReport
+from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_fail_safe_ramp, declare_timeout
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
@@ -36,7 +34,7 @@ from ddct_plant.graph.topics import (
 from ddct_plant.scenario.plant import driveline_sensors, end_cause, initial_state, make_driveline
 from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
-from ddct_plant.ticks.tick_owner import LockstepOwner, Replies, TickPlan, driveline_info
+from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
 """What the driveline integrates, in the order in which it takes them."""
@@ -71,14 +69,17 @@ class DrivelineNode(GraphNode):
         self._sensors = driveline_sensors(self.settings)
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
-        self.refusals = Refusals(self)
-        self._create_publishers()
-        for topic in self._torques:
-            self.listen(topic, self._receiver(topic))
-        if self.plan.require_recorder:
-            self.listen(RECORDER_ACK, self._receiver(RECORDER_ACK))
-        self.publish_run_info(driveline_info(self.plan.steps, self.plan.clutch))
-        self._start_timers()
+        self._outputs = [
+            (Output(self, topic), topic.signals, topic in SENSED)
+            for topic in TICK
+            if topic.in_run(self._run)
+        ]
+        self._diagnostics = Output(self, DIAGNOSTICS)
+        self._safe_state = SafeStateReport(self)
+        self._listen_to_replies()
+        self.publish_run_info(driveline_info(self.plan.steps, self.plan.fail_safe))
+        self._start_timer = self.every(0.0, self._begin)
+        self.every(WATCH_PERIOD_S, self.owner.watch)
 
     def close(self) -> None:
         """Stop looking at the graph."""
@@ -97,16 +98,14 @@ class DrivelineNode(GraphNode):
                 whole_periods=True,
             ),
         )
+        recorder = declare(
+            self, 'require_recorder', Option(False, 'whether each tick waits for recorder/ack')
+        )
         return TickPlan(
-            Replies(
-                tuple(topic.name for topic in self._torques), CLUTCH_TORQUE.name, RECORDER_ACK.name
-            ),
+            tuple(topic.name for topic in self._torques),
+            CLUTCH_TORQUE.name,
+            RECORDER_ACK.name if recorder else '',
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
-            require_recorder=declare(
-                self,
-                'require_recorder',
-                Option(False, 'whether each tick waits for recorder/ack'),
-            ),
             answer_timeout_s=declare(
                 self,
                 'answer_timeout_s',
@@ -114,7 +113,7 @@ class DrivelineNode(GraphNode):
                     60.0, 'wall time to wait for a reply', 's', at_least=0.1, at_most=LONGEST_S
                 ),
             ),
-            clutch=FailSafeSettings(
+            fail_safe=FailSafeSettings(
                 declare_timeout(
                     self,
                     'clutch_timeout_s',
@@ -126,60 +125,30 @@ class DrivelineNode(GraphNode):
             ),
         )
 
-    def _make_owner(self) -> LockstepOwner | RealtimeOwner:
+    def _make_owner(self) -> TickOwner:
+        parts = (self.driveline, self.plan, self._publish_tick, self._sole_publishers.finish)
         if self.settings.lockstep:
-            return LockstepOwner(
-                self.driveline,
-                self.plan,
-                self._publish_tick,
-                self._sole_publishers.finish,
-                over=self._over_early,
-            )
+            return TickOwner(*parts, over=self._over_early)
         owner = RealtimeOwner(
-            self.driveline,
-            self.plan,
-            self._publish_tick,
-            self._sole_publishers.finish,
-            over=self._over_early,
-            on_started=lambda: self._start_ticks(owner),
+            *parts, over=self._over_early, on_started=lambda: self.every(PERIOD_S, owner.tick)
         )
         return owner
 
     def _over_early(self) -> bool:
         return bool(end_cause(self.settings.scenario, self.driveline.engine_speed))
 
-    def _start_ticks(self, owner: RealtimeOwner) -> None:
-        self.every(PERIOD_S, owner.tick)
-
-    def _create_publishers(self) -> None:
-        self._outputs = [
-            (Output(self, topic), topic.signals, topic in SENSED)
-            for topic in TICK
-            if topic.in_run(self._run)
-        ]
-        self._diagnostics = Output(self, DIAGNOSTICS)
-        self._safe_state = SafeStateReport(self)
-
-    def _receiver(self, topic: Topic) -> Callable[[Any], None]:
+    def _listen_to_replies(self) -> None:
         rows = len(CLUTCH_TORQUE.signals_in(self._run))
-        options = {'joints': rows} if topic is CLUTCH_TORQUE else {}
+        for topic in self._torques:
+            read = partial(topic.read, joints=rows) if topic is CLUTCH_TORQUE else None
+            self.hear(topic, partial(self._receive, topic), read)
+        if self.plan.recorder:
+            self.hear(RECORDER_ACK, partial(self._receive, RECORDER_ACK))
 
-        def receive(message: Any) -> None:
-            if topic is CLUTCH_TORQUE and self._sole_publishers.found:
-                return  # whose torque it is cannot be told: without it the clutch opens
-            stamp = stamp_ns(message)
-            try:
-                reply = topic.read(message, **options)
-            except DdctError as error:
-                self.refusals.bad_values(stamp, error)
-                return
+    def _receive(self, topic: Topic, stamp: int, reply: Any) -> None:
+        # Of two publishers' clutch torques none counts, and without any the clutch opens.
+        if topic is not CLUTCH_TORQUE or not self._sole_publishers.found:
             self.owner.offer(topic.name, stamp, reply)
-
-        return receive
-
-    def _start_timers(self) -> None:
-        self._start_timer = self.every(0.0, self._begin)
-        self.every(WATCH_PERIOD_S, self.owner.watch)
 
     def _begin(self) -> None:
         self._start_timer.cancel()

@@ -7,7 +7,6 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.fail_safe.guarded import GuardedEngine, engine_info
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.reports import SafeStateReport
 from ddct_plant.graph.settings import declare, declare_request_timeout
@@ -57,7 +56,7 @@ class EngineNode(FollowerNode):
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
         if self._two_input:
-            self.listen(JOINT_STATES, self._publish_demand)
+            self.hear(JOINT_STATES, self._on_tick, self._speed)
             self.follow(JOINT_STATES, ENGINE_REQUEST, readers=readers)
         else:
             self.listen(ENGINE_REQUEST, self._refuse_request)
@@ -93,18 +92,10 @@ class EngineNode(FollowerNode):
         limited = self.settings.scenario.engine_limits is not None
         return JOINT_STATES.read(message)[0] if limited else 0.0
 
-    def _publish_demand(self, message: Any) -> None:
-        stamp = stamp_ns(message)
-        if not self.admits(JOINT_STATES.name, stamp):
-            return
+    def _on_tick(self, stamp: int, speed: float) -> None:
         step = step_of_stamp(stamp)
         self._demand.fill(stamp, self._engine.demand(step)).publish()
         if not self.settings.lockstep:
-            try:
-                speed = self._speed(message)
-            except DdctError as error:
-                self.refusals.bad_values(stamp, error)
-                return
             self._answer_alone(step, stamp, speed)
 
     def _answer_alone(self, step: int, stamp: int, speed: float) -> None:

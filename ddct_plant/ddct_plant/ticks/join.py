@@ -32,19 +32,14 @@ class StampJoin:
 
     The first topic of `topics` is the trigger: only its repetition asks for the last reply, so one
     re-sent tick makes one repeated reply, however many inputs a node has. A gap between the last
-    stamp and a complete one is an error in lock-step; with `allow_gaps` (real time) it is counted
-    in `skipped`. So it is with more than `MOST_WAITING` stamps that wait: with `allow_gaps` the
-    oldest is given up.
+    stamp and a complete one is an error in lock-step, and so are more than `MOST_WAITING` stamps
+    that wait. With `allow_gaps` (real time) the gap is passed over, and the oldest given up.
     """
 
     topics: Sequence[str]
     allow_gaps: bool = False
-    last_step: int | None = None
-    """Step of the last complete join."""
-    skipped: int = 0
-    """Steps that were passed over between the last two complete joins; always 0 in lock-step."""
-    ignored: int = 0
-    """How many messages came late or twice."""
+    last_step: int = -1
+    """Step of the last complete join, -1 before there is one."""
     _waiting: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     def offer(self, topic: str, stamp_ns: int, message: Any) -> Verdict:
@@ -53,11 +48,9 @@ class StampJoin:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
             raise DdctError(f'{topic}: {error}') from error
-        if self.last_step is not None and step <= self.last_step:
-            if step == self.last_step and topic == self.topics[0]:
-                return Verdict.REPEAT
-            self.ignored += 1
-            return Verdict.IGNORE
+        if step <= self.last_step:
+            again = step == self.last_step and topic == self.topics[0]
+            return Verdict.REPEAT if again else Verdict.IGNORE
         inputs = self._waiting.get(step)
         if inputs is None:
             self._make_room(topic, step)
@@ -70,30 +63,27 @@ class StampJoin:
 
     def take(self) -> tuple[int, dict[str, Any]]:
         """Return the step of the last complete join and its messages by topic, once."""
-        assert self.last_step is not None
         return self.last_step, self._waiting.pop(self.last_step)
 
     def _make_room(self, topic: str, step: int) -> None:
         if len(self._waiting) < MOST_WAITING:
             return
         if not self.allow_gaps:
-            due = 0 if self.last_step is None else self.last_step + 1
             raise DdctError(
                 f'{topic}: step {step} came while {len(self._waiting)} others wait for the rest '
-                f'of their inputs and step {due} is due: check what publishes '
+                f'of their inputs and step {self.last_step + 1} is due: check what publishes '
                 f'{" and ".join(self.topics)}'
             )
-        self.ignored += len(self._waiting.pop(min(self._waiting)))
+        del self._waiting[min(self._waiting)]
 
     def _accept(self, step: int) -> None:
-        expected = 0 if self.last_step is None else self.last_step + 1
+        expected = self.last_step + 1
         if step != expected and not self.allow_gaps:
             raise DdctError(
                 f'{self.topics[0]}: step {step} came where step {expected} was due: this node '
                 'missed a part of the run, start the graph again with every node in it'
             )
-        self.skipped = 0 if self.last_step is None else step - expected
         self.last_step = step
         if len(self._waiting) > 1:
             for older in [waiting for waiting in self._waiting if waiting < step]:
-                self.ignored += len(self._waiting.pop(older))
+                del self._waiting[older]

@@ -23,18 +23,17 @@ class RealtimeOwner(TickOwner):
     """
 
     def __init__(
-        self, *arguments: Any, on_started: Callable[[], None] = lambda: None, **options: Any
+        self, *arguments: Any, on_started: Callable[[], object] = lambda: None, **options: Any
     ) -> None:
         """Take what `TickOwner` takes; `on_started` is called when the 10 ms grid begins."""
         super().__init__(*arguments, **options)
         self._on_started = on_started
-        self._replies = self._plan.replies
-        self.missed_replies = dict.fromkeys(self._replies.torques, 0)
+        self.missed_replies = dict.fromkeys(self._plan.torques, 0)
         self.worst_lateness_s = 0.0
         self._held: dict[str, Any] = {}
-        self._silent_since: dict[str, int] = dict.fromkeys(self._replies.torques, 0)
+        self._silent_since: dict[str, int] = dict.fromkeys(self._plan.torques, 0)
         self._held_clutch: list[float] = []
-        self._clutch = FailSafe(self._plan.clutch)
+        self._clutch = FailSafe(self._plan.fail_safe)
         self._started_at: float | None = None
 
     @property
@@ -58,22 +57,18 @@ class RealtimeOwner(TickOwner):
         """Guard the first and the last tick; the ones between never wait."""
         if self._started_at is not None and self.step < self.last_step:
             return
-        waited = self._clock() - self._opened_at
-        last = self._started_at is not None
-        if (
-            last
-            and self.barrier.missing() == [self._replies.recorder]
-            and waited > RECORDER_PATIENCE_S
-        ):
+        waited_s = self._clock() - self._opened_at
+        recorder_alone = self.barrier.missing() == [self._plan.recorder]
+        if self._started_at is not None and recorder_alone and waited_s > RECORDER_PATIENCE_S:
             self._finish(None)
         else:
             super().watch()
 
     def _awaited(self, step: int) -> tuple[str, ...]:
         if step not in (0, self.last_step):
-            return self._replies.torques
+            return self._plan.torques
         awaited = self._plan.topics
-        return tuple(each for each in awaited if each != self._replies.clutch or not self.safe)
+        return tuple(each for each in awaited if each != self._plan.clutch or not self.safe)
 
     def _on_complete(self) -> None:
         if self.step == self.last_step:
@@ -83,7 +78,7 @@ class RealtimeOwner(TickOwner):
             self._on_started()
 
     def _take_step(self) -> None:
-        replies = {topic: self.barrier.get(topic) for topic in self._replies.torques}
+        replies = {topic: self.barrier.replies.get(topic) for topic in self._plan.torques}
         self.missed_steps += any(reply is None for reply in replies.values())
         for topic, reply in replies.items():
             if reply is None:
@@ -91,9 +86,8 @@ class RealtimeOwner(TickOwner):
             else:
                 self._silent_since[topic] = self.step
                 self._held[topic] = reply
-        clutch = self._replies.clutch
-        torques = self._clutch_torques(replies[clutch])
-        self._integrate({**self._held, clutch: torques})
+        clutch = self._plan.clutch
+        self._integrate({**self._held, clutch: self._clutch_torques(replies[clutch])})
 
     def _clutch_torques(self, reply: list[list[float]] | None) -> list[list[float]]:
         """Return the rows of torques in N m of this period: the reply, the last, or a ramp."""

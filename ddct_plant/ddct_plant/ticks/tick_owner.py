@@ -1,7 +1,6 @@
 """The owner of time: when the driveline steps, and on which replies. Knows nothing of ROS."""
 
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,8 +16,8 @@ RESEND_AFTER_S = 0.1
 
 
 @dataclass(frozen=True)
-class Replies:
-    """The topics on which a tick is answered."""
+class TickPlan:
+    """How far a run goes, and on which topics its ticks are answered."""
 
     torques: tuple[str, ...]
     """What the driveline integrates, in the order in which it takes them."""
@@ -26,27 +25,18 @@ class Replies:
     """Which of these has rows of 11 torques: what is transmitted, or kinetic and static capacity;
     each of the others has one number."""
     recorder: str
-
-
-@dataclass(frozen=True)
-class TickPlan:
-    """How far a run goes and what it waits for."""
-
-    replies: Replies
+    """Where the recorder acknowledges a tick; empty where it is not waited for."""
     steps: int
     """N: states run t_0..t_N."""
-    require_recorder: bool
-    """Whether `recorder/ack` is part of the barrier."""
     answer_timeout_s: float
     """Wall time after which an unanswered tick ends the run."""
-    clutch: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
+    fail_safe: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
     """Real time: when and how fast a clutch torque that stays away is taken to zero."""
 
     @property
     def topics(self) -> tuple[str, ...]:
         """The replies that a whole tick has."""
-        torques = self.replies.torques
-        return (*torques, self.replies.recorder) if self.require_recorder else torques
+        return (*self.torques, self.recorder) if self.recorder else self.torques
 
 
 def driveline_info(steps: int, clutch: FailSafeSettings | None = None) -> dict[str, str]:
@@ -63,8 +53,8 @@ class TickBarrier:
     """
     The replies to one tick, by topic.
 
-    Only replies stamped exactly t_k count; everything else is ignored and counted, so that old
-    data never enters a step.
+    Only replies stamped exactly t_k count; everything else is ignored, so that old data never
+    enters a step.
     """
 
     def __init__(self) -> None:
@@ -72,8 +62,6 @@ class TickBarrier:
         self._stamp_ns = stamp_of_step(0)
         self.replies: dict[str, Any] = {}
         """What has come so far."""
-        self.ignored = 0
-        """Replies to another tick, and repeated ones."""
         self.late = 0
         """Replies to a tick that was already over."""
 
@@ -86,26 +74,22 @@ class TickBarrier:
     def offer(self, topic: str, stamp_ns: int, reply: Any) -> bool:
         """Take a reply; return whether it was the one that completed the tick."""
         if stamp_ns != self._stamp_ns or topic not in self._topics or topic in self.replies:
-            self.ignored += 1
             self.late += stamp_ns < self._stamp_ns
             return False
         self.replies[topic] = reply
         return len(self.replies) == len(self._topics)
-
-    def get(self, topic: str) -> Any:
-        """Return the reply on `topic`, or None while it is missing."""
-        return self.replies.get(topic)
 
     def missing(self) -> list[str]:
         """Return the topics that have not answered, in the order they were given."""
         return [topic for topic in self._topics if topic not in self.replies]
 
 
-class TickOwner(ABC):
+class TickOwner:
     """
-    Common part of both modes: publish a tick, gather its replies, integrate, go on.
+    Publish a tick, wait for every reply stamped exactly t_k, integrate, go on: lock-step.
 
-    `publish(step)` sends the driveline's present outputs; `finish(error)` ends the run.
+    It never goes on with old data. `publish(step)` sends the driveline's present outputs;
+    `finish(error)` ends the run.
     """
 
     def __init__(
@@ -163,8 +147,11 @@ class TickOwner(ABC):
     def _awaited(self, step: int) -> tuple[str, ...]:
         return self._plan.topics
 
-    @abstractmethod
-    def _on_complete(self) -> None: ...
+    def _on_complete(self) -> None:
+        if self.step == self.last_step:
+            self._finish(None)
+        else:
+            self._integrate(self.barrier.replies)
 
     def _open(self, step: int) -> None:
         self.step = step
@@ -174,20 +161,10 @@ class TickOwner(ABC):
 
     def _integrate(self, replies: Mapping[str, Any]) -> None:
         torques: list[Any] = []
-        for topic in self._plan.replies.torques:
+        for topic in self._plan.torques:
             reply = replies[topic]
-            torques += reply if topic == self._plan.replies.clutch else (reply,)
+            torques += reply if topic == self._plan.clutch else (reply,)
         self._driveline.step(*torques)
         if self._over():
             self.last_step = self.step + 1
         self._open(self.step + 1)
-
-
-class LockstepOwner(TickOwner):
-    """Wait for every reply stamped exactly t_k, then step; never go on with old data."""
-
-    def _on_complete(self) -> None:
-        if self.step == self.last_step:
-            self._finish(None)
-        else:
-            self._integrate(self.barrier.replies)
