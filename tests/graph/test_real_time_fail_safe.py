@@ -57,7 +57,7 @@ class _Listener(Node):
         self.requests[step_of_stamp(stamp_ns(message))] = TORQUE_REQUEST.read(message)
 
     def _on_torque(self, message: JointTrajectory) -> None:
-        self.torques[step_of_stamp(stamp_ns(message))] = ACTUATOR_TORQUE.read(message)[0]
+        self.torques[step_of_stamp(stamp_ns(message))] = ACTUATOR_TORQUE.read(message)[0][0]
 
 
 @pytest.mark.parametrize(

@@ -97,21 +97,28 @@ class StampOnly(MessageKind):
         """Return nothing."""
 
 
+HELD = 'held'
+"""`header.frame_id` of a message of sensors that repeats a value; else it is empty."""
+
+
 @dataclass(frozen=True)
 class Scalar(MessageKind):
-    """One number."""
+    """One number; of a sensor also whether it repeats the last one: `frame_id` is then HELD."""
 
     path: str
     """Where in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
     """Lowest value that a node takes in."""
+    sensed: bool = False
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
         holder = attrgetter(parent)(message) if parent else message
 
-        def fill(value: float) -> None:
+        def fill(value: float, held: float | None = None) -> None:
             setattr(holder, field, value)
+            if held is not None:
+                message.header.frame_id = HELD if held else ''
 
         return fill
 
@@ -120,8 +127,11 @@ class Scalar(MessageKind):
         return attrgetter(self.path)
 
     def values(self, message: Any) -> tuple[float, ...]:
-        """Return the number."""
-        return (self._get(message),)
+        """Return the number; of a sensor also 1 where it repeats the last one, else 0."""
+        number = self._get(message)
+        if self.sensed:
+            return number, float(message.header.frame_id == HELD)
+        return (number,)
 
     def read(self, topic: str, message: Any) -> float:
         """Return the number; raise DdctError unless finite and high enough."""
@@ -132,84 +142,49 @@ class Scalar(MessageKind):
 
 @dataclass(frozen=True)
 class Joints(MessageKind):
-    """Positions in rad, speeds in rad/s and efforts in N m, one each per joint."""
+    """
+    Positions in rad, speeds in rad/s and efforts in N m, one each per joint.
+
+    Sensors leave positions empty. Their effort is 1 where the speed repeats the last one, else 0,
+    and `frame_id` HELD if one of them is 1.
+    """
 
     names: tuple[str, ...]
+    fields: tuple[str, ...] = ('position', 'velocity', 'effort')
+    sensed: bool = False
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         message.name = list(self.names)
 
-        def fill(
-            positions: Sequence[float], speeds: Sequence[float], efforts: Sequence[float]
-        ) -> None:
-            message.position = array('d', positions)
-            message.velocity = array('d', speeds)
-            message.effort = array('d', efforts)
+        def fill(*columns: Sequence[float]) -> None:
+            for field, numbers in zip(self.fields, columns, strict=True):
+                setattr(message, field, array('d', numbers))
+            if self.sensed:
+                message.header.frame_id = HELD if any(message.effort) else ''
 
         return fill
 
     def values(self, message: Any) -> tuple[Any, ...]:
-        """Return positions, speeds and efforts; raise DdctError for other joints."""
+        """Return a row of numbers per field; raise DdctError for other joints."""
         if tuple(message.name) != self.names:
             raise DdctError(
                 f'the joints are {", ".join(message.name)}, not {", ".join(self.names)}'
             )
-        return message.position, message.velocity, message.effort
+        self._speeds('the message', message)
+        return tuple(getattr(message, field) for field in self.fields)
 
     def read(self, topic: str, message: Any) -> list[float]:
         """Return the speeds; raise DdctError unless there is a finite one for each joint."""
-        return _finite(topic, _joint_speeds(topic, self.names, message))
+        return _finite(topic, self._speeds(topic, message))
 
-
-HELD = 'held'
-"""`header.frame_id` of a message of sensors that repeats a value; else it is empty."""
-
-
-@dataclass(frozen=True)
-class SensedScalar(Scalar):
-    """One number of a sensor, and whether it repeats the last one: `frame_id` is then HELD."""
-
-    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
-        fill_number = super()._filler(message, class_of)
-
-        def fill(value: float, held: float) -> None:
-            fill_number(value)
-            message.header.frame_id = HELD if held else ''
-
-        return fill
-
-    def values(self, message: Any) -> tuple[float, ...]:
-        """Return the number, and 1 where it repeats the last one, else 0."""
-        return (*super().values(message), float(message.header.frame_id == HELD))
-
-
-@dataclass(frozen=True)
-class SensedJoints(MessageKind):
-    """
-    Speeds of sensors in rad/s, one per joint, and which of them repeat the last one.
-
-    `effort` is then 1, else 0, and `frame_id` HELD if one of them is 1. Positions are left empty.
-    """
-
-    names: tuple[str, ...]
-
-    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
-        message.name = list(self.names)
-
-        def fill(speeds: Sequence[float], held: Sequence[float]) -> None:
-            message.velocity = array('d', speeds)
-            message.effort = array('d', held)
-            message.header.frame_id = HELD if any(held) else ''
-
-        return fill
-
-    def values(self, message: Any) -> tuple[Any, ...]:
-        """Return speeds and flags; raise DdctError for other joints."""
-        return _joint_speeds('the message', self.names, message), message.effort
-
-    def read(self, topic: str, message: Any) -> list[float]:
-        """Return the speeds; raise DdctError unless there is a finite one for each joint."""
-        return _finite(topic, _joint_speeds(topic, self.names, message))
+    def _speeds(self, topic: str, message: Any) -> Sequence[float]:
+        names = list(self.names)
+        if list(message.name) != names or len(message.velocity) != len(names):
+            raise DdctError(
+                f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
+                f'it needs one velocity for each of {names}, in this order'
+            )
+        return message.velocity
 
 
 @dataclass(frozen=True)
@@ -256,29 +231,31 @@ class Points(MessageKind):
             set_time(point.time_from_start, i * self.spacing_ns)
         return points
 
-    @cached_property
-    def _getters(self) -> list[Callable[[Any], Sequence[float]]]:
-        return [attrgetter(field) for field in self.fields]
-
     def values(self, message: Any) -> tuple[list[float], ...]:
         """Return a row of numbers per field and joint; raise IndexError where one is missing."""
         points = message.points
         joints = range(len(message.joint_names))
         return tuple(
-            [[get(point)[joint] for point in points] for get in self._getters for joint in joints]
+            [getattr(point, field)[joint] for point in points]
+            for field in self.fields
+            for joint in joints
         )
 
 
 @dataclass(frozen=True)
 class TorqueRows(Points):
-    """Torques in N m at 0, 1, ..., 10 ms after the stamp."""
+    """Torques in N m at 0, 1, ..., 10 ms after the stamp; of two joints, two capacities."""
 
     fields: tuple[str, ...] = ('effort',)
     spacing_ns: int = SUBSTEP_NS
     count: int | None = SUBSTEPS + 1
 
-    def _rows(self, topic: str, message: Any, joints: int) -> list[list[float]]:
-        """Return as many rows as there must be joints; raise DdctError for any other message."""
+    def read(self, topic: str, message: Any, joints: int = 1) -> list[list[float]]:
+        """
+        Return the (11,) torques in N m of each joint, of which there must be so many.
+
+        Raise DdctError unless finite and, where there are two, 0 <= kinetic <= static.
+        """
         needed = list(self.joints[:joints])
         if list(message.joint_names) != needed:
             raise DdctError(
@@ -286,37 +263,15 @@ class TorqueRows(Points):
                 f'needs {", ".join(needed)}; start every node with the same clutch'
             )
         try:
-            rows = self.values(message)
+            values = self.values(message)
         except IndexError:
-            rows = ()
-        if not rows or len(rows[0]) != self.count:
+            values = ()
+        if not values or len(values[0]) != self.count:
             raise DdctError(
                 f'{topic} has {len(message.points)} points: it needs {self.count}, '
                 '1 ms apart, each with an effort'
             )
-        return [_finite(topic, row) for row in rows]
-
-
-@dataclass(frozen=True)
-class TorquePoints(TorqueRows):
-    """The torque of one joint."""
-
-    def read(self, topic: str, message: Any) -> list[float]:
-        """Return the (11,) torques in N m; raise DdctError unless finite."""
-        return self._rows(topic, message, 1)[0]
-
-
-@dataclass(frozen=True)
-class ClutchPoints(TorqueRows):
-    """What the clutch transmits or, of two joints, its two capacities."""
-
-    def read(self, topic: str, message: Any, joints: int = 1) -> list[list[float]]:
-        """
-        Return the (11,) torques in N m of each joint.
-
-        Raise DdctError unless finite and, where there are two, 0 <= kinetic <= static.
-        """
-        rows = self._rows(topic, message, joints)
+        rows = [_finite(topic, row) for row in values]
         try:
             if joints > 1:
                 require_capacities(0, *rows)
@@ -425,17 +380,6 @@ class PhaseReport(MessageKind):
                 f'{topic}: {error}: it needs phase, {self._WORK}, then the locks and releases'
             ) from error
         return require_number(topic, work, at_least=0.0)
-
-
-def _joint_speeds(topic: str, needed: Sequence[str], message: Any) -> Sequence[float]:
-    """Return the velocities; raise DdctError unless there is one for each of the joints."""
-    names = list(needed)
-    if list(message.name) != names or len(message.velocity) != len(names):
-        raise DdctError(
-            f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
-            f'it needs one velocity for each of {names}, in this order'
-        )
-    return message.velocity
 
 
 def _finite(topic: str, values: Sequence[float]) -> list[float]:

@@ -12,17 +12,14 @@ from typing import Any
 
 from ddct_plant.graph.message_kinds import (
     ClassOf,
-    ClutchPoints,
     Joints,
     MessageKind,
     PhaseReport,
     PreviewPoints,
     Scalar,
-    SensedJoints,
-    SensedScalar,
     StampOnly,
     Status,
-    TorquePoints,
+    TorqueRows,
     Write,
     ros_class,
 )
@@ -218,21 +215,21 @@ VEHICLE_ACCEL = Topic(
 )
 SENSED_JOINT_STATES = _of_sensor(
     'sensors/joint_states',
-    SensedJoints('sensor_msgs/msg/JointState', SENSED_JOINTS),
+    Joints('sensor_msgs/msg/JointState', SENSED_JOINTS, ('velocity', 'effort'), sensed=True),
     'driveline',
     Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
     _held('sensed_joint_held', '(3,) '),
 )
 SENSED_SLIP = _of_sensor(
     'sensors/slip',
-    SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x', sensed=True),
     'driveline',
     Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
     _held('sensed_slip_held'),
 )
 SENSED_VEHICLE_SPEED = _of_sensor(
     'sensors/twist',
-    SensedScalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x', sensed=True),
     'driveline',
     Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
     _held('sensed_vehicle_held'),
@@ -243,7 +240,7 @@ TORQUE_DEMAND = _torque(
 ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
 SENSED_ENGINE_TORQUE = _of_sensor(
     'sensors/engine_torque',
-    SensedScalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x'),
+    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x', sensed=True),
     'engine',
     Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
     _held('sensed_torque_held'),
@@ -283,13 +280,13 @@ ENGINE_REQUEST = _torque(
 )
 ACTUATOR_TORQUE = Topic(
     'actuator/torque',
-    TorquePoints(_TRAJECTORY, ('clutch',)),
+    TorqueRows(_TRAJECTORY, ('clutch',)),
     'actuator',
     (Signal('actuator_torque', 'N m', '(11,) at 0, 1, ..., 10 ms after t_k'),),
 )
 CLUTCH_TORQUE = Topic(
     'clutch/torque',
-    ClutchPoints(_TRAJECTORY, ('clutch', 'clutch_static')),
+    TorqueRows(_TRAJECTORY, ('clutch', 'clutch_static')),
     'clutch',
     (
         Signal(

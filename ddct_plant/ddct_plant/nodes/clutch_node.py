@@ -38,7 +38,7 @@ class ClutchNode(FollowerNode):
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the transmitted torque, or the capacities, over the period of step k."""
-        actuator_torque = inputs[ACTUATOR_TORQUE.name]
+        (actuator_torque,) = inputs[ACTUATOR_TORQUE.name]
         if not self.settings.stick_slip:
             return (self._torque.fill(stamp_ns, self._linear.transmit(actuator_torque)),)
         reply = self._friction.reply(

@@ -9,7 +9,7 @@ rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the RO
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.graph import topics  # noqa: E402
-from ddct_plant.graph.message_kinds import NS_PER_S, Scalar, SensedScalar, stamp_ns  # noqa: E402
+from ddct_plant.graph.message_kinds import NS_PER_S, Scalar, stamp_ns  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)
@@ -27,8 +27,8 @@ VALUES = {
     'clutch/phase': (1.0, 0.5, ()),
 }
 """What a topic carries; one number per signal where nothing is said."""
-SCALARS = [topic for topic in topics.TOPICS if type(topic.kind) is Scalar]
-SENSED = [topic for topic in topics.TOPICS if type(topic.kind) is SensedScalar]
+SCALARS = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and not t.kind.sensed]
+SENSED = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and t.kind.sensed]
 
 
 @pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
