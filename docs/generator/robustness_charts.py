@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from ddct_bringup.reproduction.values.closed_loop_values import WORN
+from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.sweep.state_map import draw_states, edges_of, state_legend
 from ddct_controllers.design.drawing.chart_style import BLACK, chart_style, save_chart
 from generator.pages import DOCS

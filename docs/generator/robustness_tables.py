@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
-from ddct_bringup.reproduction.values.closed_loop_values import SLIP_WORDS, WORN
+from ddct_bringup.reproduction.values.orders import SLIP_WORDS, WORN
 from ddct_bringup.verdict.state import ENGAGED, INVALID, RUNAWAY
 from ddct_plant.program.table import UNDEFINED, Table
 from generator.robustness_map import ARCHITECTURE, WEAR, StateMap

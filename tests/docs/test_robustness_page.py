@@ -13,7 +13,7 @@ from PIL import Image
 
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.reproduction.values.closed_loop_values import WORN
+from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY
 

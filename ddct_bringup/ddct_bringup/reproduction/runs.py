@@ -1,48 +1,92 @@
-"""Closed-loop runs and their scores; those of the thesis's scenario are simulated once."""
+"""Headless runs and what is computed of them; those of the thesis's scenario are made once."""
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any
+
+import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
+from ddct_bringup.scores.scoring import not_finite
 from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.verdict.criteria import JudgedRun
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.state import INVALID
+from ddct_bringup.verdict.verdict import Verdict, judge
 from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.plant import cut_speed, end_cause
 from ddct_plant.scenario.settings import RunSettings
 
 THESIS_SCENARIO = load_scenario('thesis')
+THESIS_SETTINGS = RunSettings(THESIS_SCENARIO)
+
+
+@dataclass(frozen=True, eq=False)
+class HeadlessRun:
+    """One run; what it scores is computed when it is first asked for."""
+
+    settings: RunSettings
+    controller: str | Controller
+    """Name in the registry, or the object that ran."""
+    trajectory: Trajectory
+
+    @cached_property
+    def metrics(self) -> Metrics:
+        """What the run scores in its scenario's score window."""
+        scenario = self.settings.scenario
+        return compute_metrics(
+            self.trajectory,
+            control_start_s=scenario.control_start_s,
+            score_window_s=scenario.score_window_s,
+        )
+
+    @property
+    def figures(self) -> dict[str, Any]:
+        """The three figures that Table 5.1 has of a run, by name; None for an undefined one."""
+        return {name: getattr(self.metrics, name) for name in FIGURES}
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What the packaged limits say of it."""
+        limits, scenario = packaged_limits(), self.settings.scenario
+        run = JudgedRun(
+            self.trajectory,
+            self.start,
+            scenario.score_window_s,
+            self.metrics.as_dict(),
+            limits.rules.engagements_a_day,
+        )
+        known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))
+        if not_finite(self.trajectory):
+            known = INVALID
+        return judge(run, limits, scenario.name, known, cut_speed(scenario))
+
+    @property
+    def slip_rpm(self) -> np.ndarray:
+        """w_d, (N+1,)."""
+        return rpm_from_rad_s(self.trajectory.slip_speed)
+
+    @property
+    def start(self) -> int:
+        """The step at which control starts."""
+        return self.settings.scenario.control_start_step
+
+
+def headless_run(settings: RunSettings, controller: str | Controller) -> HeadlessRun:
+    """Run a controller headless."""
+    return HeadlessRun(settings, controller, run_headless(settings, controller))
 
 
 @cache
-def thesis_run(controller: str, architecture: str, wear_gain: float) -> Trajectory:
-    """Return the headless run of a controller of the registry."""
-    settings = RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain)
-    return run_headless(settings, controller)
-
-
-def thesis_metrics(trajectory: Trajectory) -> Metrics:
-    """Return the metrics of such a run."""
-    return metrics_of(RunSettings(THESIS_SCENARIO), trajectory)
-
-
-def metrics_of(settings: RunSettings, trajectory: Trajectory) -> Metrics:
-    """Return the metrics of a run in its scenario's score window."""
-    return compute_metrics(
-        trajectory,
-        control_start_s=settings.scenario.control_start_s,
-        score_window_s=settings.scenario.score_window_s,
+def thesis_run(controller: str, architecture: str, wear_gain: float) -> HeadlessRun:
+    """Return the run of a controller of the registry in the thesis's scenario."""
+    return headless_run(
+        RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain), controller
     )
-
-
-def scored_run(settings: RunSettings, controller: str | Controller) -> Metrics:
-    """Run a controller headless and return its metrics."""
-    return metrics_of(settings, run_headless(settings, controller))
-
-
-def table_figures(metrics: Metrics) -> dict[str, Any]:
-    """Return the three figures that Table 5.1 has of a run by name; None for an undefined one."""
-    return {name: getattr(metrics, name) for name in FIGURES}
 
 
 class StaticControllerAlone(Controller):

@@ -67,6 +67,7 @@ THESIS_TABLE = (
     ThesisRow('PI', 'pi', 0.88, 0.70, 0.18, CALIBRATED),
 )
 """Table 5.1 (Chapter 5), in its order."""
+PREDICTED_ROWS = [row for row in THESIS_TABLE if row.use == PREDICTED]
 ROW_OF = {row.controller: row for row in THESIS_TABLE}
 """The rows by registry name."""
 

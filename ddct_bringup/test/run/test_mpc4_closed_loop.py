@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs import StaticControllerAlone, metrics_of, thesis_run
+from ddct_bringup.reproduction.runs import HeadlessRun, StaticControllerAlone, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
     model_without_actuator,
@@ -40,12 +40,12 @@ def run(controller, *changes, wear_gain=1.0, architecture='detailed'):
 
 
 def metrics(trajectory):
-    return metrics_of(SETTINGS, trajectory)
+    return HeadlessRun(SETTINGS, 'mpc4', trajectory).metrics
 
 
 @pytest.mark.parametrize('name', BOTH)
 def test_both_inputs_take_off_most_of_the_oscillation_that_mpc3_leaves(name):
-    two, one = metrics(run(name)), metrics(thesis_run('mpc3', 'detailed', 1.0))
+    two, one = metrics(run(name)), thesis_run('mpc3', 'detailed', 1.0).metrics
     assert two.torsion_speed_std_rpm < one.torsion_speed_std_rpm / 5.0
     assert two.acceleration_std_m_s2 < one.acceleration_std_m_s2 / 5.0
     assert close_time_s(run(name), START) < 0.47
@@ -215,4 +215,4 @@ def test_the_range_of_the_deviation_and_the_time_to_come_close():
     assert -40 < lowest < -30
     assert 0 <= highest < 5
     assert close_time_s(run_headless(SETTINGS, StaticControllerAlone()), START) is None
-    assert deviation_range(thesis_run('pi', 'detailed', 1.0)) == '0'
+    assert deviation_range(thesis_run('pi', 'detailed', 1.0).trajectory) == '0'

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, metrics_of, thesis_run
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run, thesis_run
 from ddct_bringup.reproduction.studies.clutch_torque_limit import clutch_torque_limit, limit_at
 from ddct_bringup.reproduction.studies.readings import readings
-from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells, study_run
+from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.costs import TABLE_4_1
@@ -100,7 +100,7 @@ def test_told_all_slip_ends_at_zero_without_a_fallback(name, architecture):
 @pytest.mark.parametrize('name', TABLE_4_1)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_as_drawn_an_error_stays_which_section_6_1_wants_an_integrator_for(name, architecture):
-    run = thesis_run(name, architecture, 1.0)
+    run = thesis_run(name, architecture, 1.0).trajectory
     assert 4.5 < rpm_from_rad_s(run.slip_speed[-1]) < 6.0
     statuses = [dict(status) for status in run.status]
     assert {status.get('fallbacks', '0') for status in statuses} == {'0'}
@@ -110,9 +110,9 @@ def test_as_drawn_an_error_stays_which_section_6_1_wants_an_integrator_for(name,
 def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
     """No code of the product but plant and start: toolbox filter and normal equations here."""
     peer = run_headless(SETTINGS, AsDrawn(prediction_steps=22, control_steps=4))
-    ours = thesis_run('mpc3', 'detailed', 1.0)
+    ours = thesis_run('mpc3', 'detailed', 1.0).trajectory
     np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
-    figures_of_peer = metrics_of(SETTINGS, peer)
+    figures_of_peer = HeadlessRun(SETTINGS, 'as drawn', peer).metrics
     assert figures_of_peer.engagement_time_s == pytest.approx(0.580, abs=5e-4)
     assert figures_of_peer.torsion_speed_std_rpm == pytest.approx(1.788, abs=5e-4)
     assert figures_of_peer.acceleration_std_m_s2 == pytest.approx(0.2885, abs=5e-5)
@@ -139,7 +139,8 @@ def test_mpc_preview_is_mpc3_that_is_told_all():
 )
 def test_every_option_changes_the_run_and_none_breaks_it(changes):
     run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, changes)))
-    difference = run.torque_request - thesis_run('mpc3', 'detailed', 1.0).torque_request
+    usual = thesis_run('mpc3', 'detailed', 1.0).trajectory
+    difference = run.torque_request - usual.torque_request
     assert np.abs(difference).max() > 0.05
     assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 30.0
     assert dict(run.status[-1])['fallbacks'] == '0'
@@ -148,7 +149,7 @@ def test_every_option_changes_the_run_and_none_breaks_it(changes):
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
 def test_wear_leaves_an_error_that_the_thesis_calls_bad(wear_gain):
     """Table 5.2; the model has no disturbance that could stand for the wear."""
-    slip_rpm = rpm_from_rad_s(thesis_run('mpc3', 'detailed', wear_gain).slip_speed[-1])
+    slip_rpm = thesis_run('mpc3', 'detailed', wear_gain).slip_rpm[-1]
     assert abs(slip_rpm) > 10.0
 
 
@@ -173,7 +174,7 @@ def test_limits_of_the_request_hold_in_the_loop():
 def test_the_first_reading_is_what_the_registry_has(readings_table):
     for name in TABLE_4_1:
         row = next(row for row in readings_table.rows if row[0] == name)
-        assert row[2:5] == cells(TABLE_5_1, study_run(SETTINGS, name))
+        assert row[2:5] == cells(TABLE_5_1, headless_run(SETTINGS, name))
 
 
 def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(readings_table):
@@ -217,7 +218,7 @@ def test_limit_agrees_with_another_solver():
 
     strays = 2.0
 
-    prediction = _predict(thesis_run('pi', 'detailed', 1.0), 60, 170)
+    prediction = _predict(thesis_run('pi', 'detailed', 1.0).trajectory, 60, 170)
     slip_free, slip_rows = prediction['slip']
     requests = cvxpy.Variable(110)
     slip = slip_free + slip_rows @ requests

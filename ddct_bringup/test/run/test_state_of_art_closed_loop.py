@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs import metrics_of
+from ddct_bringup.reproduction.runs import headless_run
 from ddct_bringup.reproduction.studies import sweeps as studies
 from ddct_bringup.reproduction.studies.study import close_time_s
 from ddct_bringup.run.headless import run_headless
@@ -138,7 +138,9 @@ def test_the_pedal_sets_when_the_slip_is_over(pedal):
 
 def test_a_faster_engagement_shakes_the_driveline_more():
     torsion = [
-        metrics_of(*trajectory('pedal_mpc', 1.0, f'pedal_position={pedal}')).torsion_speed_std_rpm
+        headless_run(
+            RunSettings(load_scenario('thesis', [f'pedal_position={pedal}'])), 'pedal_mpc'
+        ).metrics.torsion_speed_std_rpm
         for pedal in (0.0, 0.5, 1.0)
     ]
     assert torsion == sorted(torsion)

@@ -22,7 +22,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     residual_rows,
     values_of,
 )
-from ddct_bringup.reproduction.runs import scored_run, table_figures
+from ddct_bringup.reproduction.runs import headless_run
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -58,4 +58,4 @@ def fitted_rows(scenario: Scenario) -> list[Record]:
 
 def _figures(scenario: Scenario, controller: str) -> dict[str, float]:
     """Return the three figures of one controller by name; None for what is undefined."""
-    return table_figures(scored_run(RunSettings(scenario), controller))
+    return headless_run(RunSettings(scenario), controller).figures

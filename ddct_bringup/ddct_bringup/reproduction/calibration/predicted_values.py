@@ -8,20 +8,16 @@ numbers behind the words are given too. Of a word, whether it is a hit or a miss
 from collections.abc import Iterable
 
 from ddct_bringup.reproduction.calibration.search import Progress
-from ddct_bringup.reproduction.runs import (
-    StaticControllerAlone,
-    scored_run,
-    table_figures,
-)
-from ddct_bringup.reproduction.values.closed_loop_values import (
+from ddct_bringup.reproduction.runs import StaticControllerAlone, headless_run
+from ddct_bringup.reproduction.values.orders import (
     SLIP_WORDS,
     WORN,
     WORN_ARCHITECTURE,
     judge_table_5_2,
+    rows_of_table_5_2,
 )
-from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
-from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED, THESIS_TABLE
+from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED_ROWS
 from ddct_controllers.interface import Controller
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
@@ -59,27 +55,25 @@ def predicted_values(scenario: Scenario) -> dict[str, Value]:
 def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     settings = RunSettings(scenario)
     controllers: dict[str, str | Controller] = {
-        row.controller: row.controller for row in THESIS_TABLE if row.use == PREDICTED
+        row.controller: row.controller for row in PREDICTED_ROWS
     }
     controllers[OPEN_LOOP] = StaticControllerAlone()
     found: dict[str, Value] = {}
     for name, controller in controllers.items():
-        figures = table_figures(scored_run(settings, controller))
+        figures = headless_run(settings, controller).figures
         found |= {f'5.1 {name} {figure}': value for figure, value in figures.items()}
     return found
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
-    runs = {name: run_headless(settings, name) for name in SLIP_WORDS}
-    slips, metrics, findings = judge_table_5_2(settings, runs)
+    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    rows = rows_of_table_5_2(runs)
     found: dict[str, Value] = {
-        name: 'hit' if finding.holds else 'miss' for name, finding in findings.items()
+        name: 'hit' if finding.holds else 'miss'
+        for name, finding in judge_table_5_2(wear_gain, rows).items()
     }
-    for name in SLIP_WORDS:
-        found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = slips[name]
-        found |= {
-            f'5.2 {name} {figure} {wear_gain:g}': getattr(metrics[name], figure)
-            for figure in FIGURES[1:]
-        }
+    for name, run in runs.items():
+        found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = rows[0][name]
+        found |= {f'5.2 {name} {what} {wear_gain:g}': run.figures[what] for what in FIGURES[1:]}
     return found

@@ -27,7 +27,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     Values,
     pi_growth_rate,
 )
-from ddct_bringup.reproduction.runs import scored_run, table_figures
+from ddct_bringup.reproduction.runs import headless_run
 from ddct_bringup.thesis.table_5_1 import FIGURES, TOLERANCES
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
@@ -150,10 +150,10 @@ def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     """
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
-    metrics = scored_run(RunSettings(shortened), controller)
-    figures = table_figures(metrics)
-    if figures['engagement_time_s'] is None and metrics.slip_final_rpm is not None:
-        left = abs(rad_s_from_rpm(metrics.slip_final_rpm)) / scenario.reference.slope_rad_s2
+    run = headless_run(RunSettings(shortened), controller)
+    figures, final_rpm = run.figures, run.metrics.slip_final_rpm
+    if figures['engagement_time_s'] is None and final_rpm is not None:
+        left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2
         figures['engagement_time_s'] = end - scenario.control_start_s + left
     missing = [name for name, value in figures.items() if value is None]
     if missing:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
+from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
 from ddct_controllers.registry import controller_label
@@ -36,35 +36,21 @@ _ARCHITECTURES = {
 }
 
 
-def signal(run: Trajectory, quantity: str) -> np.ndarray:
-    """Return w_d or w_sr in rpm, or A_x in m/s^2, (N+1,)."""
-    if quantity == 'A_x':
-        return run.vehicle_accel
-    return rpm_from_rad_s(run.slip_speed if quantity == 'w_d' else run.joint_speed[:, 3])
+def _line(run: Trajectory, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return time in s and w_d, its reference or w_sr in rpm, or A_x in m/s^2, from _FIRST_S."""
+    speeds = {
+        'w_d': run.slip_speed,
+        'reference': run.slip_reference[:, 0],
+        'w_sr': run.joint_speed[:, 3],
+    }
+    values = rpm_from_rad_s(speeds[quantity]) if quantity in speeds else run.vehicle_accel
+    shown = run.time_s >= _FIRST_S
+    return run.time_s[shown], values[shown]
 
 
 def thesis_label(controller: str) -> str:
     """Return the thesis's name of a controller of the registry."""
     return controller.replace('hinf', 'H∞').upper()
-
-
-def _runs(group: RunGroup, own: Sequence[str]) -> dict[str, Trajectory]:
-    """Return the runs by legend text."""
-    return {
-        _legend(chosen, wear, group): thesis_run(chosen, group.architecture, wear)
-        for chosen in (*group.controllers, *own)
-        for wear in group.wear_gains
-    }
-
-
-def _styles(group: RunGroup, own: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return how the lines are drawn by legend text."""
-    runs = {
-        _legend(chosen, wear, group): controller_style(controller_label(chosen), repeat)
-        for chosen in (*group.controllers, *own)
-        for repeat, wear in enumerate(group.wear_gains)
-    }
-    return {**runs, 'reference': REFERENCE_LINE}
 
 
 def _legend(chosen: str, wear_gain: float, group: RunGroup) -> str:
@@ -73,24 +59,25 @@ def _legend(chosen: str, wear_gain: float, group: RunGroup) -> str:
 
 
 def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str:
-    runs = _runs(group, own)
-    signals = {name: (run, signal(run, quantity)) for name, run in runs.items()}
+    runs: dict[str, HeadlessRun] = {}
+    styles: dict[str, dict[str, Any]] = {'reference': REFERENCE_LINE}
+    for chosen in (*group.controllers, *own):
+        for repeat, wear in enumerate(group.wear_gains):
+            legend = _legend(chosen, wear, group)
+            runs[legend] = thesis_run(chosen, group.architecture, wear)
+            styles[legend] = controller_style(controller_label(chosen), repeat)
+    lines = {name: _line(run.trajectory, quantity) for name, run in runs.items()}
     if quantity == 'w_d':
-        last = list(runs.values())[-1]
-        signals['reference'] = last, rpm_from_rad_s(last.slip_reference[:, 0])
-    lines = {
-        name: (run.time_s[run.time_s >= _FIRST_S], values[run.time_s >= _FIRST_S])
-        for name, (run, values) in signals.items()
-    }
+        lines['reference'] = _line(list(runs.values())[-1].trajectory, 'reference')
     end_s = max(time[-1] for time, _ in lines.values())
-    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, _styles(group, own))
+    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, styles)
     return (
         f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)
     )
 
 
-def _scores(group: RunGroup, runs: dict[str, Trajectory], quantity: str) -> str:
+def _scores(group: RunGroup, runs: dict[str, HeadlessRun], quantity: str) -> str:
     """Return the score of the quantity, run by run."""
     beside = {
         thesis_label(name): thesis_run(name, group.architecture, 1.0) for name in group.compared
@@ -104,8 +91,8 @@ def _scores(group: RunGroup, runs: dict[str, Trajectory], quantity: str) -> str:
     return '; '.join(parts)
 
 
-def _texts(runs: dict[str, Trajectory], metric: str, form: str) -> str:
-    values = {name: getattr(thesis_metrics(run), metric) for name, run in runs.items()}
+def _texts(runs: dict[str, HeadlessRun], metric: str, form: str) -> str:
+    values = {name: getattr(run.metrics, metric) for name, run in runs.items()}
     return ', '.join(
         f'{name} {"none" if value is None else format(value, form)}'
         for name, value in values.items()

@@ -72,7 +72,7 @@ def _draw_engine_torque(axes: Axes) -> str:
 
 
 def _draw_plants(axes: Axes) -> str:
-    run = thesis_run('pi', 'detailed', 1.0)
+    run = thesis_run('pi', 'detailed', 1.0).trajectory
     printed = {_PRINTED_PLANT: printed_lti_slip}
     slips = {
         'detailed model': run.slip_speed,

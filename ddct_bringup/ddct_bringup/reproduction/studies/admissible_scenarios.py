@@ -1,23 +1,40 @@
-"""The kept admissible scenarios, and the ranges of what they predict."""
+"""The kept admissible scenarios, what they predict, and what the MPC rows become in them."""
+
+import dataclasses
 
 from ddct_bringup.reproduction.calibration.admissible import fitted_rows
 from ddct_bringup.reproduction.calibration.ensemble import members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.study import Study
-from ddct_bringup.reproduction.values.closed_loop_values import OSCILLATION_WORDS, SLIP_WORDS, WORN
+from ddct_bringup.reproduction.calibration.problem import Problem, fit
+from ddct_bringup.reproduction.runs import (
+    THESIS_SCENARIO,
+    HeadlessRun,
+    StaticControllerAlone,
+    headless_run,
+)
+from ddct_bringup.reproduction.studies.readings import READINGS
+from ddct_bringup.reproduction.studies.study import TABLE_5_1, Study, cells
+from ddct_bringup.reproduction.values.orders import OSCILLATION_WORDS, SLIP_WORDS, WORN
 from ddct_bringup.thesis.predictions import Prediction, kept_predictions
 from ddct_bringup.thesis.table_5_1 import (
     FIGURES,
     FORMS,
-    PREDICTED,
-    THESIS_TABLE,
+    PREDICTED_ROWS,
+    ROW_OF,
     ThesisRow,
 )
 from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_controllers.mpc.costs import TABLE_4_1
+from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+_PER_RAD_S = READINGS['Q per rad/s, noise as it is']
+_MORE_KNOWN = dataclasses.replace(
+    _PER_RAD_S, knowledge=dataclasses.replace(FULL, delay_in_model=False)
+)
 
 
 def admissible_scenarios() -> Study:
@@ -25,15 +42,8 @@ def admissible_scenarios() -> Study:
     return Study(
         'Admissible scenarios',
         (
-            'scenario',
-            'window to s',
-            'C_m start N m',
-            'rise N m',
-            'rise end s',
-            'slope rad/s^2',
-            'K_p',
-            'K_i',
-            'largest residual, tolerances',
+            *('scenario', 'window to s', 'C_m start N m', 'rise N m', 'rise end s'),
+            *('slope rad/s^2', 'K_p', 'K_i', 'largest residual, tolerances'),
         ),
         [_scenario_row(one) for one in (THESIS_SCENARIO, *members())],
     )
@@ -57,18 +67,14 @@ def _scenario_row(scenario: Scenario) -> tuple[str, ...]:
 def prediction_ranges() -> Study:
     """Return the MPC rows of Table 5.1 as value and range beside the print."""
     rows = []
-    for row in THESIS_TABLE:
-        if row.use != PREDICTED:
-            continue
+    for row in PREDICTED_ROWS:
         for name, printed in row.figures().items():
             found = _kept(f'5.1 {row.controller} {name}')
             assert not isinstance(found.frozen, str)
             rows.append(
                 (
-                    row.label,
-                    METRICS[name].heading,
-                    text_or_dash(found.frozen, FORMS[name]),
-                    found.text(FORMS[name]),
+                    *(row.label, METRICS[name].heading),
+                    *_value_and_range(found, FORMS[name]),
                     f'{printed:.2f}',
                     row.verdict(name, found.frozen),
                     'yes' if found.contains(printed) else 'no',
@@ -76,17 +82,15 @@ def prediction_ranges() -> Study:
             )
     for name in FIGURES[1:]:
         alone = _kept(f'5.1 {OPEN_LOOP} {name}')
-        value = text_or_dash(alone.frozen, FORMS[name])
-        rows.append(
-            (OPEN_LOOP, METRICS[name].heading, value, alone.text(FORMS[name]), '-', '-', '-')
-        )
+        cells_of_value = _value_and_range(alone, FORMS[name])
+        rows.append((OPEN_LOOP, METRICS[name].heading, *cells_of_value, '-', '-', '-'))
     return Study(
         'Predicted figures of Table 5.1',
         ('row', 'figure', 'value', 'range', 'printed', 'verdict', 'print within the range'),
         rows,
         (
             "The end '-': some of the scenarios have no t_a, as w_d does not reach zero.",
-            *(_hits_at_once(row) for row in THESIS_TABLE if row.use == PREDICTED),
+            *(_hits_at_once(row) for row in PREDICTED_ROWS),
         ),
     )
 
@@ -117,8 +121,7 @@ def worn_ranges() -> Study:
             )
             for kind, header, form in kinds:
                 found = _kept(f'5.2 {name} {kind} {gain:g}')
-                value = text_or_dash(found.frozen, form)
-                rows.append((name, f'{gain:g}', header, value, found.text(form)))
+                rows.append((name, f'{gain:g}', header, *_value_and_range(found, form)))
     return Study(
         'Table 5.2, value and range',
         ('controller', 'K_usura', 'word or figure', 'value', 'range'),
@@ -129,3 +132,62 @@ def worn_ranges() -> Study:
 
 def _kept(name: str) -> Prediction:
     return kept_predictions().by_id[name]
+
+
+def _value_and_range(found: Prediction, form: str) -> tuple[str, str]:
+    return text_or_dash(found.frozen, form), found.text(form)
+
+
+def score_windows() -> Study:
+    """Return MPC3, MPC4 and C_fOL alone for each end of the score window."""
+    centres = [one for one in members() if one.name == f'window_{one.score_window_s[1]:.1f}']
+    longest = max(centres, key=lambda one: one.score_window_s[1])
+    whole_run = fit(Problem(longest.score_window_s[1]), values_of(longest))
+    scenarios = [
+        ('frozen', THESIS_SCENARIO),
+        *(('centre', one) for one in centres),
+        ('least squares', whole_run.problem.scenario(whole_run.values)),
+    ]
+    return Study(
+        'The MPC rows by the end of the score window',
+        (
+            'window to s',
+            'fit',
+            'largest deviation of the nine %',
+            'in tolerances',
+            'mpc3',
+            'mpc3, Q per rad/s',
+            'the same, told w_m, w_p, w_r and C_load',
+            'mpc4',
+            'C_fOL alone, std w_sr rpm',
+        ),
+        [
+            *(_window_row(label, scenario) for label, scenario in scenarios),
+            ('-', 'as the thesis prints it', '-', '-', *3 * [_print('mpc3')], _print('mpc4'), '-'),
+        ],
+        ('A controller has t_a in s / std w_sr in rpm / std A_x in m/s^2.',),
+    )
+
+
+def _window_row(label: str, scenario: Scenario) -> tuple[str, ...]:
+    fitted = fitted_rows(scenario)
+    settings = RunSettings(scenario)
+    return (
+        f'{scenario.score_window_s[1]:.1f}',
+        label,
+        f'{max(abs(row["deviation"]) for row in fitted):.1%}'.rstrip('%'),
+        f'{largest_residual(fitted):.2f}',
+        _cell(headless_run(settings, 'mpc3')),
+        _cell(_PER_RAD_S.run(TABLE_4_1['mpc3'], scenario)),
+        _cell(_MORE_KNOWN.run(TABLE_4_1['mpc3'], scenario)),
+        _cell(headless_run(settings, 'mpc4')),
+        cells(TABLE_5_1, headless_run(settings, StaticControllerAlone()))[1],
+    )
+
+
+def _cell(run: HeadlessRun) -> str:
+    return ' / '.join(cells(TABLE_5_1, run))
+
+
+def _print(controller: str) -> str:
+    return ' / '.join(ROW_OF[controller].cells())

@@ -7,7 +7,7 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE, ThesisRow
@@ -48,12 +48,11 @@ def clutch_torque_limit() -> Study:
     rows = []
     for controller in (*(row.controller for row in clutch_only), 'hinf_sampled'):
         run = thesis_run(controller, 'detailed', 1.0)
-        metrics = thesis_metrics(run)
-        time = metrics.engagement_time_s
+        time = run.metrics.engagement_time_s
         if time is None:
             raise DdctError(f'{controller} does not engage in the thesis scenario')
-        strays = strays_after(run, round(time, 2))
-        rows.append(_cells(controller, time, strays, metrics))
+        strays = strays_after(run.trajectory, round(time, 2))
+        rows.append(_cells(controller, time, strays, run.metrics))
     for row in clutch_only:
         for strays in PRINTED_STRAYS_RAD_S:
             rows.append(_cells(f'{row.label} as printed', row.engagement_time_s, strays, row))
@@ -105,7 +104,7 @@ def limit_at(engagement_time_s: float, strays_rad_s: float) -> Limit:
     """
     start = THESIS_SCENARIO.control_start_step
     last = steps_in('score_window_s', THESIS_SCENARIO.score_window_s[1])
-    prediction = _predict(thesis_run('pi', 'detailed', 1.0), start, last)
+    prediction = _predict(thesis_run('pi', 'detailed', 1.0).trajectory, start, last)
     slip_free, slip_rows = prediction['slip']
     engaged = steps_in('engagement_time_s', engagement_time_s)
     before = np.arange(last - start + 1) < engaged

@@ -1,45 +1,66 @@
-"""Every controller in every packaged scenario, new and worn: what its verdict says."""
+"""Every controller in every packaged scenario, new and worn: verdict and slip."""
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.engagement_charts import Slip, engagement_chart
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.study import (
+    WEAR_GAINS,
     Study,
     StudyColumn,
     StudyFunction,
-    StudyRun,
     cells,
+    friction_kj,
     headers,
-    study_run,
 )
+from ddct_bringup.verdict.state import ENGAGED
+from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
 from ddct_plant.program.table import Column
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
 
-WEAR_GAINS = (0.7, 1.0, 1.3)
+PANELS_IN_A_ROW = 5
+PANEL_INCHES = (2.2, 1.45)
+DOTS_PER_INCH = 58.0
+"""Keeps a chart below 150 kB."""
+MARGIN = 0.15
+"""Beyond the slips of the runs that engage; what goes further leaves the panel."""
+_COLOURS = (VERMILLION, BLACK, BLUE)
 Case = tuple[str, str, float, str]
 """Scenario, clutch, wear gain, controller."""
 
 
-def criterion(run: StudyRun, name: str) -> Any:
+@dataclass(frozen=True, eq=False)
+class Slip:
+    """The slip of one run, and the state that it was given."""
+
+    controller: str
+    label: str
+    """Its wear gain, which tells it from other runs of the controller."""
+    state: str
+    start: int
+    """Step at which control starts."""
+    rpm: np.ndarray
+    """(N+1,)."""
+
+
+def criterion(run: HeadlessRun, name: str) -> Any:
     """Return the value of a criterion of a run."""
     return next(each['value'] for each in run.verdict['criteria'] if each['name'] == name)
 
 
-def _criterion_column(header: str, form: str, name: str, unit: float = 1.0) -> StudyColumn:
-    def value(run: StudyRun) -> float | None:
-        found = criterion(run, name)
-        return None if found is None else found * unit
-
-    return Column(header, form, value)
-
-
-def _together(run: StudyRun) -> float | None:
+def _together(run: HeadlessRun) -> float | None:
     """Return the time to lock in s, of a clutch that never locks t_a."""
     name = 'time_to_lock' if run.settings.stick_slip else 'engagement_time'
     return criterion(run, name)
@@ -49,9 +70,9 @@ COLUMNS: tuple[StudyColumn, ...] = (
     Column('state', '', lambda run: run.verdict['state']),
     Column('limits', '', lambda run: run.verdict['limits']),
     Column('lock s', '.2f', _together),
-    _criterion_column('friction kJ', '.1f', 'friction_energy', 1e-3),
-    _criterion_column('releases', '.0f', 'releases_after_lock'),
-    _criterion_column('peak jerk m/s^3', '.1f', 'peak_jerk'),
+    Column('friction kJ', '.1f', friction_kj),
+    Column('releases', '.0f', partial(criterion, name='releases_after_lock')),
+    Column('peak jerk m/s^3', '.1f', partial(criterion, name='peak_jerk')),
 )
 
 
@@ -59,24 +80,19 @@ def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     """Run one case; return its row and its slip, small enough to come from another process."""
     scenario, clutch, wear_gain, controller = case
     settings = RunSettings(load_scenario(scenario), clutch=clutch, wear_gain=wear_gain)
-    run = study_run(settings, controller)
+    run = headless_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))
     return row, Slip(controller, label, run.verdict['state'], run.start, run.slip_rpm)
 
 
-def cases_of(scenario: str, clutch: str) -> list[Case]:
-    """Return every packaged controller at every wear gain, in the order of the table."""
-    return [
+def _engagements(scenario: str, clutch: str) -> Study:
+    title = f'Every controller in {scenario}, clutch {clutch}'
+    cases = [
         (scenario, clutch, wear_gain, controller)
         for wear_gain in WEAR_GAINS
         for controller in own_controller_names()
     ]
-
-
-def _engagements(scenario: str, clutch: str) -> Study:
-    title = f'Every controller in {scenario}, clutch {clutch}'
-    cases = cases_of(scenario, clutch)
     with in_processes(lambda index: engagement(cases[index]), len(cases)) as found:
         rows, slips = zip(*found, strict=True)
     return Study(
@@ -85,6 +101,56 @@ def _engagements(scenario: str, clutch: str) -> Study:
         rows,
         draw=partial(engagement_chart, title, slips),
     )
+
+
+def engagement_chart(title: str, slips: Sequence[Slip]) -> Figure:
+    """Return a panel per controller with all its runs over time in s, each state in it."""
+    panels: dict[str, list[Slip]] = {}
+    for slip in slips:
+        panels.setdefault(slip.controller, []).append(slip)
+    rows = math.ceil(len(panels) / PANELS_IN_A_ROW)
+    size = (PANELS_IN_A_ROW * PANEL_INCHES[0], rows * PANEL_INCHES[1])
+    figure = Figure(figsize=size, dpi=DOTS_PER_INCH)
+    figure.suptitle(f'{title}: w_d in rpm over s; control starts at the grey line')
+    all_axes = figure.subplots(rows, PANELS_IN_A_ROW, squeeze=False, sharex=True, sharey=True).flat
+    for axes, panel in zip(all_axes, panels.values(), strict=False):
+        _draw(axes, panel)
+    for axes in figure.axes[len(panels) :]:
+        axes.set_axis_off()
+    first = figure.axes[0]
+    first.set_ylim(*_range(slips))
+    first.set_xlim(0.0, time_of_step(max(len(slip.rpm) for slip in slips) - 1))
+    return figure
+
+
+def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
+    axes.set_title(panel[0].controller, fontsize=9.0)
+    axes.tick_params(labelsize=7.0)
+    axes.set_xlabel('Time, s', visible=False)  # for the data; the title says it to the eye
+    axes.set_ylabel('w_d, rpm', visible=False)
+    axes.axvline(time_of_step(panel[0].start), color=GREY, linewidth=0.8)
+    for place, (slip, colour) in enumerate(zip(panel, _COLOURS, strict=True)):
+        time = np.arange(len(slip.rpm)) * PERIOD_S
+        axes.plot(time, slip.rpm, label=f'K_usura {slip.label}', color=colour, linewidth=1.1)
+        axes.text(
+            0.98,
+            0.96 - 0.13 * place,
+            f'{slip.label} {slip.state}',
+            transform=axes.transAxes,
+            color=colour,
+            fontsize=7.5,
+            horizontalalignment='right',
+            verticalalignment='top',
+            bbox={'facecolor': 'white', 'alpha': 0.75, 'edgecolor': 'none', 'pad': 0.5},
+        )
+
+
+def _range(slips: Sequence[Slip]) -> tuple[float, float]:
+    """Return the rpm that the panels show: those of the engaged runs, of all if none is."""
+    shown = [slip.rpm for slip in slips if slip.state == ENGAGED] or [slip.rpm for slip in slips]
+    low, high = min(rpm.min() for rpm in shown), max(rpm.max() for rpm in shown)
+    margin = MARGIN * (high - low)
+    return float(low - margin), float(high + margin)
 
 
 def _functions() -> dict[str, StudyFunction]:

@@ -5,7 +5,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, StaticControllerAlone, thesis_run
+from ddct_bringup.reproduction.runs import (
+    THESIS_SCENARIO,
+    THESIS_SETTINGS,
+    HeadlessRun,
+    StaticControllerAlone,
+    headless_run,
+    thesis_run,
+)
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithMeasuredState,
     LoopWithoutActuator,
@@ -14,14 +21,13 @@ from ddct_bringup.reproduction.studies.changed_loops import (
 )
 from ddct_bringup.reproduction.studies.study import (
     TWO_INPUTS,
+    WEAR_GAINS,
     Study,
-    StudyRun,
     cells,
     headers,
-    study_run,
 )
 from ddct_bringup.reproduction.studies.torque_level import growth
-from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_bringup.run.headless import ClosedLoop, run_loop
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost
@@ -33,9 +39,6 @@ from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
 
-SETTINGS = RunSettings(THESIS_SCENARIO)
-WEAR_GAINS = (0.7, 1.0, 1.3)
-"""At which growth is shown: the ends of the thesis's Table 5.2, and a new clutch."""
 GROWTH_HEADERS = tuple(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS)
 STIFFER_PULL = 0.05
 """r of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
@@ -61,21 +64,23 @@ class Reading:
 
     def run(self) -> Trajectory:
         """Return its run in the thesis scenario."""
+        settings = THESIS_SETTINGS
+        loop: type[ClosedLoop] = ClosedLoop
         if self.observer is MeasuredState:
-            loop = LoopWithMeasuredState(SETTINGS, self.controller(SETTINGS))
-            return run_loop(loop, SETTINGS.scenario.steps)
-        if self.plant is transmission_model:
-            return run_headless(SETTINGS, self.controller(SETTINGS))
-        # From the same slip, which without an actuator does not come about by itself.
-        slip = thesis_run('pi', 'detailed', 1.0).slip_speed[THESIS_SCENARIO.control_start_step]
-        speeds = THESIS_SCENARIO.initial
-        initial = replace(speeds, engine_speed_rad_s=speeds.shaft_speed_rad_s + float(slip))
-        run = RunSettings(replace(THESIS_SCENARIO, initial=initial))
-        return run_loop(LoopWithoutActuator(run, self.controller(run)), run.scenario.steps)
+            loop = LoopWithMeasuredState
+        elif self.plant is not transmission_model:
+            # From the same slip, which without an actuator does not come about by itself.
+            start = thesis_run('pi', 'detailed', 1.0)
+            speed = THESIS_SCENARIO.initial.shaft_speed_rad_s
+            slip = float(start.trajectory.slip_speed[start.start])
+            initial = replace(THESIS_SCENARIO.initial, engine_speed_rad_s=speed + slip)
+            settings = RunSettings(replace(THESIS_SCENARIO, initial=initial))
+            loop = LoopWithoutActuator
+        return run_loop(loop(settings, self.controller(settings)), settings.scenario.steps)
 
     def growth(self, wear_gain: float) -> float:
         """Return the growth per period of its loop with a worn clutch, see `torque_level`."""
-        mpc4 = self.controller(SETTINGS)
+        mpc4 = self.controller(THESIS_SETTINGS)
         return growth(
             mpc4.program, mpc4.observer, self.plant(THESIS_SCENARIO.driveline, wear_gain)
         )
@@ -124,12 +129,12 @@ def mpc4_readings() -> Study:
     rows = [
         (
             name,
-            *cells(TWO_INPUTS, StudyRun(SETTINGS, 'mpc4', reading.run())),
+            *cells(TWO_INPUTS, HeadlessRun(THESIS_SETTINGS, 'mpc4', reading.run())),
             *(f'{reading.growth(gain):.3f}' for gain in WEAR_GAINS),
         )
         for name, reading in READINGS.items()
     ]
-    alone = cells(TWO_INPUTS, study_run(SETTINGS, StaticControllerAlone()))
+    alone = cells(TWO_INPUTS, headless_run(THESIS_SETTINGS, StaticControllerAlone()))
     time, torsion, acceleration = ROW_OF['mpc4'].cells()
     none = ('-',) * len(WEAR_GAINS)
     return Study(

@@ -4,16 +4,14 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
 from ddct_bringup.reproduction.studies.study import (
     TABLE_5_1,
     Study,
-    StudyRun,
     cells,
     headers,
     metric_column,
-    study_run,
 )
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_bringup.verdict.metric_figures import METRICS
@@ -45,12 +43,12 @@ class Reading:
     """What becomes of C_fOL beside the controller."""
     architecture: str = 'detailed'
 
-    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
+    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> HeadlessRun:
         """Return its run in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
         settings = self.change(row.settings())
         parts = self.knowledge.parts(run, self.model, noise_rpm=self.noise_rpm)
-        return study_run(run, self.beside(MpcController(*parts, settings)))
+        return headless_run(run, self.beside(MpcController(*parts, settings)))
 
 
 def readings() -> Study:

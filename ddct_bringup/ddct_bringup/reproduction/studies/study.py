@@ -2,30 +2,22 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from operator import attrgetter
 
 import matplotlib.figure
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs import metrics_of
-from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.scores.scoring import not_finite
+from ddct_bringup.reproduction.runs import HeadlessRun
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_bringup.verdict.criteria import JudgedRun
-from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_figures import METRICS
-from ddct_bringup.verdict.state import INVALID
-from ddct_bringup.verdict.verdict import Verdict, judge
-from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Column, Figure, Table
-from ddct_plant.scenario.plant import cut_speed, end_cause
-from ddct_plant.scenario.settings import RunSettings
 
+WEAR_GAINS = (0.7, 1.0, 1.3)
+"""The ends of the thesis's Table 5.2, and a new clutch."""
+FINER_WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
 CLOSE_RPM = 10.0
 """2 % of the slip at control start in the thesis scenario; a line's width in a plot of it."""
 
@@ -45,56 +37,7 @@ class Study(Table):
 
 
 StudyFunction = Callable[[], Study]
-
-
-@dataclass(frozen=True, eq=False)
-class StudyRun:
-    """One run of a study."""
-
-    settings: RunSettings
-    controller: str | Controller
-    """Name in the registry, or the object that ran."""
-    trajectory: Trajectory
-
-    @cached_property
-    def metrics(self) -> Metrics:
-        """What the run scores."""
-        return metrics_of(self.settings, self.trajectory)
-
-    @cached_property
-    def verdict(self) -> Verdict:
-        """What the packaged limits say of it."""
-        limits, scenario = packaged_limits(), self.settings.scenario
-        run = JudgedRun(
-            self.trajectory,
-            self.start,
-            scenario.score_window_s,
-            self.metrics.as_dict(),
-            limits.rules.engagements_a_day,
-        )
-        if not_finite(self.trajectory):
-            known: str | None = INVALID
-        else:
-            known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))
-        return judge(run, limits, scenario.name, known, cut_speed(scenario))
-
-    @property
-    def slip_rpm(self) -> np.ndarray:
-        """w_d, (N+1,)."""
-        return rpm_from_rad_s(self.trajectory.slip_speed)
-
-    @property
-    def start(self) -> int:
-        """The step at which control starts."""
-        return self.settings.scenario.control_start_step
-
-
-def study_run(settings: RunSettings, controller: str | Controller) -> StudyRun:
-    """Run a controller headless."""
-    return StudyRun(settings, controller, run_headless(settings, controller))
-
-
-StudyColumn = Column[StudyRun]
+StudyColumn = Column[HeadlessRun]
 
 
 def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
@@ -102,7 +45,7 @@ def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
     return tuple(column.heading for column in columns)
 
 
-def cells(columns: Sequence[StudyColumn], run: StudyRun) -> tuple[str, ...]:
+def cells(columns: Sequence[StudyColumn], run: HeadlessRun) -> tuple[str, ...]:
     """Return what stands below them for a run."""
     return tuple(column.text(run) for column in columns)
 
@@ -111,7 +54,7 @@ def run_study(
     title: str,
     keys: Sequence[str],
     columns: Sequence[StudyColumn],
-    cases: Iterable[tuple[tuple[str, ...], StudyRun]],
+    cases: Iterable[tuple[tuple[str, ...], HeadlessRun]],
     remarks: tuple[str, ...] = (),
 ) -> Study:
     """Return the table with a row per case: its cells below the keys, then the columns."""
@@ -130,6 +73,12 @@ def deviation_range(trajectory: Trajectory) -> str:
     """Return the lowest and the highest C_m - demand of a run in N m."""
     deviation = trajectory.engine_torque - trajectory.torque_demand
     return f'{deviation.min():.0f} to {deviation.max():.0f}' if deviation.any() else '0'
+
+
+def friction_kj(run: HeadlessRun) -> float | None:
+    """Return the friction work of the clutch in kJ."""
+    energy = run.metrics.friction_energy_j
+    return None if energy is None else energy / 1000.0
 
 
 def metric_column(figure: Figure, form: str, heading: str = '') -> StudyColumn:

@@ -4,17 +4,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.runs import (
+    THESIS_SCENARIO,
+    HeadlessRun,
+    headless_run,
+    thesis_run,
+)
 from ddct_bringup.reproduction.studies.study import (
     CLOSE_RPM,
     TABLE_5_1,
     TWO_INPUTS,
+    WEAR_GAINS,
     Study,
-    StudyRun,
     close_column,
+    friction_kj,
     metric_column,
     run_study,
-    study_run,
 )
 from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_controllers.interface import ControllerContext
@@ -32,7 +37,6 @@ DEFAULT_FACTOR = (
 )
 BESIDE = ('pi', 'hinf1', 'mpc3')
 """Controllers of the thesis beside those that it cites."""
-WEAR_GAINS = (0.7, 1.0, 1.3)
 _FINE_GAINS = (0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3)
 TWO_INPUT_GAINS = {'mpc4': _FINE_GAINS, 'mpc4_wear': (0.4, 0.5, *_FINE_GAINS, 1.5, 1.6, 2.0)}
 """Wear gains. Those of `mpc4_wear` reach beyond the bounds of its estimate, 0.5 and 1.5."""
@@ -78,12 +82,12 @@ def torsion_weight() -> Study:
     )
 
 
-def _torsion_case(factor: float) -> tuple[tuple[str, str], StudyRun]:
+def _torsion_case(factor: float) -> tuple[tuple[str, str], HeadlessRun]:
     weight = factor * BASIS.output_weight
     options = {**THESIS_SCENARIO.controllers, 'mpc_torsion': {'torsion_weight': weight}}
     settings = RunSettings(replace(THESIS_SCENARIO, controllers=options))
     label = f'{weight:.2f}' + (' (default)' if factor == DEFAULT_FACTOR else '')
-    return (label, f'{factor:.3g}'), study_run(settings, 'mpc_torsion')
+    return (label, f'{factor:.3g}'), headless_run(settings, 'mpc_torsion')
 
 
 def state_of_art() -> Study:
@@ -98,7 +102,7 @@ def state_of_art() -> Study:
             Column('largest C_m less demand N m', '.0f', _largest_deviation),
         ),
         [
-            ((name, f'{gain:g}'), study_run(RunSettings(THESIS_SCENARIO, wear_gain=gain), name))
+            ((name, f'{gain:g}'), thesis_run(name, 'detailed', gain))
             for name in (*BESIDE, *STATE_OF_ART)
             for gain in WEAR_GAINS
         ],
@@ -110,7 +114,7 @@ def state_of_art() -> Study:
     )
 
 
-def _largest_deviation(run: StudyRun) -> float:
+def _largest_deviation(run: HeadlessRun) -> float:
     return float(np.abs(run.trajectory.engine_torque - run.trajectory.torque_demand).max())
 
 
@@ -127,7 +131,7 @@ def pedal_positions() -> Study:
         [
             (
                 (position, f'{engagement_time_s(ControllerContext(settings, {})):.2f}'),
-                study_run(settings, 'pedal_mpc'),
+                headless_run(settings, 'pedal_mpc'),
             )
             for position, settings in every.items()
         ],
@@ -146,19 +150,14 @@ def engine_authority() -> Study:
         (
             *TWO_INPUTS,
             metric_column(METRICS['peak_jerk_m_s3'], '.1f'),
-            Column('friction kJ', '.2f', _friction_kj),
+            Column('friction kJ', '.2f', friction_kj),
         ),
-        [((name, case), study_run(_with_authority(every[case]), name)) for name, case in cases],
+        [((name, case), headless_run(_with_authority(every[case]), name)) for name, case in cases],
     )
 
 
 def _with_authority(authority: EngineAuthority) -> RunSettings:
     return RunSettings(replace(THESIS_SCENARIO, engine_authority=authority))
-
-
-def _friction_kj(run: StudyRun) -> float | None:
-    energy = run.metrics.friction_energy_j
-    return None if energy is None else energy / 1000.0
 
 
 def two_input_wear() -> Study:
@@ -168,14 +167,7 @@ def two_input_wear() -> Study:
         ('controller', 'K_usura'),
         TWO_INPUTS,
         [
-            (
-                (name, f'{gain:g}'),
-                StudyRun(
-                    RunSettings(THESIS_SCENARIO, wear_gain=gain),
-                    name,
-                    thesis_run(name, 'detailed', gain),
-                ),
-            )
+            ((name, f'{gain:g}'), thesis_run(name, 'detailed', gain))
             for name, gains in TWO_INPUT_GAINS.items()
             for gain in gains
         ],

@@ -4,22 +4,21 @@ import math
 from collections.abc import Mapping
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.study import Study, StudyRun, study_run
-from ddct_bringup.reproduction.values.closed_loop_values import (
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, headless_run
+from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
+from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_WORDS,
     SLIP_WORDS,
     WORN,
     WORN_ARCHITECTURE,
-    figures_of_table_5_2,
-    findings_of_table_5_2,
+    Row,
+    judge_table_5_2,
+    rows_of_table_5_2,
+    words_of,
 )
-from ddct_bringup.reproduction.values.orders import words_of
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
-
-WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
 
 
 def table_5_2_in_numbers() -> Study:
@@ -40,33 +39,26 @@ def table_5_2_in_numbers() -> Study:
             'w_d, printed',
             'w_sr and A_x, printed',
         ),
-        [row for clutch in CLUTCHES for gain in WEAR_GAINS for row in rows_of(clutch, gain)],
+        [row for clutch in CLUTCHES for gain in FINER_WEAR_GAINS for row in rows_of(clutch, gain)],
     )
 
 
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return a row per controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
-    runs = {name: study_run(settings, name) for name in SLIP_WORDS}
-    trajectories = {name: run.trajectory for name, run in runs.items()}
-    slips, metrics = figures_of_table_5_2(settings, trajectories)
-    figures = (
-        slips,
-        _known({name: one.torsion_speed_std_rpm for name, one in metrics.items()}),
-        _known({name: one.acceleration_std_m_s2 for name, one in metrics.items()}),
-    )
-    ranked = [_with_states(row, runs) for row in figures]
-    printed: Mapping[str, Finding] = {}
-    if wear_gain in WORN:
-        printed = findings_of_table_5_2(wear_gain, *ranked)
+    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    states = {name: run.verdict['state'] for name, run in runs.items()}
+    figures = rows_of_table_5_2(runs)
+    ranked = [_with_states(row, states) for row in figures]
     words = [words_of(row) for row in ranked]
+    printed = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
         (
             clutch,
             f'{wear_gain:g}',
             name,
             *(f'{row[name]:.3g}' for row in figures),
-            _state(run),
+            states[name],
             *(row[name] for row in words),
             _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_WORDS[name]),
             _printed(
@@ -74,25 +66,16 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
                 OSCILLATION_WORDS.get(wear_gain, {}).get(name, ''),
             ),
         )
-        for name, run in runs.items()
+        for name in SLIP_WORDS
     ]
 
 
-def _known(row: Mapping[str, float | None]) -> dict[str, float]:
-    """Return the figures, an undefined one as infinite."""
-    return {name: math.inf if figure is None else figure for name, figure in row.items()}
-
-
-def _with_states(row: Mapping[str, float], runs: Mapping[str, StudyRun]) -> dict[str, float]:
+def _with_states(row: Row, states: Mapping[str, str]) -> Row:
     """Return the figures, infinite for a run that got out of hand: however small, none is good."""
     return {
-        name: figure if _state(runs[name]) in (ENGAGED, NOT_ENGAGED) else math.inf
+        name: figure if states[name] in (ENGAGED, NOT_ENGAGED) else math.inf
         for name, figure in row.items()
     }
-
-
-def _state(run: StudyRun) -> str:
-    return run.verdict['state']
 
 
 def _printed(finding: Finding | None, word: str) -> str:

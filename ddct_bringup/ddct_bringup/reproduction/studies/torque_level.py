@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
-from ddct_bringup.reproduction.studies.study import TWO_INPUTS, Study, cells, headers, study_run
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, THESIS_SETTINGS, headless_run
+from ddct_bringup.reproduction.studies.study import TWO_INPUTS, Study, cells, headers
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimate.observer import Observer
@@ -20,11 +20,9 @@ from ddct_controllers.mpc.model.transmission_model import (
 from ddct_controllers.mpc.program.horizon import CondensedProgram
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
-from ddct_plant.scenario.settings import RunSettings
 
 PULLS = (0.0, 0.01, 0.05, 0.1, 0.14, 0.2, 0.5, 1.0, 2.0)
 NEAR_WEAR = (0.95, 1.05)
-SETTINGS = RunSettings(THESIS_SCENARIO)
 ALL_BUT_ONE = 1.0 - 1e-6
 """Beyond this a mode is as good as an integrator."""
 COASTING_S = 170
@@ -37,10 +35,10 @@ def torque_level() -> Study:
     worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]
     rows = []
     for pull in PULLS:
-        observer = make_observer(SETTINGS, model)
+        observer = make_observer(THESIS_SETTINGS, model)
         settings = TwoInputCost(demand_weight=pull).settings()
         mpc4 = MpcController(model, observer, settings, EngineAuthority())
-        run = study_run(SETTINGS, mpc4)
+        run = headless_run(THESIS_SETTINGS, mpc4)
         left = run.trajectory.engine_torque[-1] - run.trajectory.torque_demand[-1]
         rows.append(
             (

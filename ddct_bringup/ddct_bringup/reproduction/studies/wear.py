@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import (
+    FINER_WEAR_GAINS,
     TABLE_5_1,
     Study,
-    StudyRun,
     run_study,
-    study_run,
 )
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
@@ -24,7 +23,6 @@ CONTROLLERS = (
     *('mpc3', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear'),
     *('hinf2', 'ls8'),
 )
-WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
 FAR_GAINS = (0.4, 0.7, 1.0, 1.3, 2.5)
 """The outer two are beyond what a clutch is taken to reach."""
 LOAD_STEP_N_M = 470.0
@@ -42,7 +40,7 @@ def wear() -> Study:
     """Run the controllers at every wear gain, detailed: Table 5.2 in numbers."""
     return _study(
         'detailed',
-        WEAR_GAINS,
+        FINER_WEAR_GAINS,
         'C_fOL is wrong by the wear gain, and no feedback acts before 0.6 s: that is where the '
         'slip at 0.6 s comes from, and t_a grows with it.',
     )
@@ -67,10 +65,7 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
             Column('after load step', 'z.2f', _after_load_step),
         ),
         [
-            (
-                (name, f'{gain:g}'),
-                study_run(RunSettings(THESIS_SCENARIO, architecture, wear_gain=gain), name),
-            )
+            ((name, f'{gain:g}'), thesis_run(name, architecture, gain))
             for name in CONTROLLERS
             for gain in wear_gains
         ],
@@ -82,11 +77,11 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
     )
 
 
-def _largest_at_last(run: StudyRun) -> float:
+def _largest_at_last(run: HeadlessRun) -> float:
     return float(np.abs(run.slip_rpm[-steps_in('last', LAST_S) :]).max())
 
 
-def _after_load_step(run: StudyRun) -> float:
+def _after_load_step(run: HeadlessRun) -> float:
     controller = make_controller(str(run.controller), run.settings)
     return rpm_from_rad_s(slip_after_load_step(run.settings, controller, *_LOAD_STEP)[-1])
 
@@ -104,7 +99,7 @@ def wear_estimate() -> Study:
             'largest error after 0.6 s',
             'w_d at the end rpm',
         ),
-        [_estimate_row(gain, level) for level in (0.0, noise) for gain in WEAR_GAINS],
+        [_estimate_row(gain, level) for level in (0.0, noise) for gain in FINER_WEAR_GAINS],
         (
             f'The load step is {LOAD_STEP_N_M:g} N m at the wheels at {LOAD_STEP_S:g} s.',
             'Torque flows from about 0.05 s on; the noise is the standard deviation that the '
@@ -113,8 +108,8 @@ def wear_estimate() -> Study:
     )
 
 
-def _estimates(settings: RunSettings, noise_rad_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the estimate of K_usura and w_d in rad/s, (steps + 1,), with the load step."""
+def _estimate_row(wear_gain: float, noise_rad_s: float) -> tuple[str, ...]:
+    settings = RunSettings(THESIS_SCENARIO, wear_gain=wear_gain)
     controller = PREDICTIVE['mpc_wear'](ControllerContext(settings, {}))
     gains: list[float] = []
     slip = slip_after_load_step(
@@ -123,13 +118,7 @@ def _estimates(settings: RunSettings, noise_rad_s: float) -> tuple[np.ndarray, n
         *_LOAD_STEP,
         each_step=lambda: gains.append(controller.observer.wear_gain),
     )
-    return np.array(gains), slip
-
-
-def _estimate_row(wear_gain: float, noise_rad_s: float) -> tuple[str, ...]:
-    settings = RunSettings(THESIS_SCENARIO, wear_gain=wear_gain)
-    gains, slip = _estimates(settings, noise_rad_s)
-    error = gains - wear_gain
+    error = np.array(gains) - wear_gain
     controlled = error[settings.scenario.control_start_step :]
     outside = np.flatnonzero(np.abs(error) > CLOSE)
     return (

@@ -1,39 +1,39 @@
-"""What we compute for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims."""
+"""
+What we compute for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims.
 
-from collections.abc import Mapping
+The claims are what the thesis says in words of its architectures and controllers. The rule of each
+stands in its entry of the gate's files: a strict order, or one by a factor.
+"""
 
-from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
-from ddct_bringup.reproduction.runs import (
-    THESIS_SCENARIO,
-    metrics_of,
-    table_figures,
-    thesis_metrics,
-    thesis_run,
+from ddct_bringup.reproduction.runs import thesis_run
+from ddct_bringup.reproduction.values.orders import (
+    CLEARLY,
+    SLIP_WORDS,
+    WORN,
+    WORN_ARCHITECTURE,
+    below,
+    each_lower,
+    is_extreme,
+    judge_table_5_2,
+    metric,
+    rows_of_table_5_2,
+    sigma_text,
+    sigmas,
+    text,
 )
-from ddct_bringup.reproduction.values.claims import claim_values
-from ddct_bringup.reproduction.values.orders import CLEARLY, is_extreme, judge_words, text
 from ddct_bringup.reproduction.values.plant_values import deviation_bound_percent
-from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
-from ddct_plant.base.timebase import steps_in
-from ddct_plant.scenario.settings import RunSettings
+from ddct_bringup.thesis.table_5_1 import FIGURES, ROW_OF
 
-WORN = (0.7, 1.3)
-"""The two critical values of K_usura, inequality (3.2)."""
-WORN_ARCHITECTURE = 'feedforward'
-"""That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
-SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
-"""Table 5.2: w_d, at both values of K_usura."""
-OSCILLATION_WORDS = {
-    0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
-    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
-}
-"""Table 5.2: w_sr and A_x by K_usura."""
+LOOP_SHAPING = tuple(f'ls{number}' for number in range(1, 10))
+H_INFINITY = ('hinf1', 'hinf2', 'hinf3')
+PREDICTIVE = ('mpc1', 'mpc2', 'mpc3')
 NOT_REACHED = 'not reached'
 """In the place of t_a when w_d does not become 0."""
-Figures = Mapping[str, float | None]
-"""One figure by controller, None where it does not exist."""
+_ERROR = 'slip_rmse_rpm'
+_FREQUENCY, _PREDICTIVE = ('ls8', 'hinf1'), ('mpc3', 'mpc4')
+_SIMILAR = 0.25
+"""Relative distance within which two figures are similar: the tolerance of a prediction."""
 _EQUAL_MODELS_PERCENT = 1.0
 """Share of the peak of w_d. Models that are nearer to each other count as equal."""
 
@@ -41,68 +41,114 @@ _EQUAL_MODELS_PERCENT = 1.0
 def closed_loop_values() -> dict[str, Value | None]:
     """Return the values by the ids that the thesis gate's files give them."""
     bound = deviation_bound_percent()
-    models = Finding(bound <= _EQUAL_MODELS_PERCENT, f'within {bound:g} % of the peak')
-    return {'1.5.1 models': models, **claim_values(), **_table_5_1(), **_table_5_2()}
+    base = metric(_ERROR, H_INFINITY, 'base')
+    twist, _ = sigmas(H_INFINITY, 'base')
+    detailed = sigmas(H_INFINITY)
+    return {
+        '1.5.1 models': Finding(bound <= _EQUAL_MODELS_PERCENT, f'within {bound:g} % of the peak'),
+        '2.4 feedforward': each_lower(
+            [metric(_ERROR, LOOP_SHAPING, 'feedforward')], [metric(_ERROR, LOOP_SHAPING, 'base')]
+        ),
+        '2.5 tanh': _tanh_no_better(LOOP_SHAPING),
+        '3.3 tracks': Finding(is_extreme('hinf2', min, [base], CLEARLY), text('rpm', base)),
+        '3.3 cost': Finding(is_extreme('hinf2', max, [twist], CLEARLY), text('rpm', twist)),
+        '3.4 faster': _faster_oscillates(),
+        '3.5 tanh': _tanh_no_better(H_INFINITY),
+        '3.6 reduced': each_lower(detailed, sigmas(H_INFINITY, 'feedforward')),
+        '3.6 bad': Finding(
+            is_extreme('hinf2', max, detailed, CLEARLY), sigma_text(detailed, H_INFINITY)
+        ),
+        '4.2 runs': _mpc_oscillates_less(),
+        **_table_claims(),
+        **_table_5_1(),
+        **_table_5_2(),
+    }
+
+
+def _tanh_no_better(controllers: tuple[str, ...]) -> Finding:
+    tanh, ramp = (sigmas(controllers, name) for name in ('feedforward_tanh', 'feedforward'))
+    return each_lower(tanh, ramp, wanted=False)
+
+
+def _faster_oscillates() -> Finding:
+    error = metric(_ERROR, H_INFINITY, 'feedforward')
+    twist, _ = sigmas(H_INFINITY, 'feedforward')
+    by_error = sorted(H_INFINITY, key=error.__getitem__)
+    by_twist = sorted(H_INFINITY, key=twist.__getitem__, reverse=True)
+    return Finding(by_error == by_twist, f'error {text("rpm", error)}; w_sr {text("rpm", twist)}')
+
+
+def _mpc_oscillates_less() -> Finding:
+    before = (*LOOP_SHAPING, *H_INFINITY)
+    rows = sigmas((*before, *PREDICTIVE))
+    lowest = [min(before, key=row.__getitem__) for row in rows]
+    less = all(
+        row[name] < row[least]
+        for row, least in zip(rows, lowest, strict=True)
+        for name in PREDICTIVE
+    )
+    return Finding(less, sigma_text(rows, (*PREDICTIVE, *dict.fromkeys(lowest))))
+
+
+def _table_claims() -> dict[str, Value | None]:
+    """Return the values that the five controllers of Table 5.1 decide, by the ids of the files."""
+    times, rows = metric(FIGURES[0], ROW_OF), sigmas(tuple(ROW_OF))
+    of_time, of_all = text('s', times), sigma_text(rows, ROW_OF)
+    four = (*_FREQUENCY, *_PREDICTIVE)
+    pairs = [(mpc, other) for mpc in _PREDICTIVE for other in _FREQUENCY]
+    alike = all(abs(row['mpc3'] - row['hinf1']) <= _SIMILAR * row['hinf1'] for row in rows)
+    return {
+        '4.2 table': _printed_order(),
+        '4.3 none': Finding(is_extreme('mpc4', min, rows, CLEARLY), of_all),
+        '5.1 slowest': Finding(is_extreme('pi', max, [times]), of_time),
+        '5.1 ls8 largest': Finding(is_extreme('ls8', max, rows), of_all),
+        **{
+            f'5.1 {name} damps': Finding(below(name, 'ls8', rows), sigma_text(rows, (name, 'ls8')))
+            for name in ('mpc3', 'hinf1')
+        },
+        '5.1 similar': Finding(alike, sigma_text(rows, ('mpc3', 'hinf1'))),
+        '5.1 mpc3 faster': Finding(below('mpc3', 'hinf1', [times]), of_time),
+        '5.1 mpc4 fastest': Finding(is_extreme('mpc4', min, [times]), of_time),
+        '5.1 best': Finding(is_extreme('mpc4', min, (times, *rows)), f't_a {of_time}; {of_all}'),
+        '6 frequency': Finding(
+            all(below(mpc, other, rows) for mpc, other in pairs), sigma_text(rows, four)
+        ),
+        '6 better': Finding(
+            all(below(mpc, other, (times, *rows)) for mpc, other in pairs),
+            f't_a {of_time}; {sigma_text(rows, four)}',
+        ),
+    }
+
+
+def _printed_order() -> str:
+    """Return how MPC3's printed sigmas are beside the printed ones of the chapters before."""
+    better = all(
+        ROW_OF['mpc3'].figures()[name] < ROW_OF[before].figures()[name]
+        for before in _FREQUENCY
+        for name in FIGURES[1:]
+    )
+    return 'better' if better else 'not better'
 
 
 def _table_5_1() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
-    for row in THESIS_TABLE:
-        figures = table_figures(thesis_metrics(thesis_run(row.controller, 'detailed', 1.0)))
+    for controller in ROW_OF:
+        figures = thesis_run(controller, 'detailed', 1.0).figures
         if figures['engagement_time_s'] is None:
             figures['engagement_time_s'] = NOT_REACHED
-        found |= {f'5.1 {row.controller} {name}': value for name, value in figures.items()}
+        found |= {f'5.1 {controller} {name}': value for name, value in figures.items()}
     return found
 
 
 def _table_5_2() -> dict[str, Value | None]:
+    """Return the words, and whether Hinf2 alone ends clearly nearer to zero at both K_usura."""
     found: dict[str, Value | None] = {}
     ends = {}
     for wear in WORN:
-        settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, wear_gain=wear)
         runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
-        ends[wear], _, findings = judge_table_5_2(settings, runs)
-        found |= findings
-    return found | {'5.1 robust': _only_robust('hinf2', ends)}
-
-
-def figures_of_table_5_2(
-    settings: RunSettings, runs: Mapping[str, Trajectory]
-) -> tuple[dict[str, float], dict[str, Metrics]]:
-    """Return by controller |w_d| at the end of the score window in rad/s, and the metrics."""
-    end = steps_in('score_window_s', settings.scenario.score_window_s[1])
-    slips = {name: abs(float(run.slip_speed[end])) for name, run in runs.items()}
-    return slips, {name: metrics_of(settings, run) for name, run in runs.items()}
-
-
-def judge_table_5_2(
-    settings: RunSettings, runs: Mapping[str, Trajectory]
-) -> tuple[dict[str, float], dict[str, Metrics], dict[str, Finding]]:
-    """Return by controller |w_d| at the end in rad/s and metrics; by the gate's ids the words."""
-    slips, metrics = figures_of_table_5_2(settings, runs)
-    twist = {name: one.torsion_speed_std_rpm for name, one in metrics.items()}
-    acceleration = {name: one.acceleration_std_m_s2 for name, one in metrics.items()}
-    return slips, metrics, findings_of_table_5_2(settings.wear_gain, slips, twist, acceleration)
-
-
-def findings_of_table_5_2(
-    wear_gain: float, slips: Figures, twist: Figures, acceleration: Figures
-) -> dict[str, Finding]:
-    """Return what the printed words come to, by the gate's ids, of |w_d|, w_sr and A_x."""
-    words = {
-        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-        'w_sr': judge_words(
-            OSCILLATION_WORDS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
-        ),
-    }
-    return {
-        f'5.2 {name} {what} {wear_gain:g}': finding
-        for what, found in words.items()
-        for name, finding in found.items()
-    }
-
-
-def _only_robust(name: str, ends: dict[float, dict[str, float]]) -> Finding:
-    """Return whether one controller ends clearly nearer to zero at both values of K_usura."""
+        rows = rows_of_table_5_2(runs)
+        ends[wear] = rows[0]
+        found |= judge_table_5_2(wear, rows)
     figures = '; '.join(f'K_usura {wear:g}: {text("rad/s", row)}' for wear, row in ends.items())
-    return Finding(is_extreme(name, min, ends.values(), CLEARLY), figures)
+    robust = Finding(is_extreme('hinf2', min, ends.values(), CLEARLY), figures)
+    return found | {'5.1 robust': robust}

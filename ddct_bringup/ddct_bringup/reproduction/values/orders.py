@@ -10,13 +10,23 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.runs import thesis_metrics, thesis_run
-from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
+from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
+from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_plant.base.timebase import steps_in
 
-COMPARED = tuple(row.controller for row in THESIS_TABLE)
-"""The controllers of Table 5.1."""
 CLEARLY = 2.0
 """Factor behind `huge`, `very bad`, `no oscillations` and the only one that does something."""
+WORN = (0.7, 1.3)
+"""The two critical values of K_usura, inequality (3.2)."""
+WORN_ARCHITECTURE = 'feedforward'
+"""That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
+SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+"""Table 5.2: w_d, at both values of K_usura."""
+OSCILLATION_WORDS = {
+    0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
+    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
+}
+"""Table 5.2: w_sr and A_x by K_usura."""
 
 WORDS = (('good', 'low'), ('average',), ('bad', 'high'))
 """From the best to the worst."""
@@ -29,19 +39,21 @@ Row = Mapping[str, float]
 
 def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed') -> Row:
     """Return a metric of the runs with a new clutch, by controller."""
-    found = {}
-    for controller in controllers:
-        value = getattr(thesis_metrics(thesis_run(controller, architecture, 1.0)), name)
-        found[controller] = math.inf if value is None else float(value)
-    return found
+    return _metric_of(name, {each: thesis_run(each, architecture, 1.0) for each in controllers})
+
+
+def _metric_of(name: str, runs: Mapping[str, HeadlessRun]) -> Row:
+    found = {controller: getattr(run.metrics, name) for controller, run in runs.items()}
+    return {
+        controller: math.inf if value is None else float(value)
+        for controller, value in found.items()
+    }
 
 
 def sigmas(controllers: Sequence[str], architecture: str = 'detailed') -> tuple[Row, Row]:
     """Return the standard deviations of w_sr in rpm and of A_x in m/s^2."""
-    return (
-        metric('torsion_speed_std_rpm', controllers, architecture),
-        metric('acceleration_std_m_s2', controllers, architecture),
-    )
+    twist, acceleration = (metric(name, controllers, architecture) for name in FIGURES[1:])
+    return twist, acceleration
 
 
 def below(one: str, other: str, rows: Iterable[Row]) -> bool:
@@ -89,8 +101,33 @@ def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
 
 
+def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
+    """Return |w_d| as the score window ends in rad/s, std w_sr in rpm and std A_x in m/s^2."""
+    slips = {}
+    for name, run in runs.items():
+        end = steps_in('score_window_s', run.settings.scenario.score_window_s[1])
+        slips[name] = abs(float(run.trajectory.slip_speed[end]))
+    return [slips, *(_metric_of(name, runs) for name in FIGURES[1:])]
+
+
+def judge_table_5_2(wear_gain: float, rows: Sequence[Row]) -> dict[str, Finding]:
+    """Return what the printed words come to, by the gate's ids, of `rows_of_table_5_2`."""
+    slips, twist, acceleration = rows
+    words = {
+        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
+        'w_sr': judge_words(
+            OSCILLATION_WORDS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
+        ),
+    }
+    return {
+        f'5.2 {name} {what} {wear_gain:g}': finding
+        for what, found in words.items()
+        for name, finding in found.items()
+    }
+
+
 def judge_words(
-    words: Mapping[str, str], figures: Sequence[tuple[str, Mapping[str, float | None]]]
+    words: Mapping[str, str], figures: Sequence[tuple[str, Row]]
 ) -> dict[str, Finding]:
     """
     Return what each controller's word comes to, by its name.
@@ -128,21 +165,17 @@ def words_of(row: Row) -> dict[str, str]:
     }
 
 
-def _stands(
-    name: str, other: str, words: Mapping[str, str], row: Mapping[str, float | None]
-) -> bool:
+def _stands(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
     """Return whether the figures of two controllers are as their words say."""
-    known = {one: math.inf if figure is None else figure for one, figure in row.items()}
-    mine, theirs = known[name], known[other]
     order = _rank(words[name]) - _rank(words[other])
     if order == 0:
-        return max(mine, theirs) <= _ALIKE * min(mine, theirs)
-    return mine > theirs if order > 0 else mine < theirs
+        return max(row[name], row[other]) <= _ALIKE * min(row[name], row[other])
+    return row[name] > row[other] if order > 0 else row[name] < row[other]
 
 
 def _rank(word: str) -> int:
     return next(rank for rank, same in enumerate(WORDS) if word in same)
 
 
-def _text(figure: float | None, unit: str) -> str:
-    return 'no figure' if figure is None else f'{figure:.3g} {unit}'
+def _text(figure: float, unit: str) -> str:
+    return f'{figure:.3g} {unit}' if figure < math.inf else 'no figure'

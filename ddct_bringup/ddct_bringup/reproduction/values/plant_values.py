@@ -121,7 +121,7 @@ def deviation_bound_percent() -> float:
 
 def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
     """Return w_d in rad/s of each model under the torques of the PI's run, (N+1,)."""
-    run = thesis_run('pi', 'detailed', 1.0)
+    run = thesis_run('pi', 'detailed', 1.0).trajectory
     start = np.array([*run.joint_speed[0, :3], run.joint_position[0, 3]])
     torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
     phase = SlipPhase(*torques, start)
@@ -130,7 +130,7 @@ def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
 
 def deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
     """Return how far w_d of each model is from the detailed one, as a share of its peak."""
-    detailed = thesis_run('pi', 'detailed', 1.0).slip_speed
+    detailed = thesis_run('pi', 'detailed', 1.0).trajectory.slip_speed
     return {
         name: float(np.abs(slip - detailed).max() / np.abs(detailed).max())
         for name, slip in plant_slips(plants).items()

@@ -15,7 +15,7 @@ from ddct_bringup.reproduction.figures.command import (
     figures_not_drawn,
 )
 from ddct_bringup.reproduction.figures.thesis_figure import figure_order
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_metrics, thesis_run
+from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
@@ -74,8 +74,7 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
 
 
 def torsion_std_rpm(controller: str, architecture: str) -> float:
-    run = thesis_run(controller, architecture, 1.0)
-    return thesis_metrics(run).torsion_speed_std_rpm
+    return thesis_run(controller, architecture, 1.0).metrics.torsion_speed_std_rpm
 
 
 def test_verdicts_on_the_h_infinity_figures_hold():
@@ -92,17 +91,14 @@ def test_verdicts_on_the_h_infinity_figures_hold():
 
 
 def test_verdicts_on_the_loop_shaping_figures_hold():
-    lowest_rpm = {
-        name: rpm_from_rad_s(thesis_run(name, 'detailed', 1.0).slip_speed.min())
-        for name in ('ls1', 'pi')
-    }
+    lowest_rpm = {name: thesis_run(name, 'detailed', 1.0).slip_rpm.min() for name in ('ls1', 'pi')}
     assert lowest_rpm['ls1'] < -100.0 < -20.0 < lowest_rpm['pi']
     pi = torsion_std_rpm('pi', 'detailed')
     assert all(torsion_std_rpm(name, 'detailed') > pi for name in ('ls2', 'ls3', 'ls8', 'ls9'))
 
 
 def metrics(controller: str) -> Metrics:
-    return thesis_metrics(thesis_run(controller, 'detailed', 1.0))
+    return thesis_run(controller, 'detailed', 1.0).metrics
 
 
 def test_verdicts_on_the_predictive_figures_hold():
@@ -118,7 +114,7 @@ def test_verdicts_on_the_predictive_figures_hold():
 
 
 def test_verdict_on_the_figures_of_mpc4_holds():
-    run = thesis_run('mpc4', 'detailed', 1.0)
+    run = thesis_run('mpc4', 'detailed', 1.0).trajectory
     controlled = rpm_from_rad_s(run.slip_speed[THESIS_SCENARIO.control_start_step :])
     assert controlled.min() > 0.0
     near = np.flatnonzero(controlled < 10.0)

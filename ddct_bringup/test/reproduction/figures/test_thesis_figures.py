@@ -214,7 +214,7 @@ def test_command_draws_a_controller_of_ones_own_into_the_figures_of_runs(tmp_pat
     columns = dict(zip(rows[0], np.array(rows[1:], dtype=float).T, strict=True))
     assert list(columns) == ['Time, s', *(f'{each}: A_x, m/s²' for each in ('MPC4', name, 'pi'))]
     for shown, controller in (('MPC4', 'mpc4'), (name, str(own)), ('pi', 'pi')):
-        run = thesis_run(controller, 'detailed', 1.0)
+        run = thesis_run(controller, 'detailed', 1.0).trajectory
         np.testing.assert_allclose(
             columns[f'{shown}: A_x, m/s²'], run.vehicle_accel[50:], rtol=1e-8, atol=1e-12
         )

@@ -6,9 +6,9 @@ from generator.pages import as_markdown, shown_tables
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
     admissible_scenarios,
     prediction_ranges,
+    score_windows,
     worn_ranges,
 )
-from ddct_bringup.reproduction.studies.score_windows import score_windows
 from ddct_bringup.reproduction.studies.study import Study
 
 pytestmark = pytest.mark.slow

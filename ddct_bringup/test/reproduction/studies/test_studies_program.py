@@ -9,7 +9,7 @@ from generator.pages import shown_tables
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.studies import command
 from ddct_bringup.reproduction.studies.command import STUDIES
-from ddct_bringup.reproduction.studies.engagement_charts import Slip, engagement_chart
+from ddct_bringup.reproduction.studies.engagements import Slip, engagement_chart
 from ddct_bringup.reproduction.studies.study import Study
 
 FIRST = Study('The first', ('name', 'value'), [('a', '1'), ('b', '2')], ('Lower is better.',))

@@ -20,7 +20,7 @@ WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
 SLIPS = {'ls8': 30.0, 'hinf2': 1.0, 'mpc3': 20.0, 'mpc4': 10.0}
 
 
-def judged(**changed: float | None) -> dict[str, bool]:
+def judged(**changed: float) -> dict[str, bool]:
     findings = judge_words(WORDS, [('rad/s', {**SLIPS, **changed})])
     return {name: finding.holds for name, finding in findings.items()}
 
@@ -51,8 +51,8 @@ def test_word_about_two_quantities_must_be_right_in_both_and_shows_both():
 
 
 def test_figure_that_does_not_exist_is_the_worst():
-    assert not judged(mpc4=None)['mpc4']
-    figures = judge_words(WORDS, [('rad/s', {**SLIPS, 'mpc4': None})])['mpc4'].figures
+    assert not judged(mpc4=math.inf)['mpc4']
+    figures = judge_words(WORDS, [('rad/s', {**SLIPS, 'mpc4': math.inf})])['mpc4'].figures
     assert figures == 'no figure'
 
 
@@ -100,9 +100,8 @@ def test_standard_deviations_are_shown_with_their_units():
 
 
 def test_figure_that_does_not_exist_is_infinite(monkeypatch):
-    none = SimpleNamespace(engagement_time_s=None)
-    monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: None)
-    monkeypatch.setattr(orders, 'thesis_metrics', lambda run: none)
+    none = SimpleNamespace(metrics=SimpleNamespace(engagement_time_s=None))
+    monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: none)
     assert orders.metric('engagement_time_s', ('mpc4',)) == {'mpc4': math.inf}
 
 
