@@ -2,7 +2,7 @@
 
 import argparse
 import os
-import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +19,10 @@ from ddct_bringup.reproduction.calibration.tables import all_tables, check_table
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
+from ddct_plant.program.command_line import complain
 from ddct_plant.program.table import print_tables
 from ddct_plant.scenario.file import load_scenario
 
-NAME = 'ddct reproduce calibration'
 _DESCRIPTION = """\
 Fit engine torque, reference slope, PI gains and the end of the score window to the
 LS8, Hinf1 and PI rows of Table 5.1 of the thesis (nine numbers; the MPC rows take no
@@ -38,6 +38,9 @@ examples:
 
 The exit code is 1 when a residual is outside its tolerance (5 % of t_a, 10 % of a
 sigma), or when --quick finds that the frozen scenario is not the optimum."""
+
+
+_progress = partial(complain, 'ddct reproduce calibration')
 
 
 def add_parser(subparsers: Any) -> None:
@@ -69,61 +72,53 @@ def run(options: argparse.Namespace) -> int:
     parser = options.parser
     if options.quick and options.write:
         parser.error('--quick finds nothing to write: leave out --write')
-    if options.ensemble is not None or options.predict is not None:
+    folder = options.ensemble or options.predict
+    if folder:
         if options.quick or options.json or options.write:
             parser.error('--ensemble and --predict take no other option: leave it out')
-        _make_ensemble(options)
+        _make_ensemble(folder, search=bool(options.ensemble))
         return 0
     if options.json == options.write == STDOUT:
         parser.error('--json - and --write - both want standard output: give one a file')
     require_place('--json', options.json)
     require_place('--write', options.write)
-    quiet = STDOUT in (options.json, options.write)
     if options.quick:
         record = check_frozen(load_scenario('thesis'), _progress)
         tables = check_tables(record)
     else:
         record = calibrate(_progress)
         tables = list(all_tables(record).values())
-    if not quiet:
+    if STDOUT not in (options.json, options.write):
         print_tables(tables)
     if options.json:
         write_json(options.json, record)
-    _require_tolerances(record)
-    if options.quick:
-        _require_optimum(record)
+    _require_success(record)
     if options.write:
         write_text(options.write, scenario_text(record))
     return 0
 
 
-def _make_ensemble(options: argparse.Namespace) -> None:
+def _make_ensemble(folder: Path, *, search: bool) -> None:
     """Write the admissible scenarios, or keep those in the folder, and what they predict."""
-    folder: Path = options.ensemble or options.predict
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise DdctError(f'{folder} is no folder that can be written: make it first')
     frozen = load_scenario('thesis')
-    if options.ensemble is not None:
+    if search:
         write_members(find_members(frozen, _progress), folder)
     members = members_in(folder)
     write_json(str(folder / PREDICTIONS_FILE), predict(frozen, members, _progress).as_record())
     _progress(f'{len(members)} admissible scenarios and {PREDICTIONS_FILE} are in {folder}')
 
 
-def _progress(text: str) -> None:
-    print(f'{NAME}: {text}', file=sys.stderr, flush=True)
-
-
-def _require_tolerances(record: Record) -> None:
+def _require_success(record: Record) -> None:
+    """Raise DdctError unless all is within tolerance; of a check, unless it is the optimum too."""
     outside = outside_tolerance(record['residuals'])
     if outside:
         raise DdctError(f'no scenario fits: {", ".join(outside)} is outside the tolerance')
-
-
-def _require_optimum(record: Record) -> None:
-    moved = max(record['moved'].items(), key=lambda item: abs(item[1]))
-    if abs(moved[1]) > RETURN_TOLERANCE:
-        raise DdctError(
-            f'scenario thesis is not the optimum: a refit moves {moved[0]} by '
-            f'{100.0 * moved[1]:+.1f} % of its range; run it again without --quick'
-        )
+    if 'moved' in record:
+        name, share = max(record['moved'].items(), key=lambda item: abs(item[1]))
+        if abs(share) > RETURN_TOLERANCE:
+            raise DdctError(
+                f'scenario thesis is not the optimum: a refit moves {name} by '
+                f'{100.0 * share:+.1f} % of its range; run it again without --quick'
+            )

@@ -1,7 +1,19 @@
 """
-The kept admissible scenarios: centres and rims of the region, with other assumptions too.
+Which scenarios the calibration admits, and those that are kept: by the nine fitted figures alone.
 
-They are chosen by the nine fitted figures; docs/thesis/predictions.md states the choice.
+A scenario is admissible when
+- w_d reaches zero with each of the three fitted controllers, and each of the nine figures (rows
+  LS8, Hinf1 and PI of Table 5.1), of its whole run in its own score window, is within the
+  calibration's tolerance of the print: 5 % for t_a, 10 % for both sigmas,
+- the PI loop is stable,
+- every fitted value is within the bounds of the calibration.
+
+The tolerances are the unit of the calibration's residuals and decide whether it has succeeded, so
+the frozen scenario and every other that passes are equally good answers to it. No wider limit has
+a reason of its own. Rows of a predictive controller are not looked at.
+
+Kept are centres and rims of the region of the admissible, with other assumptions too;
+docs/thesis/predictions.md states the choice.
 """
 
 import dataclasses
@@ -9,18 +21,29 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from ddct_bringup.reproduction.calibration.admissible import why_not_admissible
 from ddct_bringup.reproduction.calibration.analysis import changed_assumptions
-from ddct_bringup.reproduction.calibration.parameters import RANGE, Values, values_of
+from ddct_bringup.reproduction.calibration.parameters import (
+    PARAMETERS,
+    RANGE,
+    ROWS,
+    Record,
+    Values,
+    outside_tolerance,
+    pi_growth_rate,
+    residual_rows,
+    values_of,
+)
 from ddct_bringup.reproduction.calibration.problem import Problem
 from ddct_bringup.reproduction.calibration.record import annotated_yaml
 from ddct_bringup.reproduction.calibration.region import centre, rim
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress
+from ddct_bringup.reproduction.runs import headless_run
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
 
 QUANTITIES = {
     'level': ('torque level', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
@@ -42,6 +65,40 @@ def members() -> tuple[Scenario, ...]:
 def members_in(folder: Path) -> tuple[Scenario, ...]:
     """Return the scenarios that a folder has, in the order of their names."""
     return tuple(load_scenario(str(file)) for file in sorted(folder.glob('*.yaml')))
+
+
+def why_not_admissible(scenario: Scenario) -> list[str]:
+    """
+    Return in words what the rule holds against a scenario; nothing for an admissible one.
+
+    Raise ParameterError for a scenario that is not of the calibrated kind.
+    """
+    values = values_of(scenario)
+    against = [
+        f'{parameter.name} {value:g} is outside {parameter.lower:g} to {parameter.upper:g}'
+        for parameter, value in zip(PARAMETERS, values, strict=True)
+        if not parameter.lower <= value <= parameter.upper
+    ]
+    growth = pi_growth_rate(scenario.driveline, *values[4:])
+    if growth >= 0.0:
+        against.append(f'the PI loop grows by {growth:.2g}/s')
+    figures = _figures(scenario)
+    for row, found in figures.items():
+        missing = [name for name, value in found.items() if value is None]
+        if missing:
+            against.append(f'{row} has no {", ".join(missing)}')
+    whole = {row: found for row, found in figures.items() if None not in found.values()}
+    return against + outside_tolerance(residual_rows(whole))
+
+
+def fitted_rows(scenario: Scenario) -> list[Record]:
+    """Return the nine figures of the whole run, as in the record of the calibration."""
+    return residual_rows(_figures(scenario))
+
+
+def _figures(scenario: Scenario) -> dict[str, dict[str, float]]:
+    """Return the figures of the fitted rows by name; None for what is undefined."""
+    return {row: headless_run(RunSettings(scenario), row).figures for row in ROWS}
 
 
 def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:

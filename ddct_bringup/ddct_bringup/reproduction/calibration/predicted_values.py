@@ -18,7 +18,6 @@ from ddct_bringup.reproduction.values.orders import (
 )
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
 from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED_ROWS
-from ddct_controllers.interface import Controller
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -30,16 +29,16 @@ OPEN_LOOP = 'C_fOL alone'
 def predict(frozen: Scenario, members: Iterable[Scenario], progress: Progress) -> Predictions:
     """Return every prediction of the frozen scenario, with its values in the members."""
     progress(f'predictions of {frozen.name}')
-    by_member: dict[str, dict[str, Value]] = {}
-    frozen_values = predicted_values(frozen)
+    of_frozen = predicted_values(frozen)
+    found: dict[str, dict[str, Value]] = {}
     for member in members:
         progress(f'predictions of {member.name}')
-        by_member[member.name] = predicted_values(member)
+        found[member.name] = predicted_values(member)
     return Predictions(
         scenario_digest(frozen),
         {
-            name: Prediction(value, {member: by_member[member][name] for member in by_member})
-            for name, value in frozen_values.items()
+            name: Prediction(value, {member: values[name] for member, values in found.items()})
+            for name, value in of_frozen.items()
         },
     )
 
@@ -54,15 +53,13 @@ def predicted_values(scenario: Scenario) -> dict[str, Value]:
 
 def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     settings = RunSettings(scenario)
-    controllers: dict[str, str | Controller] = {
-        row.controller: row.controller for row in PREDICTED_ROWS
+    runs = {row.controller: headless_run(settings, row.controller) for row in PREDICTED_ROWS}
+    runs[OPEN_LOOP] = headless_run(settings, StaticControllerAlone())
+    return {
+        f'5.1 {name} {figure}': value
+        for name, run in runs.items()
+        for figure, value in run.figures.items()
     }
-    controllers[OPEN_LOOP] = StaticControllerAlone()
-    found: dict[str, Value] = {}
-    for name, controller in controllers.items():
-        figures = headless_run(settings, controller).figures
-        found |= {f'5.1 {name} {figure}': value for figure, value in figures.items()}
-    return found
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:

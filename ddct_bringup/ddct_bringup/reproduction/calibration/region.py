@@ -24,20 +24,14 @@ def centre(problem: Problem, start: Values) -> tuple[float, ...]:
     """
     figures = _Figures(problem)
     ones = np.ones((2 * figures.count, 1))
-    gradient = np.append(np.zeros(len(PARAMETERS)), 1.0)
     shares = _shares(start)
-    answer = scipy.optimize.minimize(
-        lambda at: at[-1],
+    least = _least(
+        np.append(np.zeros(len(PARAMETERS)), 1.0),
         np.append(shares, np.max(np.abs(figures.residuals(shares)))),
-        jac=lambda at: gradient,
-        bounds=[*_BOUNDS, (0.0, None)],
-        constraints=_at_least_zero(
-            lambda at: at[-1] + figures.both_signs(at[:-1]),
-            lambda at: np.hstack([figures.both_signs_jacobian(at[:-1]), ones]),
-        ),
-        **_METHOD,
+        lambda at: at[-1] + figures.both_signs(at[:-1]),
+        lambda at: np.hstack([figures.both_signs_jacobian(at[:-1]), ones]),
     )
-    return _values(answer.x[:-1])
+    return _values(least[:-1])
 
 
 def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[float, ...]:
@@ -47,22 +41,16 @@ def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[fl
     `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
     """
     figures = _Figures(problem)
-    gain = np.array(direction, dtype=float)
-    answer = scipy.optimize.minimize(
-        lambda at: -gain @ at,
-        _shares(start),
-        jac=lambda at: -gain,
-        bounds=_BOUNDS,
-        constraints=_at_least_zero(
-            lambda at: RIM + figures.both_signs(at), figures.both_signs_jacobian
-        ),
-        **_METHOD,
+    return _values(
+        _least(
+            -np.array(direction, dtype=float),
+            _shares(start),
+            lambda at: RIM + figures.both_signs(at),
+            figures.both_signs_jacobian,
+        )
     )
-    return _values(answer.x)
 
 
-_BOUNDS = [(0.0, 1.0)] * len(PARAMETERS)
-_METHOD = {'method': 'SLSQP', 'options': {'maxiter': _STEPS, 'ftol': _PRECISION}}
 _Function = Callable[[np.ndarray], np.ndarray]
 
 
@@ -100,5 +88,23 @@ def _values(shares: np.ndarray) -> tuple[float, ...]:
     return tuple((LOWER + np.clip(shares, 0.0, 1.0) * RANGE).tolist())
 
 
-def _at_least_zero(function: _Function, jacobian: _Function) -> dict[str, object]:
-    return {'type': 'ineq', 'fun': function, 'jac': jacobian}
+def _least(
+    gain: np.ndarray, start: np.ndarray, limits: _Function, limits_jacobian: _Function
+) -> np.ndarray:
+    """
+    Return where gain @ at is least with all `limits` at least zero, by SLSQP.
+
+    The first of `at` are shares of the parameters' ranges, from 0 to 1; what follows is positive.
+    """
+    further = len(start) - len(PARAMETERS)
+    answer = scipy.optimize.minimize(
+        lambda at: gain @ at,
+        start,
+        jac=lambda at: gain,
+        bounds=[(0.0, 1.0)] * len(PARAMETERS) + [(0.0, None)] * further,
+        constraints={'type': 'ineq', 'fun': limits, 'jac': limits_jacobian},
+        method='SLSQP',
+        options={'maxiter': _STEPS, 'ftol': _PRECISION},
+    )
+    found: np.ndarray = answer.x
+    return found

@@ -1,7 +1,6 @@
 """Subcommand `reproduce figures`: the thesis's figures as pictures with a gallery."""
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.output_file import write_text
+from ddct_plant.program.command_line import complain
 
 FIGURES = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES, *SCENARIO_FIGURES)
 """Those without runs of a controller that can be chosen."""
@@ -83,8 +83,7 @@ def run(options: argparse.Namespace) -> int:
     _make_room(folder, [*files, folder / _PAGE], gallery.GENERATOR, options.overwrite)
     drawn: dict[ThesisFigure, str] = {}
     for count, figure in enumerate(figures, start=1):
-        progress = f'{count}/{len(figures)} {figure.heading}'
-        print(f'ddct reproduce figures: {progress}', file=sys.stderr, flush=True)
+        complain('ddct reproduce figures', f'{count}/{len(figures)} {figure.heading}')
         with chart_style():
             chart, drawn[figure] = figure.draw()
             save_figure(chart, folder, gallery.file_name(figure.number))

@@ -1,8 +1,8 @@
 """Subcommand `reproduce numbers`: every number that the thesis prints, beside ours."""
 
 import argparse
-import sys
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from ddct_bringup.reproduction.numbers.gate import GateRow, judge
@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.program.command_line import show_and_write
+from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.table import print_tables
 
 Source = Callable[[], Mapping[str, Value | None]]
@@ -62,7 +62,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
-    rows = judge(thesis_numbers(), compute(SOURCES, _progress))
+    rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct reproduce numbers')))
     content = {'numbers': [row.as_dict() for row in rows]}
     show_and_write(options.json, content, lambda: _print(rows))
     _require_all(rows)
@@ -86,10 +86,6 @@ def compute(
             raise ParameterError(f'thesis numbers of {name}: computed already: {", ".join(twice)}')
         values.update(found)
     return values
-
-
-def _progress(name: str) -> None:
-    print(f'ddct reproduce numbers: {name}', file=sys.stderr, flush=True)
 
 
 def _print(rows: Sequence[GateRow]) -> None:

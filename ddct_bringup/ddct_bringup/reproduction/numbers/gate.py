@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ddct_bringup.reproduction.numbers.thesis_number import (
-    CALIBRATED,
     ERRATUM,
-    PREDICTED,
     REPRODUCED,
     Finding,
     ThesisNumber,
@@ -16,9 +14,9 @@ from ddct_bringup.reproduction.numbers.thesis_number import (
     Value,
     is_number,
 )
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED
 from ddct_plant.base.errors import ParameterError
 
-_UNCOMPUTED = 'nothing was computed for it'
 _ROUNDING = Tolerance(half_units=1.0)
 OUTCOMES = (
     *('reproduced', 'erratum', 'calibrated hit', 'calibrated miss'),
@@ -83,7 +81,7 @@ def _row(number: ThesisNumber, values: Mapping[str, Value | None]) -> GateRow:
         return GateRow(number, None, None, None)
     value = values.get(number.id)
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return GateRow(number, None, _UNCOMPUTED, None)
+        return GateRow(number, None, 'nothing was computed for it', None)
     if isinstance(value, float) and number.is_number and number.tolerance is None:
         return GateRow(number, value, 'a computed number needs a tolerance', None)
     hit = _agrees(value, number.printed, number.tolerance)

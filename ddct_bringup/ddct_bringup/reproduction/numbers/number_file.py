@@ -2,7 +2,7 @@
 
 import importlib.resources
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -16,8 +16,6 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import parse_yaml
 
 _KEYS = frozenset(field.name for field in fields(ThesisNumber))
-_NUMBERS = 'numbers'
-_OF_THE_PRINT = 'reproduced or erratum'
 
 
 def thesis_numbers() -> tuple[ThesisNumber, ...]:
@@ -35,7 +33,9 @@ def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
     all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one,
     and for a group that does not treat its numbers alike.
     """
-    numbers = tuple(_entries(parse_yaml(text)))
+    numbers = [
+        _number(entry, defaults=block) for block in parse_yaml(text) for entry in block['numbers']
+    ]
     names = Counter(f'{number.section}, {number.item}' for number in numbers)
     repeated = [name for name, count in names.items() if count > 1]
     if repeated:
@@ -53,14 +53,9 @@ def _place(number: ThesisNumber) -> tuple[int, ...]:
         raise ParameterError(f'section {number.section!r}: begin with numbers, 3.2') from None
 
 
-def _entries(blocks: list[Mapping[str, Any]]) -> Iterator[ThesisNumber]:
-    for block in blocks:
-        defaults = {key: value for key, value in block.items() if key != _NUMBERS}
-        for entry in block[_NUMBERS]:
-            yield _number({**defaults, **entry})
-
-
-def _number(entry: dict[str, Any]) -> ThesisNumber:
+def _number(own: Mapping[str, Any], defaults: Mapping[str, Any]) -> ThesisNumber:
+    entry = {**defaults, **own}
+    del entry['numbers']
     name = f'{entry.get("section")}, {entry.get("item")}'
     unknown = sorted(entry.keys() - _KEYS)
     if unknown:
@@ -82,16 +77,14 @@ def _require_one_rule(numbers: Iterable[ThesisNumber]) -> None:
     All numbers of a group come from one kind of source, so that none can stand without a computed
     value beside others that have one, and those of one unit have one tolerance.
     """
-    verdicts: dict[str, set[str]] = defaultdict(set)
-    tolerances: dict[tuple[str, str], set[Tolerance]] = defaultdict(set)
+    found: dict[str, set[str | Tolerance]] = defaultdict(set)
     for number in numbers:
+        group = f'group {number.fact!r}'
         of_the_print = number.verdict in (REPRODUCED, ERRATUM)
-        verdicts[number.fact].add(_OF_THE_PRINT if of_the_print else number.verdict)
+        kind = 'reproduced or erratum' if of_the_print else number.verdict
+        found[f'{group}: verdicts of different kinds'].add(kind)
         if number.tolerance:
-            tolerances[number.fact, number.unit].add(number.tolerance)
-    for name, kinds in verdicts.items():
-        if len(kinds) > 1:
-            raise ParameterError(f'group {name!r}: verdicts of different kinds: {sorted(kinds)}')
-    for (name, unit), found in tolerances.items():
-        if len(found) > 1:
-            raise ParameterError(f'group {name!r}: more than one tolerance in {unit}')
+            found[f'{group}: more than one tolerance in {number.unit}'].add(number.tolerance)
+    for complaint, values in found.items():
+        if len(values) > 1:
+            raise ParameterError(f'{complaint}: {sorted(str(value) for value in values)}')

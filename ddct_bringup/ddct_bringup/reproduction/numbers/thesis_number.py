@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from ddct_plant.base.errors import ParameterError, require_choice, require_number
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.models.printed import PrintedNumber
 
 
@@ -19,12 +20,9 @@ Value = float | str | Finding
 """What is computed for a printed number, or the word or finding for a printed word."""
 
 REPRODUCED = 'reproduced'
-CALIBRATED = 'calibrated'
-PREDICTED = 'predicted'
 ERRATUM = 'erratum'
-GIVEN = 'given'
-NOT_REPRODUCIBLE = 'not_reproducible'
-VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED, GIVEN, NOT_REPRODUCIBLE)
+COMPUTED_VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED)
+VERDICTS = (*COMPUTED_VERDICTS, 'given', 'not_reproducible')
 """
 What can be said of a printed number.
 
@@ -33,7 +31,6 @@ What can be said of a printed number.
 other numbers, or a rule of ours, leads to it or misses it. `given`: an input of the thesis.
 `not_reproducible`: a result of the thesis whose inputs it does not print.
 """
-COMPUTED_VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED)
 
 
 @dataclass(frozen=True)
@@ -95,11 +92,28 @@ class ThesisNumber:
 
     def __post_init__(self) -> None:
         """Check that the claim is complete; raise ParameterError that names what is not."""
-        try:
-            require_choice('verdict', self.verdict, VERDICTS)
-            self._require_complete()
-        except ParameterError as error:
-            raise ParameterError(f'{self.section}, {self.item}: {error}') from error
+        computed = self.verdict in COMPUTED_VERDICTS
+        complaints = {
+            f'unknown verdict {self.verdict!r}: choose from {", ".join(VERDICTS)}': (
+                self.verdict not in VERDICTS
+            ),
+            'give a reason': not self.reason.strip(),
+            f'verdict {self.verdict} {"needs" if computed else "has no"} id': (
+                computed != (self.id is not None)
+            ),
+            'a word, and what nothing computes, has no tolerance': (
+                self.tolerance is not None and not (computed and self.is_number)
+            ),
+            'give `ours` with an erratum, not otherwise': (
+                (self.verdict == ERRATUM) != (self.ours is not None)
+            ),
+            "`hit: 'no'` is for a calibrated number that the fit misses": (
+                self.hit is not None and (self.hit, self.verdict) != ('no', CALIBRATED)
+            ),
+        }
+        for complaint, applies in complaints.items():
+            if applies:
+                raise ParameterError(f'{self.section}, {self.item}: {complaint}')
 
     @property
     def is_number(self) -> bool:
@@ -115,20 +129,6 @@ class ThesisNumber:
     def fact(self) -> str:
         """The group, or the number itself where it has none: what is counted once."""
         return self.group or f'{self.section}, {self.item}'
-
-    def _require_complete(self) -> None:
-        if not self.reason.strip():
-            raise ParameterError('give a reason')
-        computed = self.verdict in COMPUTED_VERDICTS
-        if computed != (self.id is not None):
-            need = 'needs' if computed else 'has no'
-            raise ParameterError(f'verdict {self.verdict} {need} id')
-        if self.tolerance is not None and not (computed and self.is_number):
-            raise ParameterError('a word, and what nothing computes, has no tolerance')
-        if (self.verdict == ERRATUM) != (self.ours is not None):
-            raise ParameterError('give `ours` with an erratum, not otherwise')
-        if self.hit is not None and (self.hit, self.verdict) != ('no', CALIBRATED):
-            raise ParameterError("`hit: 'no'` is for a calibrated number that the fit misses")
 
 
 def is_number(text: str) -> bool:

@@ -2,8 +2,7 @@
 
 import dataclasses
 
-from ddct_bringup.reproduction.calibration.admissible import fitted_rows
-from ddct_bringup.reproduction.calibration.ensemble import members
+from ddct_bringup.reproduction.calibration.ensemble import fitted_rows, members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.calibration.problem import Problem, fit

@@ -1,7 +1,6 @@
 """Subcommand `reproduce studies`: what decides how the predictive controllers fare."""
 
 import argparse
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from ddct_controllers.design.drawing.chart_files import save_figure
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.output_file import STDOUT, write_json
+from ddct_plant.program.command_line import complain
 from ddct_plant.program.table import print_table
 
 STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
         raise DdctError(f'--charts {options.charts}: there is no such folder: make it first')
     studies: dict[str, Study] = {}
     for name in names:
-        print(f'ddct reproduce studies: {name}', file=sys.stderr, flush=True)
+        complain('ddct reproduce studies', name)
         studies[name] = STUDIES[name]()
         if options.json != STDOUT:
             _print(studies[name])

@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from ddct_bringup.reproduction.calibration import admissible
-from ddct_bringup.reproduction.calibration.admissible import fitted_rows, why_not_admissible
+from ddct_bringup.reproduction.calibration import ensemble
+from ddct_bringup.reproduction.calibration.ensemble import fitted_rows, why_not_admissible
 from ddct_bringup.reproduction.calibration.parameters import BASE, ROWS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -40,7 +40,7 @@ def test_nine_figures_are_those_of_the_whole_run_in_the_scenarios_own_window():
 
 
 def test_unstable_pi_is_not_admissible_whatever_its_figures(monkeypatch):
-    monkeypatch.setattr(admissible, 'pi_growth_rate', lambda *loop: 0.1)
+    monkeypatch.setattr(ensemble, 'pi_growth_rate', lambda *loop: 0.1)
     assert why_not_admissible(SCENARIO) == ['the PI loop grows by 0.1/s']
 
 
@@ -61,13 +61,13 @@ def test_slip_that_does_not_reach_zero_is_not_admissible():
 
 def test_no_predictive_controller_is_run(monkeypatch):
     run: list[str] = []
-    real = admissible.headless_run
+    real = ensemble.headless_run
 
     def noted(settings, name):
         run.append(name)
         return real(settings, name)
 
-    monkeypatch.setattr(admissible, 'headless_run', noted)
+    monkeypatch.setattr(ensemble, 'headless_run', noted)
     why_not_admissible(SCENARIO)
     assert set(run) == set(ROWS)
 

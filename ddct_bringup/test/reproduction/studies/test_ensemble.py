@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from ddct_bringup.reproduction.calibration import ensemble
-from ddct_bringup.reproduction.calibration.admissible import fitted_rows, why_not_admissible
 from ddct_bringup.reproduction.calibration.analysis import changed_assumptions
 from ddct_bringup.reproduction.calibration.ensemble import (
     QUANTITIES,
     find_members,
+    fitted_rows,
     members,
+    why_not_admissible,
     write_members,
 )
 from ddct_bringup.reproduction.calibration.parameters import BASE, RANGE, values_of
