@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 from support.processes import TEST_ID, Programs, processes_left
 
-from ddct_bringup.processes.ros_domain import own_domain
 from ddct_bringup.run.plan import RunPlan
+from ddct_plant.graph.domain import own_domain
 
 if TYPE_CHECKING:
     from support.in_process_graph import InProcessGraph

@@ -7,8 +7,8 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup.processes.ros_domain import own_domain
 from ddct_bringup.programs import bringup, compare
+from ddct_plant.graph.domain import own_domain
 
 
 @pytest.mark.parametrize('domain', ['abc', '-1', '233'])

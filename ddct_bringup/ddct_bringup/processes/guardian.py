@@ -55,31 +55,25 @@ def guard(pids: Iterable[str]) -> None:
             # From now on the number cannot come to mean another process.
             nodes[os.pidfd_open(pid)] = pid
     segments = {node: segments_of(pid) for node, pid in nodes.items()}
-    _send(nodes, signal.SIGCONT)
-    for node in _still_running(nodes, PATIENCE_S):
-        _send([node], signal.SIGKILL)
-        _still_running([node], _KILLED_S)
-        remove_segments(segments[node])
-
-
-def _send(nodes: Iterable[int], number: signal.Signals) -> None:
     for node in nodes:
-        with contextlib.suppress(ProcessLookupError):
-            signal.pidfd_send_signal(node, number)
+        _send(node, signal.SIGCONT)
+    deadline = time.monotonic() + PATIENCE_S
+    for node in nodes:
+        if not _ends(node, deadline - time.monotonic()):
+            _send(node, signal.SIGKILL)
+            _ends(node, _KILLED_S)
+            remove_segments(segments[node])
 
 
-def _still_running(nodes: Iterable[int], within_s: float) -> set[int]:
-    """Wait until all have ended, or for a time in s; return those that have not."""
-    running = set(nodes)
-    poll = select.poll()
-    for node in running:
-        poll.register(node, select.POLLIN)
-    deadline = time.monotonic() + within_s
-    while running and (left_s := deadline - time.monotonic()) > 0.0:
-        for node, _ in poll.poll(1e3 * left_s):
-            poll.unregister(node)
-            running.discard(node)
-    return running
+def _send(node: int, number: signal.Signals) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        signal.pidfd_send_signal(node, number)
+
+
+def _ends(node: int, within_s: float) -> bool:
+    """Wait until the process of a descriptor has ended, or for a time in s; say whether it has."""
+    ended, _, _ = select.select([node], [], [], max(within_s, 0.0))
+    return bool(ended)
 
 
 if __name__ == '__main__':

@@ -1,6 +1,5 @@
 """The live view of one run: program `live` as a process of its own."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -8,10 +7,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from ddct_bringup.processes.node_process import Child
 from ddct_bringup.processes.node_processes import POLL_S
-from ddct_bringup.processes.ros_domain import own_domain
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.stop_signals import end_with_parent
+from ddct_plant.graph.domain import own_domain
 
 DEFAULT_PORT = 8765
 """Where Foxglove looks for a server unless it is told another port."""
@@ -25,58 +24,45 @@ _HEAR_S = 10.0
 _STOP_S = 10.0
 
 
-class LiveView:
+class LiveView(Child):
     """A running `live`; what it prints tells how far it is."""
 
     def __init__(self, port: int) -> None:
         """Start it on a port, 0 for a free one, in the present ROS domain."""
-        self._printed = os.memfd_create('live')
-        self._process = subprocess.Popen(
-            [sys.executable, '-P', '-m', 'ddct_bringup.programs.live', '--port', str(port)],
-            stdin=subprocess.DEVNULL,
-            stdout=self._printed,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            preexec_fn=end_with_parent,
-        )
+        super().__init__('ddct_bringup.programs.live', '--port', str(port))
 
     def wait_for_viewer(self) -> None:
         """Wait, however long, until a viewer shows a topic; raise DdctError when none can."""
-        while 'ws://' not in self._words():
+        while 'ws://' not in self.words():
             self._wait()
-        url = self._words().split('ws://')[1].split()[0]
+        url = self.words().split('ws://')[1].split()[0]
         text = f'open ws://{url} in Foxglove: the run begins when a panel shows a topic'
         print(text, file=sys.stderr, flush=True)
-        while VIEWER_CAME not in self._words():
+        while VIEWER_CAME not in self.words():
             self._wait()
 
     def wait_until_heard(self, stopped: Callable[[], bool]) -> None:
         """Wait a while for each topic of t_0 to arrive; raise KeyboardInterrupt if `stopped()`."""
         deadline = time.monotonic() + _HEAR_S
-        while HEARS_ALL not in self._words() and time.monotonic() < deadline:
+        while HEARS_ALL not in self.words() and time.monotonic() < deadline:
             if stopped():
                 raise KeyboardInterrupt
             self._wait()
 
     def stop(self) -> None:
         """End the process."""
-        self._process.send_signal(signal.SIGINT)
+        self.process.send_signal(signal.SIGINT)
         try:
-            self._process.wait(_STOP_S)
+            self.process.wait(_STOP_S)
         except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        os.close(self._printed)
-
-    def _words(self) -> str:
-        # Not by seek and read: the process writes at the file position that we share with it.
-        size = os.fstat(self._printed).st_size
-        return os.pread(self._printed, size, 0).decode(errors='replace')
+            self.process.kill()
+            self.process.wait()
+        self.close()
 
     def _wait(self) -> None:
-        if self._process.poll() is not None:
-            lines = self._words().strip().splitlines() or ['ddct live: it ended without a word']
-            raise DdctError(lines[-1].removeprefix('ddct live: '))
+        if not self.running:
+            words = self.last_words() or 'it ended without a word'
+            raise DdctError(words.removeprefix('ddct live: '))
         time.sleep(POLL_S)
 
 

@@ -1,4 +1,4 @@
-"""One node of a graph as a process: how it is started, what it prints, whether it still runs."""
+"""A program as our child process, and a node as one: what it prints, whether it still runs."""
 
 import contextlib
 import os
@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
@@ -24,41 +25,66 @@ _PIPE_BYTES = 1 << 16
 """All that a pipe holds (Linux), so that a farewell is read whole."""
 
 
-class NodeProcess:
-    """A running node and what it prints."""
+class Child:
+    """A running program of ours, which does not outlive us, and what it prints."""
 
-    def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
-        """Start it with its parameters; `keep_log` writes what it prints into `log`."""
-        self.name = spec.name
-        self.log = log
-        self.hung = False
-        """Whether it had to be killed because it did not stop when asked."""
+    def __init__(self, module: str, *arguments: str, **options: Any) -> None:
+        """Start `python -m module` with these arguments; `options` are those of Popen."""
         # In memory: a full disk must not swallow the reason of a failure.
-        self._printed = os.memfd_create(spec.name)
-        self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
-        self._limit_s = START_S
-        self._silent_s = 0.0
-        self._farewell: int | None = None
-        self._segments: set[str] = set()
-        # -P: a file of the current folder must not hide a module of the same name.
-        command = [sys.executable, '-P', '-m', spec.module]
-        command += ['--ros-args', '--params-file', str(parameter_file)]
+        self._printed = os.memfd_create(module)
         self.process = subprocess.Popen(
-            command,
+            # -P: a file of the current folder must not hide a module of the same name.
+            [sys.executable, '-P', '-m', module, *arguments],
             stdin=subprocess.DEVNULL,
             stdout=self._printed,
             stderr=subprocess.STDOUT,
             start_new_session=True,
             preexec_fn=end_with_parent,
-            pass_fds=[pulse],
-            env={**os.environ, PULSE_FD: str(pulse)},
+            **options,
         )
-        os.close(pulse)
 
     @property
     def running(self) -> bool:
         """Whether it has not ended."""
         return self.process.poll() is None
+
+    def printed(self) -> bytes:
+        """Return what it has printed so far."""
+        # Not by seek and read: the process writes at the file position that we share with it.
+        return os.pread(self._printed, os.fstat(self._printed).st_size, 0)
+
+    def words(self) -> str:
+        """Return the same as text."""
+        return self.printed().decode(errors='replace')
+
+    def last_words(self) -> str:
+        """Return the last line of it, empty for none."""
+        lines = self.words().strip().splitlines()
+        return lines[-1].strip() if lines else ''
+
+    def close(self) -> None:
+        """Forget what it has printed."""
+        os.close(self._printed)
+
+
+class NodeProcess(Child):
+    """A running node."""
+
+    def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
+        """Start it with its parameters; `close` writes what it prints into `log`."""
+        self.name = spec.name
+        self.log = log
+        self.hung = False
+        """Whether it had to be killed because it did not stop when asked."""
+        self._limit_s = START_S
+        self._silent_s = 0.0
+        self._farewell: int | None = None
+        self._segments: set[str] = set()
+        self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        parameters = ('--ros-args', '--params-file', str(parameter_file))
+        environment = {**os.environ, PULSE_FD: str(pulse)}
+        super().__init__(spec.module, *parameters, pass_fds=[pulse], env=environment)
+        os.close(pulse)
 
     @property
     def code(self) -> int | None:
@@ -100,8 +126,8 @@ class NodeProcess:
     def close(self) -> None:
         """Keep the log of a node that has ended, and remove what it could not remove itself."""
         with contextlib.suppress(OSError):
-            self.log.write_bytes(self._all_words())
-        os.close(self._printed)
+            self.log.write_bytes(self.printed())
+        super().close()
         os.close(self._pulse)
         if self.process.returncode is not None and self.process.returncode < 0:
             remove_segments(self._segments)
@@ -113,13 +139,5 @@ class NodeProcess:
             return f'node {self.name} did not stop when asked and was killed'
         if code < 0:
             return f'node {self.name} was killed by {signal.Signals(-code).name}'
-        words = self._last_words().removeprefix(f'{self.name}: ')
+        words = self.last_words().removeprefix(f'{self.name}: ')
         return f'node {self.name} ended with code {code}{f": {words}" if words else ""}'
-
-    def _last_words(self) -> str:
-        lines = self._all_words().decode(errors='replace').strip().splitlines()
-        return lines[-1].strip() if lines else ''
-
-    def _all_words(self) -> bytes:
-        # Not by seek and read: the node writes at the file position that we share with it.
-        return os.pread(self._printed, os.fstat(self._printed).st_size, 0)

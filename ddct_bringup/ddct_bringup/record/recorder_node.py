@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
@@ -114,18 +115,24 @@ class RecorderNode(GraphNode):
             if self._bag is None:
                 raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
-            facts = self._realtime
-            self._timing.resends = facts.resends
-            self._timing.missed_steps = facts.missed_steps
-            self._timing.late_messages = facts.late_messages + self._buffer.dropped
-            self._timing.worst_lateness_us = facts.worst_lateness_us
-            self._timing.safe_states = facts.safe_states
-            self._timing.refused_messages = self.refusals.count
-            self._timing.write(self._folder)
+            self._write_timing()
             if self._second_node is not None:
                 raise self._second_node
         except DdctError as error:
             self.finish(error)
+
+    def _write_timing(self) -> None:
+        facts = self._realtime
+        timing = replace(
+            self._timing,
+            missed_steps=facts.missed_steps,
+            resends=facts.resends,
+            late_messages=facts.late_messages + self._buffer.dropped,
+            refused_messages=self.refusals.count,
+            worst_lateness_us=facts.worst_lateness_us,
+            safe_states=facts.safe_states,
+        )
+        timing.write(self._folder)
 
     def _subscribe_all(self) -> None:
         for topic in all_topics():

@@ -16,7 +16,6 @@ from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
-from ddct_bringup.processes.ros_domain import own_domain
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -24,6 +23,7 @@ from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.domain import own_domain
 from ddct_plant.program.stop_signals import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 

@@ -58,7 +58,7 @@ def processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         made.__enter__()
         made.start([NodeSpec(name, f'stubs.{name}_node') for name in texts])
         for node in made._nodes:
-            wait_until(lambda node=node: b'ready' in node._all_words())
+            wait_until(lambda node=node: b'ready' in node.printed())
         return made
 
     return make
@@ -165,7 +165,7 @@ folder = Path(sys.argv[1])
 with NodeProcesses(folder, folder / 'parameters.yaml') as nodes:
     nodes.start([NodeSpec(name, f'stubs.{name}_node') for name in sys.argv[2:]])
     pids = [*(node.process.pid for node in nodes._nodes), nodes._guardian._process.pid]
-    while not all(b'ready' in node._all_words() for node in nodes._nodes):
+    while not all(b'ready' in node.printed() for node in nodes._nodes):
         time.sleep(0.01)
     print(*pids, flush=True)
     time.sleep(60)
