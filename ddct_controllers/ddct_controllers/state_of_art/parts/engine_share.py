@@ -1,7 +1,7 @@
 """The engine's share of two-input control, and what the clutch takes over beyond it."""
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.state_of_art.parts.pid import Pid, PidGains
+from ddct_controllers.state_of_art.parts.pid import Pid
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority, EngineResponse
@@ -22,16 +22,16 @@ class EngineShare:
     """
 
     def __init__(
-        self, transmission: RigidTransmission, authority: EngineAuthority, gains: PidGains
+        self, transmission: RigidTransmission, authority: EngineAuthority, bandwidth_rad_s: float
     ) -> None:
-        """Take the gains of the PID that acts on the slip; start on the demand."""
+        """Take the bandwidth of the PID that acts on the slip; start on the demand."""
         self._transmission = transmission
         self._authority = authority
-        self._pid = Pid(gains)
-        proportional = TAKEOVER_BANDWIDTH_RAD_S / (transmission.slip_gain * gains.proportional)
+        self._pid = pid = Pid(bandwidth_rad_s, authority.lag_s)
+        proportional = TAKEOVER_BANDWIDTH_RAD_S / (transmission.slip_gain * pid.proportional)
         self._proportional = proportional
         self._integral_gain = proportional * TAKEOVER_BANDWIDTH_RAD_S / 4.0
-        self._share = PERIOD_S / (PERIOD_S + gains.derivative / gains.proportional)
+        self._share = PERIOD_S / (PERIOD_S + pid.derivative / pid.proportional)
         self.reset()
 
     def reset(self) -> None:

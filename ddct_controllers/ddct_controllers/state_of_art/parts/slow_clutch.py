@@ -4,9 +4,8 @@ import numpy as np
 
 from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import ControllerContext, Measurement
-from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
-from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
-from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
+from ddct_controllers.state_of_art.parts.pid import Pid
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
@@ -49,7 +48,7 @@ class SlowClutch:
         corner = 0.5 * transmission.rigid_below_rad_s
         # At low frequency the shaft's acceleration is so far behind the wanted one.
         lag_s = 2.0 / corner + ACTUATION_LAG_S
-        self.pid = Pid(placed_gains(bandwidth_rad_s, lag_s))
+        self.pid = Pid(bandwidth_rad_s, lag_s)
         """From the error of the slow speed in rad/s to an acceleration in rad/s^2."""
         self._filter = DiscreteFilter(_low_pass(corner))
         self.reset()

@@ -7,13 +7,12 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
-from ddct_controllers.state_of_art.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.parts.engine_share import EngineShare
-from ddct_controllers.state_of_art.parts.pid import Pid, placed_gains
-from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
+from ddct_controllers.state_of_art.parts.pid import Pid
+from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_controllers.state_of_art.parts.slow_clutch import ACTUATION_LAG_S, SlowClutch
-from ddct_controllers.state_of_art.parts.speed_plan import SpeedPlan
-from ddct_controllers.state_of_art.torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.parts.torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.pedal_mpc import MOVES, engagement_programs
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.printed import ACTUATOR
@@ -71,7 +70,7 @@ def test_the_points_of_a_scenario_prevail():
 @pytest.mark.parametrize('lag_s', [0.0, 0.1])
 def test_placed_gains_put_both_poles_where_they_are_wanted(lag_s):
     """Of 1/(s (1 + lag s)), once the lag is cancelled."""
-    gains = placed_gains(5.0, lag_s)
+    gains = Pid(5.0, lag_s)
     numerator = np.array([gains.derivative, gains.proportional, gains.integral])
     denominator = np.polymul([lag_s, 1.0], [1.0, 0.0, 0.0])
     poles = np.roots(np.trim_zeros(np.polyadd(denominator, numerator), 'f'))
@@ -81,7 +80,7 @@ def test_placed_gains_put_both_poles_where_they_are_wanted(lag_s):
 
 
 def test_a_pid_that_is_held_at_a_limit_does_not_wind_up():
-    pid, limit = Pid(placed_gains(10.0)), 1.0
+    pid, limit = Pid(10.0), 1.0
     for _ in range(500):
         action = pid.update(3.0)
         pid.unwind(action - min(action, limit))
@@ -118,7 +117,7 @@ def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass
 
 
 def share(**authority):
-    return EngineShare(RIGID, EngineAuthority(**authority), placed_gains(10.0))
+    return EngineShare(RIGID, EngineAuthority(**authority), 10.0)
 
 
 def test_an_engine_with_authority_leaves_nothing_to_the_clutch():
