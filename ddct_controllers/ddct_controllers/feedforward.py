@@ -1,7 +1,7 @@
 """Feedforward of engine torque and load torque (thesis Section 1.6.2), as it runs."""
 
 from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
-from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_controllers.linear import DiscreteFilter
 from ddct_plant.models.parameters import DrivelineParameters
 
 

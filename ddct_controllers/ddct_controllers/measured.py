@@ -1,21 +1,23 @@
 """Check of what a controller is told, before it keeps any of it."""
 
 import math
+from collections.abc import Iterable
 
 from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import DdctError
 
 MOST = 1e9
 """Largest size of a number, in its SI unit; far beyond any vehicle."""
-_SCALARS = {
+_UNITS = {
     'engine_speed': 'rad/s',
     'shaft_speed': 'rad/s',
     'wheel_speed': 'rad/s',
     'engine_torque': 'N m',
     'load_torque': 'N m',
     'open_loop_torque': 'N m',
+    'slip_reference': 'rad/s',
+    'slip_reference_rate': 'rad/s^2',
 }
-_REFERENCES = {'slip_reference': 'rad/s', 'slip_reference_rate': 'rad/s^2'}
 
 
 def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
@@ -41,16 +43,13 @@ def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
 
 
 def _require_each(measurement: Measurement) -> None:
-    for name, unit in _SCALARS.items():
-        _require(name, getattr(measurement, name), unit, measurement.step)
-    for name, unit in _REFERENCES.items():
-        for ahead, value in enumerate(getattr(measurement, name)):
-            _require(f'{name}[{ahead}]', value, unit, measurement.step)
-
-
-def _require(name: str, value: float, unit: str, step: int) -> None:
-    if not abs(value) <= MOST:
-        raise DdctError(
-            f'{name} is {value:g} {unit} at step {step}, not a number within +-{MOST:g}: '
-            'mend what gives it, or the loop if it diverges'
-        )
+    for name, unit in _UNITS.items():
+        told = getattr(measurement, name)
+        listed = isinstance(told, Iterable)
+        for ahead, value in enumerate(told if listed else (told,)):
+            if not abs(value) <= MOST:
+                what = f'{name}[{ahead}]' if listed else name
+                raise DdctError(
+                    f'{what} is {value:g} {unit} at step {measurement.step}, not a number within '
+                    f'+-{MOST:g}: mend what gives it, or the loop if it diverges'
+                )

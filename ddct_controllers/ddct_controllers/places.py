@@ -1,20 +1,18 @@
 """Where in a controller's own code the cause of an error is."""
 
 import inspect
+import traceback
 
 from ddct_controllers.interface import Controller
 
 
 def place_of_error(error: BaseException, package: str) -> str:
     """Return `FILE line N` of the last step of a traceback in `package`, '' if none is there."""
-    places = []
-    step = error.__traceback__
-    while step:
-        frame = step.tb_frame
-        own = str(frame.f_globals.get('__name__')).partition('.')[0] == package
-        if own:
-            places.append(f'{frame.f_code.co_filename} line {step.tb_lineno}')
-        step = step.tb_next
+    places = [
+        f'{frame.f_code.co_filename} line {line}'
+        for frame, line in traceback.walk_tb(error.__traceback__)
+        if str(frame.f_globals.get('__name__')).partition('.')[0] == package
+    ]
     return places[-1] if places else ''
 
 

@@ -21,9 +21,9 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.pi import PI
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
-from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
-from ddct_plant.base.options import Option, Options
+from ddct_plant.base.options import Option
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -111,7 +111,13 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
     if isinstance(chosen, ControllerSpec):
         return chosen
     if is_controller_file(chosen):
-        return _in_file(chosen)
+        spec = load_spec(chosen)
+        if spec.name in controller_names():
+            raise ParameterError(
+                f'controller file {chosen}: the name {spec.name!r} is taken by another '
+                'controller; change it in the file'
+            )
+        return spec
     return _own_controllers().get(chosen) or _third_party(chosen)
 
 
@@ -120,16 +126,6 @@ def controller_label(chosen: Chosen) -> str:
     if isinstance(chosen, str) and not is_controller_file(chosen):
         return chosen
     return controller_spec(chosen).name
-
-
-def _in_file(file: str) -> ControllerSpec[Controller]:
-    spec = load_spec(file)
-    if spec.name in controller_names():
-        raise ParameterError(
-            f'controller file {file}: the name {spec.name!r} is taken by another controller; '
-            'change it in the file'
-        )
-    return spec
 
 
 def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
@@ -144,14 +140,20 @@ def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
 
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
-    return LinearController(synthesised_controller(name, context.settings.scenario.driveline))
+    return LinearController(synthesised_design(name, context.settings.scenario.driveline).sampled)
 
 
 def _third_party(name: str) -> ControllerSpec[Controller]:
-    for point in _entry_points():
-        if point.name == name:
-            require_name('controller name', name)  # it names the folder of the bag
-            return _loaded(point)
+    for point in _entry_points().select(name=name):
+        require_name('controller name', name)  # it names the folder of the bag
+        try:
+            factory = point.load()
+        except FOREIGN_FAILURES as error:
+            raise DdctError(
+                f'controller {name!r}: the entry point {point.value} cannot be loaded '
+                f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
+            ) from error
+        return factory_spec(name, factory, point.value)
     if '.' in name or '/' in name:
         raise ParameterError(
             f'{name} is no controller file: give a YAML file; for an FMU or a library in C, one '
@@ -161,18 +163,6 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
     raise ParameterError(
         f'unknown controller {name!r}: choose from {choices}, or give the path of a YAML file'
     )
-
-
-def _loaded(point: importlib.metadata.EntryPoint) -> ControllerSpec[Controller]:
-    try:
-        factory = point.load()
-    except FOREIGN_FAILURES as error:
-        raise DdctError(
-            f'controller {point.name!r}: the entry point {point.value} cannot be loaded '
-            f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
-        ) from error
-
-    return factory_spec(point.name, factory, point.value)
 
 
 def factory_spec(
@@ -196,25 +186,20 @@ def factory_spec(
             ) from error
 
     computed_from = getattr(factory, 'computed_from', UNSTATED)
-    if computed_from not in (SCENARIO, THESIS, UNSTATED):
-        raise DdctError(
-            f'controller {name!r}: its computed_from is {computed_from!r}: give '
-            f'{SCENARIO!r} or {THESIS!r}'
-        )
-    return ControllerSpec(name, make, _declared(name, factory), computed_from)
-
-
-def _declared(name: str, factory: object) -> Options | None:
-    """Return the options that a third party's class, or other factory, declares."""
-    options = getattr(factory, 'options', None)
-    if options is None or (
-        isinstance(options, Mapping) and all(type(each) is Option for each in options.values())
-    ):
-        return options
-    raise DdctError(
-        f'controller {name!r}: its options are {options!r}: give a mapping of names to '
-        'ddct_plant.base.options.Option, or None'
+    _require(
+        computed_from in (SCENARIO, THESIS, UNSTATED),
+        name,
+        f'computed_from is {computed_from!r}',
+        f'{SCENARIO!r} or {THESIS!r}',
     )
+    options = getattr(factory, 'options', None)
+    _require(
+        options is None or _is_mapping(options, Option),
+        name,
+        f'options are {options!r}',
+        'a mapping of names to ddct_plant.base.options.Option, or None',
+    )
+    return ControllerSpec(name, make, options, computed_from)
 
 
 def _plain(name: str, source: str, controller: object) -> Controller:
@@ -224,23 +209,25 @@ def _plain(name: str, source: str, controller: object) -> Controller:
             f'controller {name!r}: {source} returned '
             f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
         )
-    preview = controller.preview_steps
-    if type(preview) is not int or preview < 0:
-        raise DdctError(
-            f'controller {name!r}: its preview_steps is {preview!r}: give a whole number of steps'
-        )
-    if type(controller.commands_engine) is not bool:
-        raise DdctError(
-            f'controller {name!r}: its commands_engine is {controller.commands_engine!r}: '
-            'give True or False'
-        )
+    preview, two_input = controller.preview_steps, controller.commands_engine
+    _require(
+        type(preview) is int and preview >= 0,
+        name,
+        f'preview_steps is {preview!r}',
+        'a whole number of steps',
+    )
+    _require(type(two_input) is bool, name, f'commands_engine is {two_input!r}', 'True or False')
     gains = controller.gains()
-    if not _is_mapping(gains, Real):
-        raise DdctError(f'controller {name!r}: its gains() is {gains!r}: give numbers by name')
+    _require(_is_mapping(gains, Real), name, f'gains() is {gains!r}', 'numbers by name')
     info = controller.info(name)
-    if not _is_mapping(info, str):
-        raise DdctError(f'controller {name!r}: its info() is {info!r}: give text by name')
+    _require(_is_mapping(info, str), name, f'info() is {info!r}', 'text by name')
     return controller
+
+
+def _require(usable: bool, name: str, found: str, wanted: str) -> None:
+    """Raise DdctError that says what of the controller `name` was found, unless it is usable."""
+    if not usable:
+        raise DdctError(f'controller {name!r}: its {found}: give {wanted}')
 
 
 def _is_mapping(content: object, kind: type) -> bool:

@@ -4,7 +4,6 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.parameters import DrivelineParameters
 
 if TYPE_CHECKING:
@@ -35,8 +34,3 @@ def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -
             f"controller {name!r} cannot be computed for the scenario's driveline: {error}; "
             'or choose another controller'
         ) from error
-
-
-def synthesised_controller(name: str, driveline: DrivelineParameters = IDENTIFIED) -> StateSpace:
-    """Return G_c(z) behind a registry name, from slip error in rpm to torque in N m."""
-    return synthesised_design(name, driveline).sampled

@@ -17,7 +17,7 @@ from ddct_controllers.check.checks import CHECKS, check_controller
 from ddct_controllers.check.outcome import FAIL, PASS, SKIPPED, Outcome
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_names
-from ddct_controllers.template.install_command import install_command
+from ddct_controllers.template.new_controller import install_command
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

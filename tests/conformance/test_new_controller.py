@@ -9,9 +9,8 @@ from pathlib import Path
 import pytest
 from support.complaints import assert_one_line
 
-from ddct_controllers.template import install_command as install_module
 from ddct_controllers.template import new_controller
-from ddct_controllers.template.install_command import install_command
+from ddct_controllers.template.new_controller import install_command
 
 WITHIN_S = 120.0
 
@@ -63,7 +62,7 @@ def test_an_environment_without_uv_of_its_own_is_told_what_it_has(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, pip: bool, program: str
 ) -> None:
     monkeypatch.setattr(sys, 'prefix', str(tmp_path))
-    monkeypatch.setattr(install_module, 'find_spec', lambda name: object() if pip else None)
+    monkeypatch.setattr(new_controller, 'find_spec', lambda name: object() if pip else None)
     command = install_command('DIR')
     assert command.startswith(program)
     assert command.endswith(' --no-build-isolation -e DIR')

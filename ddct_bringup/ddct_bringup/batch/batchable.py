@@ -4,9 +4,8 @@ import dataclasses
 
 import numpy as np
 
-from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import Controller, Measurement
-from ddct_controllers.linear import LinearController
+from ddct_controllers.linear import DiscreteFilter, LinearController
 from ddct_controllers.pi import PiController
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.timebase import PERIOD_S

@@ -14,7 +14,7 @@ from ddct_controllers.check.watch import AskedGains
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.registry import ENTRY_POINT_GROUP, require_known_controllers
-from ddct_controllers.template.install_command import install_command
+from ddct_controllers.template.new_controller import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.files.json_text import parse_json

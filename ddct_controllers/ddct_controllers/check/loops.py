@@ -5,7 +5,7 @@ import numpy as np
 from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
 from ddct_controllers.check.subject import Subject
 from ddct_controllers.check.trial import closed_trial
-from ddct_controllers.discrete_filter import DiscreteFilter
+from ddct_controllers.linear import DiscreteFilter
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM, RPM_PER_RAD_S

@@ -1,14 +1,14 @@
 """Program `new-controller`: write an installable package with a controller to start from."""
 
-import importlib.util
 import keyword
 import sys
+import sysconfig
+from importlib.util import find_spec
 from pathlib import Path
 from string import Template
 
 from ddct_controllers.from_file.controller_file import require_name
 from ddct_controllers.registry import controller_names
-from ddct_controllers.template.install_command import install_command
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import ProgramParser, run_program
@@ -70,8 +70,26 @@ def require_free_name(name: str) -> None:
 
 def _is_module(name: str) -> bool:
     """Say whether Python finds a module of that name, other than a mere folder."""
-    found = importlib.util.find_spec(name)
+    found = find_spec(name)
     return found is not None and found.origin is not None
+
+
+def install_command(folder: str) -> str:
+    """
+    Return the line that installs `folder` linked, so that an edited file runs at once.
+
+    Nothing is fetched: the build uses the environment's own setuptools. uv is taken where it is in
+    the environment, as on the wheel path, or where that has no pip; Ubuntu's Python wants to be
+    told that it may be added to.
+    """
+    linked = f'--no-build-isolation -e {folder}'
+    uv = Path(sys.prefix) / 'bin' / 'uv'
+    if uv.exists() or find_spec('pip') is None:
+        program = uv if uv.exists() else 'uv'
+        return f'{program} pip install --python {sys.executable} {linked}'
+    managed = Path(sysconfig.get_path('stdlib')) / 'EXTERNALLY-MANAGED'
+    allowed = '--break-system-packages ' if managed.exists() else ''
+    return f'{sys.executable} -m pip install {allowed}{linked}'
 
 
 def write_package(name: str, folder: Path) -> None:

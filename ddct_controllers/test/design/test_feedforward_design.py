@@ -12,8 +12,8 @@ from ddct_controllers.design.feedforward import (
     state_at_rest,
 )
 from ddct_controllers.design.state_space import poles_rad_s
-from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.feedforward import Feedforward
+from ddct_controllers.linear import DiscreteFilter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM

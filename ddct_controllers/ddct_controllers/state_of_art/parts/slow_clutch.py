@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ddct_controllers.discrete_filter import DiscreteFilter
 from ddct_controllers.interface import ControllerContext, Measurement
+from ddct_controllers.linear import DiscreteFilter
 from ddct_controllers.state_of_art.parts.pid import Pid
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS

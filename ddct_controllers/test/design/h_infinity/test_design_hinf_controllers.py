@@ -20,7 +20,6 @@ from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.synthesised import (
     SYNTHESISED,
-    synthesised_controller,
     synthesised_design,
 )
 from ddct_plant.base.errors import ParameterError
@@ -48,7 +47,7 @@ def test_each_is_a_linear_controller_of_the_registry(name):
     assert name in controller_names()
     controller = make_controller(name, SETTINGS)
     assert isinstance(controller, LinearController)
-    assert controller.linear_model() is synthesised_controller(name)
+    assert controller.linear_model() is synthesised_design(name).sampled
 
 
 @pytest.mark.parametrize('name', SYNTHESISED)
@@ -60,9 +59,9 @@ def test_each_takes_no_gains(name):
 
 @pytest.mark.parametrize('name', SYNTHESISED)
 def test_each_is_stable_as_run_and_integrates(name):
-    loop = sampled_loop(synthesised_controller(name))
+    loop = sampled_loop(synthesised_design(name).sampled)
     assert loop_margins(loop).stable
-    poles = np.linalg.eigvals(synthesised_controller(name).a)
+    poles = np.linalg.eigvals(synthesised_design(name).sampled.a)
     assert np.abs(poles - 1.0).min() < 1e-10
 
 
@@ -70,14 +69,16 @@ def test_another_process_synthesises_the_same_controller_to_the_bit():
     code = (
         'from ddct_controllers.synthesised import *\n'
         'for name in SYNTHESISED:\n'
-        '    model = synthesised_controller(name)\n'
+        '    model = synthesised_design(name).sampled\n'
         '    print(*(getattr(model, part).tobytes().hex() for part in "abcd"))\n'
     )
     found = subprocess.run(
         [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=120
     )
     expected = [
-        ' '.join(getattr(synthesised_controller(name), part).tobytes().hex() for part in 'abcd')
+        ' '.join(
+            getattr(synthesised_design(name).sampled, part).tobytes().hex() for part in 'abcd'
+        )
         for name in SYNTHESISED
     ]
     assert found.stdout.split('\n')[:-1] == expected

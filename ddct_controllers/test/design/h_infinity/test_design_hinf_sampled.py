@@ -16,7 +16,7 @@ from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import (
     synthesise,
 )
 from ddct_controllers.design.state_space import close_loop, frequency_response
-from ddct_controllers.synthesised import SYNTHESISED, synthesised_controller
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 
 pytestmark = pytest.mark.slow
@@ -32,7 +32,7 @@ def corners() -> PlantCorners:
 
 @pytest.fixture(scope='module')
 def worst(corners: PlantCorners) -> dict[str, WorstCorner]:
-    return {name: worst_corner(synthesised_controller(name), corners) for name in SYNTHESISED}
+    return {name: worst_corner(synthesised_design(name).sampled, corners) for name in SYNTHESISED}
 
 
 def test_hinf_sampled_keeps_m_s_below_2_at_every_corner(worst, corners):
@@ -46,7 +46,7 @@ def test_hinf_sampled_keeps_m_s_below_2_at_every_corner(worst, corners):
 @pytest.mark.parametrize('name', ['hinf_thesis', 'hinf_fitted'])
 def test_designs_without_hold_and_delay_are_unstable_at_some_corners(worst, name):
     assert worst[name].unstable_corners > 10
-    assert loop_margins(sampled_loop(synthesised_controller(name))).stable
+    assert loop_margins(sampled_loop(synthesised_design(name).sampled)).stable
 
 
 def test_without_the_weight_on_the_torque_some_corners_are_unstable(corners):
@@ -62,7 +62,7 @@ def test_the_weight_on_the_torque_lets_the_driveline_alone():
     Distance of the nearest closed-loop pole to exp(s T), s the zero: above 0.05, below 0.005.
     """
     zero = np.exp(0.01 * np.roots([1.0, 5.344, 339.4])[0])
-    with_it = synthesised_controller('hinf_sampled')
+    with_it = synthesised_design('hinf_sampled').sampled
     without = design_h_infinity(replace(make_weights('sampled'), effort=None)).sampled
     distances = [
         np.abs(np.linalg.eigvals(close_loop(sampled_loop(c)).a) - zero).min()
@@ -134,6 +134,6 @@ def test_an_input_disturbance_makes_the_worst_corner_worse_here(corners):
         disturbance_n_m=0.004,
     )
     found = from_w_plane(synthesise(problem, weights.back_off).controller)
-    without = worst_corner(synthesised_controller('hinf_sampled'), corners).sensitivity_peak
+    without = worst_corner(synthesised_design('hinf_sampled').sampled, corners).sensitivity_peak
     with_it = worst_corner(found, corners)
     assert with_it.unstable_corners or with_it.sensitivity_peak > without
