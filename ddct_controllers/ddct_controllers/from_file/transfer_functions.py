@@ -67,20 +67,25 @@ def _linear_spec(kind: str, file: ControllerFile) -> ControllerSpec[Controller]:
     return linear_spec(file.name, given, discretisation)
 
 
-def _factored(path: str, content: Any) -> FactoredTransferFunction:
-    """Read numbers a as (s + a), and pairs [b, c] as (s^2 + b s + c)."""
-    parts = mapping(path, content, ('gain', 'numerator', 'denominator'))
-    numerator, denominator = (
-        tuple(
-            _factor(*item) for item in _items(f'{path}.{key}', parts[key], '[0.0, [5.3, 339.4]]')
-        )
-        for key in ('numerator', 'denominator')
+def _ratio(
+    make: Callable[..., FactoredTransferFunction],
+    sides: tuple[str, str],
+    read: Callable[[str, Any], Any],
+    example: str,
+    path: str,
+    content: Any,
+) -> FactoredTransferFunction:
+    """Read a gain and both sides of a ratio, lists of what `read` takes, and `make` G_c of it."""
+    parts = mapping(path, content, (*sides, 'gain'))
+    above, below = (
+        tuple(read(*item) for item in _items(f'{path}.{side}', parts[side], example))
+        for side in sides
     )
-    gain = require_number(f'{path}.gain', parts['gain'])
-    return FactoredTransferFunction(gain, numerator, denominator)
+    return make(require_number(f'{path}.gain', parts['gain']), above, below)
 
 
 def _factor(path: str, content: Any) -> Factor:
+    """Read a number a as (s + a), a pair [b, c] as (s^2 + b s + c)."""
     if not isinstance(content, list):
         return require_number(f'{path}: a coefficient', content)
     if len(content) != 2:
@@ -99,16 +104,6 @@ def _polynomial(path: str, content: Any) -> FactoredTransferFunction:
         for key in ('num', 'den')
     )
     return FactoredTransferFunction.from_polynomials(num, den)
-
-
-def _zeros_poles_gain(path: str, content: Any) -> FactoredTransferFunction:
-    parts = mapping(path, content, ('zeros', 'poles', 'gain'))
-    zeros, poles = (
-        [_root(*item) for item in _items(f'{path}.{key}', parts[key], '[-0.8, -2.7+18.2j]')]
-        for key in ('zeros', 'poles')
-    )
-    gain = require_number(f'{path}.gain', parts['gain'])
-    return FactoredTransferFunction.from_roots(gain, zeros, poles)
 
 
 def _root(path: str, content: Any) -> complex:
@@ -161,9 +156,21 @@ def _items(path: str, content: Any, example: str) -> list[tuple[str, Any]]:
 
 
 FORMS: Mapping[str, Callable[[str, Any], Given]] = {
-    FACTORED: _factored,
+    FACTORED: partial(
+        _ratio,
+        FactoredTransferFunction,
+        ('numerator', 'denominator'),
+        _factor,
+        '[0.0, [5.3, 339.4]]',
+    ),
     'polynomial': _polynomial,
-    'zeros_poles_gain': _zeros_poles_gain,
+    'zeros_poles_gain': partial(
+        _ratio,
+        FactoredTransferFunction.from_roots,
+        ('zeros', 'poles'),
+        _root,
+        '[-0.8, -2.7+18.2j]',
+    ),
     'state_space': _state_space,
 }
 """Readers by the key in the file. Each takes the key and its value."""

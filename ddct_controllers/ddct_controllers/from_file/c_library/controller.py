@@ -3,9 +3,11 @@
 import contextlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import weakref
+from operator import attrgetter
 from pathlib import Path
 
 from ddct_controllers.from_file.c_library import host
@@ -15,9 +17,7 @@ from ddct_controllers.from_file.c_library.host import (
     MOST_BYTES,
     MOST_SECONDS,
     RESET,
-    SCALARS,
     UPDATE,
-    measurement_layout,
 )
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import (
@@ -32,6 +32,11 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.json_text import parse_json
 
 KIND = 'c_library'
+_SCALARS = attrgetter(
+    *('step', 'engine_speed', 'shaft_speed', 'wheel_speed', 'vehicle_speed'),
+    *('engine_torque', 'load_torque', 'open_loop_torque'),
+)
+"""What a ddct_measurement begins with."""
 _CALLS = {RESET: 'reset', UPDATE: 'update', HOLD: 'hold'}
 
 
@@ -67,7 +72,7 @@ class CLibraryController(Controller):
             self._end()
             raise ParameterError(f'{self._where}: {about["error"]}')
         self.preview_steps, self.commands_engine = about['preview_steps'], about['two_input']
-        self._layout = measurement_layout(self.preview_steps)
+        self._layout = struct.Struct(f'q7d{2 * (self.preview_steps + 1)}d')
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
@@ -87,7 +92,8 @@ class CLibraryController(Controller):
         request, at = bytes([call]), f'{_CALLS[call]} was called'
         if measurement is not None:
             at += f' at step {measurement.step}'
-            request += self._packed(measurement)
+            references = (*measurement.slip_reference, *measurement.slip_reference_rate)
+            request += self._layout.pack(*_SCALARS(measurement), *references)
         with contextlib.suppress(OSError):  # it ended before; what follows says how
             self._channel.send(request)
         clutch, engine, status = ANSWER.unpack(self._received(at))
@@ -95,11 +101,6 @@ class CLibraryController(Controller):
             self._end()
             raise DdctError(f'{self._where}: it returned {status} when {at}: mend the C')
         return clutch, engine, status
-
-    def _packed(self, measurement: Measurement) -> bytes:
-        scalars = (getattr(measurement, name) for name in SCALARS)
-        references = (*measurement.slip_reference, *measurement.slip_reference_rate)
-        return self._layout.pack(*scalars, measurement.step, *references)
 
     def _received(self, at: str) -> bytes:
         """Return an answer; raise DdctError when the process ended instead."""

@@ -18,13 +18,8 @@ from typing import Any
 HEADER = 'ddct_controller.h'
 TEMPLATE = Path(__file__).parent / 'template'
 """Folder of the header and of a controller to start from."""
-SCALARS = (
-    *('engine_speed', 'shaft_speed', 'wheel_speed', 'vehicle_speed'),
-    *('engine_torque', 'load_torque', 'open_loop_torque'),
-)
-"""Fields of a measurement in the order of the messages."""
 RESET, UPDATE, HOLD = b'ruh'
-"""First byte of a request; measurements follow the other two."""
+"""First byte of a request; a measurement follows the other two, as C has it, then references."""
 ANSWER = struct.Struct('ddi')
 """Clutch torque, engine torque, and what the function returned."""
 MOST_BYTES = 1 << 16
@@ -33,11 +28,6 @@ MOST_PREVIEW_STEPS = 1000
 MOST_SECONDS = 10
 """Longest duration of a call. After it an alarm ends the process."""
 _EXAMPLE = 'start from the template in docs/controllers/c_controller.md'
-
-
-def measurement_layout(preview_steps: int) -> struct.Struct:
-    """Return how a measurement follows its byte: scalars, step, both references."""
-    return struct.Struct(f'{len(SCALARS)}dq{2 * (preview_steps + 1)}d')
 
 
 class LibraryError(Exception):
@@ -66,8 +56,8 @@ class Library:
         (version,) = re.findall(r'define DDCT_INTERFACE_VERSION (\d+)', header)
         about = self._symbol('ddct_controller')
         self._require('interface_version', about.interface_version, int(version))
-        self._require('measurement_bytes', about.measurement_bytes, self._size('measurement'))
-        self._require('command_bytes', about.command_bytes, self._size('command'))
+        self._require('measurement_bytes', about.measurement_bytes, ffi.sizeof('ddct_measurement'))
+        self._require('command_bytes', about.command_bytes, ffi.sizeof('ddct_command'))
         preview = range(MOST_PREVIEW_STEPS + 1)
         if about.preview_steps not in preview or about.commands_engine not in (0, 1):
             raise LibraryError(
@@ -83,10 +73,12 @@ class Library:
         }
         # Of doubles, so that whatever the struct holds is aligned.
         self._state = ffi.new('double[]', about.state_bytes // 8 + 1)
-        self._layout = measurement_layout(self.preview_steps)
         self._measurement = ffi.new('ddct_measurement *')
-        self._references = [ffi.new('double[]', self.preview_steps + 1) for _ in range(2)]
-        self._measurement.slip_reference, self._measurement.slip_reference_rate = self._references
+        self._references = ffi.new('double[]', 2 * (self.preview_steps + 1))
+        self._measurement.slip_reference = self._references
+        self._measurement.slip_reference_rate = self._references + self.preview_steps + 1
+        before_references = ffi.offsetof('ddct_measurement', 'slip_reference')
+        self._scalars = ffi.buffer(self._measurement, before_references)
 
     def answer(self, request: bytes) -> bytes:
         """Carry out one request."""
@@ -96,29 +88,20 @@ class Library:
             self._ffi.buffer(self._state)[:] = b'\xff' * self._ffi.sizeof(self._state)
             self._calls[RESET](self._state)
             return ANSWER.pack(0.0, 0.0, 0)
-        self._take(request[1:])
+        references = 1 + len(self._scalars)
+        self._scalars[:] = request[1:references]
+        self._ffi.buffer(self._references)[:] = request[references:]
         if kind == HOLD:
             return ANSWER.pack(0.0, 0.0, self._calls[HOLD](self._state, self._measurement))
         command = self._ffi.new('ddct_command *', (math.nan, math.nan))
         status = self._calls[UPDATE](self._state, self._measurement, command)
         return ANSWER.pack(command.clutch_torque, command.engine_torque, status)
 
-    def _take(self, measurement: bytes) -> None:
-        values = self._layout.unpack(measurement)
-        for name, value in zip((*SCALARS, 'step'), values, strict=False):
-            setattr(self._measurement, name, value)
-        entries = values[len(SCALARS) + 1 :]
-        half = len(entries) // 2
-        self._references[0][0:half], self._references[1][0:half] = entries[:half], entries[half:]
-
     def _symbol(self, name: str) -> Any:
         try:
             return getattr(self._library, name)
         except (AttributeError, KeyError) as error:  # of a function, of an object
             raise LibraryError(f'it has no {name}: include {HEADER}, and {_EXAMPLE}') from error
-
-    def _size(self, name: str) -> int:
-        return self._ffi.sizeof(f'ddct_{name}')
 
     def _require(self, name: str, found: int, expected: int) -> None:
         if found != expected:
