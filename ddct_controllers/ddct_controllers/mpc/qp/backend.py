@@ -11,15 +11,17 @@ import numpy as np
 
 from ddct_controllers.mpc.qp.problem import QpSolution, QpStatus, QpStructure
 from ddct_plant.base.errors import DdctError, ParameterError, require_choice
+from ddct_plant.base.options import REQUIRED, Option
 
 Vector = np.ndarray | Sequence[float]
 
 BACKENDS = ('daqp', 'osqp')
-"""Their names: of a module here, and of the package that does the work."""
+"""Their names, which are those of the packages that do the work."""
 DEFAULT_BACKEND = 'daqp'
 """The fastest at equal accuracy; `make bench` measures both."""
 ITERATION_LIMITS = {'daqp': 1000, 'osqp': 20_000}
 """Ten and four times what the hardest programs of `make bench` need; OSQP's are far cheaper."""
+_ITERATION_LIMIT = Option(REQUIRED, 'iterations of a solver', kind=int, at_least=1)
 _LARGEST = sys.float_info.max
 
 
@@ -38,11 +40,7 @@ class QpBackend(ABC):
     """
 
     def __init__(self, structure: QpStructure, iteration_limit: int) -> None:
-        if isinstance(iteration_limit, bool) or not isinstance(iteration_limit, int):
-            raise ParameterError(f'QP: iteration_limit is {iteration_limit!r}: give an integer')
-        if iteration_limit < 1:
-            raise ParameterError(f'QP: iteration_limit is {iteration_limit}: at least 1 is needed')
-        self._iteration_limit = iteration_limit
+        self._iteration_limit = _ITERATION_LIMIT.checked('QP: iteration_limit', iteration_limit)
         self._structure = structure
         variables = 1.0 / np.sqrt(np.diag(structure.hessian))
         constraints = structure.constraints * variables
@@ -111,14 +109,15 @@ def make_backend(
     """
     Return the backend called `name` for programs of `structure`; its own limit if none is given.
 
-    Only its module and its solver are imported. Raise ParameterError for an unknown name or a
+    Only its solver is imported. Raise ParameterError for an unknown name or a
     limit below 1, DdctError when the backend's package is not installed.
     """
     require_choice('QP backend', name, BACKENDS)
     limit = ITERATION_LIMITS[name] if iteration_limit is None else iteration_limit
-    module = import_module(f'ddct_controllers.mpc.qp.{name}_backend')
-    backend: QpBackend = module.Backend(structure, limit)
-    return backend
+    # Only here: a solver is a QpBackend.
+    from ddct_controllers.mpc.qp.solvers import SOLVERS
+
+    return SOLVERS[name](structure, limit)
 
 
 def solver_package(name: str) -> Any:
