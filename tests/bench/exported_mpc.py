@@ -11,8 +11,7 @@ import numpy as np
 from replay import measurements_of, times_of
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.mpc.export.c_text import constants, macros
-from ddct_controllers.mpc.export.export_controller import export_controller
+from ddct_controllers.mpc.export.export_controller import constants, export_controller, macros
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

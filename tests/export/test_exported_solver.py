@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.exported_mpc import STATUS, compile_c
 
-from ddct_controllers.mpc.export.c_text import c_part, constants, macros
 from ddct_controllers.mpc.export.dual_form import dual_form
+from ddct_controllers.mpc.export.export_controller import c_part, constants, macros
 from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 

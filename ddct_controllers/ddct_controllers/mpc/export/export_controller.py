@@ -1,12 +1,17 @@
 """Write a predictive controller and its observer as self-contained C99."""
 
 import math
+import re
+from collections.abc import Mapping
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
 from ddct_controllers.interface import Controller
-from ddct_controllers.mpc.export.c_text import c_part, constants, macros, remark
 from ddct_controllers.mpc.export.controller_tables import (
     ControllerTables,
     controller_tables,
@@ -22,6 +27,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
 LIBRARY = 'ddct_mpc_library.c'
+_BRACES = str.maketrans('[]', '{}')
 _PREFIX = 'DDCT_MPC_'
 _MARK = 'Made by design mpc --export; make it again instead of editing it.'
 
@@ -118,3 +124,49 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
         '',
         'SPDX-License-Identifier: Apache-2.0',
     ]
+
+
+def c_part(name: str) -> str:
+    """Return the hand-written C in the file `name`."""
+    return (files('ddct_controllers.mpc.export') / 'c' / name).read_text(encoding='utf-8')
+
+
+def macros(values: Mapping[str, int | float], prefix: str = '') -> str:
+    """Return one `#define` per value."""
+    return '\n'.join(f'#define {prefix}{name} {_value(value)}' for name, value in values.items())
+
+
+def constants(arrays: Mapping[str, np.ndarray]) -> str:
+    """Return each vector or matrix as a `static const double` array that reads back exactly."""
+    return '\n\n'.join(_constant(name, array) for name, array in arrays.items())
+
+
+def remark(lines: list[str]) -> str:
+    """Return a comment; characters that could end it or start another are replaced."""
+    plain = (re.sub(r'[^\w .,:;()=+|/^\'-]', '_', line, flags=re.ASCII) for line in lines)
+    return '\n'.join(['/*', *(f' * {line}'.rstrip() for line in plain), ' */'])
+
+
+def _constant(name: str, array: np.ndarray) -> str:
+    sizes = ''.join(f'[{size}]' for size in array.shape)
+    rows = np.array2string(
+        np.asarray(array, dtype=float),
+        max_line_width=99,
+        separator=', ',
+        threshold=array.size + 1,  # all of them
+        formatter={'float_kind': _number},
+    )
+    return f'static const double {name}{sizes} =\n{rows.translate(_BRACES)};'
+
+
+def _value(value: int | float) -> str:
+    """Return what a macro stands for; a sign needs brackets, as an operator may precede it."""
+    text = str(value) if isinstance(value, int) else _number(value)
+    return f'({text})' if text.startswith('-') else text
+
+
+def _number(value: float | np.floating[Any]) -> str:
+    """Return the shortest text that reads back as the same double."""
+    if math.isinf(value):
+        return 'HUGE_VAL' if value > 0.0 else '-HUGE_VAL'
+    return repr(float(value))
