@@ -12,7 +12,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.graph.message_kinds import StampOnly
+from ddct_plant.graph.message_kinds import MessageKind
 from ddct_plant.graph.topics import RunKind, Topic, recorded_topics
 
 
@@ -133,7 +133,7 @@ def test_bytes_that_are_no_message_of_the_topic_are_refused(tmp_path):
 
 
 def test_an_unknown_message_type_is_an_error_that_says_where_to_define_it(tmp_path):
-    topic = Topic('x', StampOnly('no_such_msgs/msg/Thing'), 'nobody')
+    topic = Topic('x', MessageKind('no_such_msgs/msg/Thing'), 'nobody')
     with pytest.raises(
         DdctError, match='messages.yaml does not define no_such_msgs/msg/Thing: add it there'
     ):

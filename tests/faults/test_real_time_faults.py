@@ -65,7 +65,7 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     graph.add_all()
     clock = PatientClock(realtime_owner(graph))
     actuator: Any = graph.nodes['actuator']
-    graph.spin_until(lambda: actuator.refusals.count > 0, 'a refused request')
+    graph.spin_until(lambda: actuator.refused > 0, 'a refused request')
     clock.go_on_without(CLUTCH)
     graph.run()
     recording = read_bag(graph.folder)

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
 from ddct_bringup.bag.run_facts import run_info_order
@@ -13,7 +12,7 @@ from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import HEARS_ALL, VIEWER_CAME
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.qos import RECORDER_LATCHED_QOS
+from ddct_plant.graph.qos import LIVE_QOS
 from ddct_plant.graph.topics import (
     CLOCK,
     RECORDER_ACK,
@@ -23,14 +22,6 @@ from ddct_plant.graph.topics import (
     all_topics,
     recorded_topics,
 )
-
-LIVE_QOS = QoSProfile(
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-    durability=DurabilityPolicy.VOLATILE,
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1000,
-)
-"""Best effort: no node of the loop ever waits for, or sends again to, a viewer."""
 
 _BEAT_S = 0.01
 """How often viewers are told the time; in lock-step a tick takes far less."""
@@ -71,19 +62,11 @@ class LiveNode(GraphNode):
         self._server.stop()
 
     def _subscribe(self, *, latched: bool) -> None:
+        special = {CLOCK: self._on_clock, RUN_INFO: self._on_run_info}
         for topic in all_topics():
             if topic.latched == latched:
-                self.create_subscription(
-                    topic.message_class,
-                    topic.name,
-                    self.guarded(self._receiver(topic)),
-                    RECORDER_LATCHED_QOS if latched else LIVE_QOS,
-                    raw=True,
-                )
-
-    def _receiver(self, topic: Topic) -> Callable[[bytes], None]:
-        special = {CLOCK: self._on_clock, RUN_INFO: self._on_run_info}
-        return special.get(topic, partial(self._pass_on, topic))
+                receive = special.get(topic, partial(self._pass_on, topic))
+                self.listen(topic, receive, LIVE_QOS, raw=True)
 
     def _pass_on(self, topic: Topic, cdr: bytes) -> None:
         self._server.send(topic.name, stamp_of_cdr(cdr), cdr)

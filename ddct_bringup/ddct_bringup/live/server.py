@@ -24,6 +24,7 @@ class LiveServer:
     def __init__(self, host: str, port: int, on_view: Callable[[str], None]) -> None:
         """Begin to serve; port 0 takes a free one. Raise DdctError where that is impossible."""
         foxglove = _foxglove()
+        self._on_view = on_view
         # Kept: its channels close when it goes.
         self._context = foxglove.Context()
         self._channels = {
@@ -45,7 +46,7 @@ class LiveServer:
                 host=host,
                 port=port,
                 capabilities=[foxglove.websocket.Capability.Time],
-                server_listener=_Listener(on_view),
+                server_listener=self,
                 context=self._context,
                 message_backlog_size=_BACKLOG,
             )
@@ -69,18 +70,12 @@ class LiveServer:
         """Close every connection."""
         self._server.stop()
 
-
-class _Listener:
-    """What the server calls; it needs every method that `ServerListener` has and we use."""
-
-    def __init__(self, on_view: Callable[[str], None]) -> None:
-        self._on_view = on_view
-
     def on_subscribe(self, client: Any, channel: Any) -> None:
+        """Take from the server that a viewer shows a topic."""
         self._on_view(channel.topic)
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        pass
+        """Take that it does no more; the server wants this method beside the other."""
 
 
 def _foxglove() -> Any:

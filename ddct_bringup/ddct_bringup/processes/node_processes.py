@@ -84,8 +84,6 @@ class NodeProcesses:
                 time.sleep(POLL_S)
                 for node in nodes:
                     node.look(POLL_S)
-            if not _running(nodes):
-                break
 
     def require_clean_end(self) -> None:
         """Raise DdctError unless every node has ended with code 0."""

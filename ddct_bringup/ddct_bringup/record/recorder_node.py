@@ -1,7 +1,6 @@
 """Node `recorder`: writes every tick off the wire into a bag and acknowledges it."""
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,7 +22,7 @@ from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS, RECORDER_QOS
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
@@ -92,7 +91,7 @@ class RecorderNode(GraphNode):
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
         if not self.settings.lockstep:
-            self.refusals.limit = StampLimit(tick_names(), from_t0=True)
+            self.limit = StampLimit(tick_names(), from_t0=True)
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
@@ -128,30 +127,24 @@ class RecorderNode(GraphNode):
             missed_steps=facts.missed_steps,
             resends=facts.resends,
             late_messages=facts.late_messages + self._buffer.dropped,
-            refused_messages=self.refusals.count,
+            refused_messages=self.refused,
             worst_lateness_us=facts.worst_lateness_us,
             safe_states=facts.safe_states,
         )
         timing.write(self._folder)
 
     def _subscribe_all(self) -> None:
-        for topic in all_topics():
-            if topic is RECORDER_ACK or not topic.in_run(self._run):
-                continue
-            qos = RECORDER_LATCHED_QOS if topic.latched else RECORDER_QOS
-            self.create_subscription(
-                topic.message_class, topic.name, self._receiver(topic), qos, raw=True
-            )
-
-    def _receiver(self, topic: Topic) -> Callable[[bytes], None]:
-        if topic.every_tick:
-            return self.guarded(partial(self._on_tick, topic))
         special = {
             RUN_INFO: self._on_run_info,
             CONTROLLER_TIMING: self._on_timing,
             DIAGNOSTICS: self._on_diagnostics,
         }
-        return self.guarded(special.get(topic, partial(self._record_unordered, topic)))
+        for topic in all_topics():
+            if topic is RECORDER_ACK or not topic.in_run(self._run):
+                continue
+            usual = self._on_tick if topic.every_tick else self._record_unordered
+            receive = special.get(topic, partial(usual, topic))
+            self.listen(topic, receive, RECORDER_QOS, raw=True)
 
     def _on_tick(self, topic: Topic, cdr: bytes) -> None:
         stamp = stamp_of_cdr(cdr)

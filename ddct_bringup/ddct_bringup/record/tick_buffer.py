@@ -55,10 +55,8 @@ class TickBuffer:
                 f'{topic}: step {step} came where step {self._next_step} was due: this recorder '
                 'missed a part of the run, start it first or set require_recorder on driveline'
             )
-        tick = self._pending.get(step)
-        if tick is None:
-            tick = self._pending[step] = {}
-        elif topic in tick:
+        tick = self._pending.setdefault(step, {})
+        if topic in tick:
             self._require_same(topic, tick[topic], cdr, step)
             return []
         tick[topic] = cdr

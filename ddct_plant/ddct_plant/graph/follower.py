@@ -38,7 +38,7 @@ class FollowerNode(GraphNode):
         lockstep = self.settings.lockstep
         self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
         if not lockstep:
-            self.refusals.limit = StampLimit(tick_names())
+            self.limit = StampLimit(tick_names())
         self._reply: Reply = ()
         self._answered: Any = None
         self._disputed = False

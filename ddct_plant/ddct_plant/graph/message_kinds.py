@@ -8,7 +8,6 @@ far below 1 us, so a writer keeps one message and fills it again and again.
 
 import importlib
 import math
-from abc import ABC, abstractmethod
 from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -51,8 +50,8 @@ def _time_of(message: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class MessageKind(ABC):
-    """A kind of message, which begins with its stamp."""
+class MessageKind:
+    """A kind of message, which begins with its stamp; this one only says that it has come."""
 
     type: str
     """Such as 'sensor_msgs/msg/JointState'."""
@@ -69,32 +68,16 @@ class MessageKind(ABC):
 
         return write
 
-    @abstractmethod
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         """Return what sets the values of `message`, which is new; of its parts too."""
-
-    @abstractmethod
-    def values(self, message: Any) -> tuple[Any, ...]:
-        """Return what a message holds, unchecked."""
-
-    @abstractmethod
-    def read(self, topic: str, message: Any) -> Any:
-        """Return what a node takes in; raise DdctError for values that must not enter the loop."""
-
-
-@dataclass(frozen=True)
-class StampOnly(MessageKind):
-    """No value: the message only says that its stamp has come."""
-
-    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         return lambda: None
 
     def values(self, message: Any) -> tuple[Any, ...]:
-        """Return nothing."""
+        """Return what a message holds, unchecked."""
         return ()
 
-    def read(self, topic: str, message: Any) -> None:
-        """Return nothing."""
+    def read(self, topic: str, message: Any) -> Any:
+        """Return what a node takes in; raise DdctError for values that must not enter the loop."""
 
 
 HELD = 'held'

@@ -5,13 +5,14 @@ from typing import Any, ClassVar
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.message_kinds import stamp_ns
-from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
+from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS, RECORDER_LATCHED_QOS
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.graph.topics import RUN_INFO, Topic
@@ -43,39 +44,6 @@ class Output:
         self._publisher.publish(self._message)
 
 
-class Refusals:
-    """Count messages that count as missing in real time, as nothing in them can be relied on."""
-
-    def __init__(self, node: Node, *, lockstep: bool) -> None:
-        """Refuse for `node` bad values, and what its limit of stamps says once it has one."""
-        self._node = node
-        self._lockstep = lockstep
-        self.limit: StampLimit | None = None
-        self.count = 0
-
-    def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; count and tell where it may not."""
-        reason = self.limit.why_refused(topic, stamp) if self.limit else ''
-        if reason:
-            self._add(reason)
-        return not reason
-
-    def bad_values(self, stamp: int, error: DdctError) -> None:
-        """Refuse a message for its values; raise DdctError in lock-step."""
-        reason = f'at stamp {stamp} ns: {error}'
-        if self._lockstep:
-            raise DdctError(reason) from error
-        self._add(reason)
-
-    def _add(self, reason: str) -> None:
-        self.count += 1
-        self._node.get_logger().warning(
-            f'{reason} (counts as missing; {self.count} so far)',
-            throttle_duration_sec=1.0,
-            throttle_time_source_type=self._node.get_clock(),
-        )
-
-
 class GraphNode(Node):
     """
     A plain node that shares the run's settings and says so on `run_info`.
@@ -90,7 +58,10 @@ class GraphNode(Node):
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
         self.settings = declare_settings(self)
-        self.refusals = Refusals(self, lockstep=self.settings.lockstep)
+        self.limit: StampLimit | None = None
+        """In real time: which stamps may be true."""
+        self.refused = 0
+        """Messages that counted as missing, as nothing in them can be relied on."""
         self.done = Future()
         """Set when the node has nothing more to do, with the DdctError that ended it, or None."""
         # The same as done.done(), which takes long enough to matter for every message.
@@ -122,20 +93,42 @@ class GraphNode(Node):
             try:
                 values = values_of(message)
             except DdctError as error:
-                self.refusals.bad_values(stamp, error)
+                reason = f'at stamp {stamp} ns: {error}'
+                if self.settings.lockstep:
+                    raise DdctError(reason) from error
+                self._refuse(reason)
             else:
                 take(stamp, values)
 
         self.listen(topic, receive)
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; a refused message counts as missing."""
-        return self.refusals.admits(topic, stamp)
+        """Say whether a stamp may be true; a message that is refused counts as missing."""
+        reason = self.limit.why_refused(topic, stamp) if self.limit else ''
+        if reason:
+            self._refuse(reason)
+        return not reason
 
-    def listen(self, topic: Topic, receive: Callable[[Any], None]) -> None:
-        """Call `receive` with every message of a topic of the loop; a DdctError ends the node."""
+    def _refuse(self, reason: str) -> None:
+        self.refused += 1
+        self.get_logger().warning(
+            f'{reason} (counts as missing; {self.refused} so far)',
+            throttle_duration_sec=1.0,
+            throttle_time_source_type=self.get_clock(),
+        )
+
+    def listen(
+        self,
+        topic: Topic,
+        receive: Callable[[Any], None],
+        qos: QoSProfile = LOOP_QOS,
+        *,
+        raw: bool = False,
+    ) -> None:
+        """Call `receive` with each message of a topic, or its bytes; a DdctError ends the node."""
         guarded = self.guarded(receive)
-        self.create_subscription(topic.message_class, topic.name, guarded, LOOP_QOS)
+        qos = RECORDER_LATCHED_QOS if topic.latched else qos
+        self.create_subscription(topic.message_class, topic.name, guarded, qos, raw=raw)
 
     def own_parameters(self) -> list[str]:
         """Return the names of the parameters that the node itself declares."""

@@ -33,3 +33,11 @@ RECORDER_LATCHED_QOS = QoSProfile(
     depth=1000,
 )
 """The recorder's subscription to latched topics."""
+
+LIVE_QOS = QoSProfile(
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+    durability=DurabilityPolicy.VOLATILE,
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1000,
+)
+"""Best effort: no node of the loop ever waits for, or sends again to, a viewer."""

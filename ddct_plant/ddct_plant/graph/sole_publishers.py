@@ -59,7 +59,6 @@ class SolePublishers:
         self._node = node
         self.found: DdctError | None = None
         """The second publisher, once there is one."""
-        self._found_at = 0.0
         self._topics = {
             topic.name: node.resolve_topic_name(topic.name)
             for topic in all_topics()
@@ -86,10 +85,7 @@ class SolePublishers:
 
     def _on_timer(self) -> None:
         doubt = self._in_doubt()
-        if self.found is not None:
-            if self._node.settings.lockstep or time.monotonic() - self._found_at > OPEN_S:
-                self._node.finish(self.found)
-        elif self._at_end:
+        if self._at_end and self.found is None:
             if doubt:
                 self._ask_again()
             else:
@@ -113,13 +109,15 @@ class SolePublishers:
             shown = self._node.get_publishers_info_by_topic(name)
             self._probes[topic] = _Probe(self._listening(), name, shown[0].topic_type)
         if self._probes[topic].two_alive() and self.found is None:
-            self._found_at = time.monotonic()
             self.found = DdctError(
                 f'{topic} has two live publishers, of the nodes '
                 f'{publishers_of(self._node, topic)}: stop one, or use another ROS_DOMAIN_ID'
             )
-            if not self._node.settings.lockstep:
+            if self._node.settings.lockstep:
+                self._node.finish(self.found)
+            else:
                 self._node.get_logger().error(f'{self.found}: opening the clutch')
+                self._node.every(OPEN_S, lambda: self._node.finish(self.found))
 
     def _listening(self) -> Node:
         if self._listener is None:

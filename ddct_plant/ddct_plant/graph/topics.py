@@ -17,7 +17,6 @@ from ddct_plant.graph.message_kinds import (
     PhaseReport,
     PreviewPoints,
     Scalar,
-    StampOnly,
     Status,
     TorqueRows,
     Write,
@@ -173,7 +172,7 @@ _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
 RUN_INFO = _status('run_info', 'every node', every_tick=False, latched=True)
-CLOCK = Topic('/clock', StampOnly('rosgraph_msgs/msg/Clock'), 'driveline')
+CLOCK = Topic('/clock', MessageKind('rosgraph_msgs/msg/Clock'), 'driveline')
 JOINT_STATES = Topic(
     'driveline/joint_states',
     Joints('sensor_msgs/msg/JointState', JOINTS),
@@ -305,7 +304,7 @@ CLUTCH_TEMPERATURE = Topic(
     (Signal('clutch_temperature', 'degC', 'of the facing, which friction follows'),),
     when=_stick_slip,
 )
-RECORDER_ACK = Topic('recorder/ack', StampOnly('std_msgs/msg/Header'), 'recorder')
+RECORDER_ACK = Topic('recorder/ack', MessageKind('std_msgs/msg/Header'), 'recorder')
 CONTROLLER_TIMING = _status('controller/timing', 'controller', every_tick=False, wall_clock=True)
 DIAGNOSTICS = _status(
     '/diagnostics', 'driveline, engine, actuator', every_tick=False, wall_clock=True

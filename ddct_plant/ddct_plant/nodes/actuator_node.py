@@ -51,15 +51,13 @@ class ActuatorNode(FollowerNode):
 
     def publish_reply(self) -> None:
         """Publish the torque, in real time once the fail-safe sees the time pass."""
-        limit = self.refusals.limit
-        if limit is None or limit.tick_seen:
+        if self.limit is None or self.limit.tick_seen:
             super().publish_reply()
 
     def admits(self, topic: str, stamp: int) -> bool:
         """Say whether a stamp may be true; raise DdctError when no tick tells, but requests do."""
         true = super().admits(topic, stamp)
-        limit = self.refusals.limit
-        if not true and limit and not limit.tick_seen:
+        if not true and self.limit and not self.limit.tick_seen:
             self._requests_without_clock += 1
             if self._actuator.watch.too_long(0, 1 + self._requests_without_clock):
                 raise DdctError(
