@@ -1,22 +1,21 @@
-"""Controllers in a functional mock-up unit (FMU), as Simulink and Modelica tools export them."""
+"""The keys of a controller file for an FMU, as Simulink and Modelica tools export them."""
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any
 
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
-from ddct_controllers.from_file.fmu_unit import Fmu, RunningFmu
+from ddct_controllers.from_file.fmu_unit import CLUTCH, ENGINE, Fed, Fmu, FmuController
 from ddct_controllers.interface import (
     UNSTATED,
-    Command,
     Controller,
     ControllerContext,
     ControllerSpec,
     Measurement,
 )
-from ddct_plant.base.errors import ParameterError, require_finite
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Option, close_name
 
 KIND = 'fmu'
@@ -37,8 +36,6 @@ AHEAD = {
     'slip_reference_rate_rad_s2': 'slip_reference_rate',
 }
 """The same for what is also known i periods ahead, as `slip_reference_rad_s[i]`."""
-CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
-"""What an output may be."""
 _UNITS = {
     '_rpm': ('rpm', 'rev/min', 'r/min', '1/min'),
     '_rad_s': ('rad/s',),
@@ -58,60 +55,6 @@ _KINDS: Mapping[str, type] = {
     'String': str,
 }
 """Kinds of start values by type of variable. Inputs and outputs have the type of a float."""
-
-
-@dataclass(frozen=True)
-class _Fed:
-    """An input: the variable, and what it is given."""
-
-    variable: Any
-    read: Callable[[Measurement], float]
-    ahead: int = 0
-    """Periods."""
-
-
-class FmuController(Controller):
-    """
-    An FMU in the place of a controller's class.
-
-    In each period its inputs are set, it takes a step of 10 ms, and its outputs hold over that
-    period. Its own time is 0 when feedback begins.
-    """
-
-    def __init__(
-        self,
-        file: ControllerFile,
-        fmu: Fmu,
-        fed: list[_Fed],
-        outputs: Mapping[str, Any],
-        starts: list[tuple[Any, Any]],
-    ) -> None:
-        """Load `fmu`; `outputs` are its variables by CLUTCH and ENGINE."""
-        self.preview_steps = max((each.ahead for each in fed), default=0)
-        self.commands_engine = ENGINE in outputs
-        self._file, self._outputs = file, outputs
-        self._readers = [each.read for each in fed]
-        with file.located():
-            self._unit = RunningFmu(
-                fmu, starts, [each.variable for each in fed], list(outputs.values())
-            )
-
-    def reset(self) -> None:
-        """Load the FMU again, unless it has taken no step yet."""
-        with self._file.located():
-            self._unit.reset()
-
-    def update(self, measurement: Measurement) -> Command:
-        """Return the outputs of this period's step; raise DdctError when the FMU fails."""
-        with self._file.located():
-            found = self._unit.step([read(measurement) for read in self._readers])
-            torques = {
-                name: require_finite(
-                    f'fmu.outputs.{variable.name} at step {measurement.step}', torque
-                )
-                for (name, variable), torque in zip(self._outputs.items(), found, strict=True)
-            }
-        return Command(torques[CLUTCH], engine_torque=torques.get(ENGINE))
 
 
 def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
@@ -174,7 +117,7 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
     return variable
 
 
-def _fed(variable: Any, ours: object) -> _Fed:
+def _fed(variable: Any, ours: object) -> Fed:
     key = f'fmu.inputs.{variable.name}'
     name, ahead = str(ours), 0
     if found := re.fullmatch(r'(\w+)\[(\d{1,3})\]', name):
@@ -184,13 +127,13 @@ def _fed(variable: Any, ours: object) -> _Fed:
         raise ParameterError(f'{key} is {ours!r}: {close_name(name, known)}')
     _require_unit(key, variable, name)
     if name in SCALARS:
-        return _Fed(variable, attrgetter(SCALARS[name]))
+        return Fed(variable, attrgetter(SCALARS[name]))
 
     def read(measurement: Measurement) -> float:
         value: float = getattr(measurement, AHEAD[name])[ahead]
         return value
 
-    return _Fed(variable, read, ahead)
+    return Fed(variable, read, ahead)
 
 
 def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -1,5 +1,5 @@
 """
-A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file, and how it is stepped.
+A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file, and as a controller.
 
 FMPy, an optional extra, reads the file and calls the binary in it; nothing else imports it.
 """
@@ -8,13 +8,18 @@ import contextlib
 import weakref
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_controllers.from_file.controller_file import ControllerFile
+from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_plant.base.errors import DdctError, ParameterError, require_finite
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
+CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
+"""What an output may be."""
 _FATAL = 4
 """Status after which nothing of an FMU may be called, not even to free it."""
 
@@ -69,20 +74,40 @@ class Fmu:
             )
 
 
-class RunningFmu:
+@dataclass(frozen=True)
+class Fed:
+    """An input: the variable, and what it is given."""
+
+    variable: Any
+    read: Callable[[Measurement], float]
+    ahead: int = 0
+    """Periods."""
+
+
+class FmuController(Controller):
     """
-    An instance of an FMU, which takes one step of 10 ms per call, from its own time 0.
+    An FMU in the place of a controller's class.
+
+    In each period its inputs are set, it takes a step of 10 ms, and its outputs hold over that
+    period. Its own time is 0 when feedback begins.
 
     Its files live in a temporary folder. Binary and folder go with this object, at the latest when
     Python ends. A call that fails raises DdctError with what the FMU says about it.
     """
 
     def __init__(
-        self, fmu: Fmu, starts: Sequence[tuple[Any, Any]], inputs: list[Any], outputs: list[Any]
+        self,
+        file: ControllerFile,
+        fmu: Fmu,
+        fed: Sequence[Fed],
+        outputs: Mapping[str, Any],
+        starts: Sequence[tuple[Any, Any]],
     ) -> None:
-        """Load `fmu`; `starts` are variables with their values, the others those of each step."""
-        self._fmu, self._starts = fmu, starts
-        self._inputs, self._outputs = inputs, outputs
+        """Load `fmu`; `outputs` are variables by CLUTCH and ENGINE, `starts` have their values."""
+        self.preview_steps = max((each.ahead for each in fed), default=0)
+        self.commands_engine = ENGINE in outputs
+        self._file, self._fmu, self._fed = file, fmu, fed
+        self._outputs, self._starts = outputs, starts
         self._held = contextlib.ExitStack()
         weakref.finalize(self, self._held.close)
         self._load()
@@ -93,22 +118,30 @@ class RunningFmu:
             self._held.close()
             self._load()
 
-    def step(self, inputs: Sequence[float]) -> list[float]:
-        """Set the inputs, go 10 ms ahead and return the outputs."""
+    def update(self, measurement: Measurement) -> Command:
+        """Return the outputs of this period's step; raise DdctError when the FMU fails."""
+        torques = self._step([(each.variable, each.read(measurement)) for each in self._fed])
+        with self._file.located():
+            for name, torque in torques.items():
+                variable = self._outputs[name].name
+                require_finite(f'fmu.outputs.{variable} at step {measurement.step}', torque)
+        return Command(torques[CLUTCH], engine_torque=torques.get(ENGINE))
+
+    def _step(self, inputs: Sequence[tuple[Any, float]]) -> dict[str, float]:
+        """Set the inputs, go 10 ms ahead and return the outputs by CLUTCH and ENGINE."""
         time_s = time_of_step(self._steps)
         with self._named(f'at its own time {time_s:g} s'):
             if not self._steps:
                 self._initialise(inputs)
-            self._set(zip(self._inputs, inputs, strict=True))
+            self._set(inputs)
             ended = self._instance.doStep(time_s, PERIOD_S)
             if ended and ended[1]:  # FMI 3.0 tells so; FMI 2.0 fails
                 raise DdctError('it asks for the end of the simulation')
-            found = [
-                getattr(self._instance, f'get{each.type}')([each.valueReference])[0]
-                for each in self._outputs
-            ]
-        self._steps += 1
-        return found
+            self._steps += 1
+            return {
+                name: getattr(self._instance, f'get{each.type}')([each.valueReference])[0]
+                for name, each in self._outputs.items()
+            }
 
     def _load(self) -> None:
         self._steps = 0
@@ -132,26 +165,28 @@ class RunningFmu:
                 kind = 'Integer' if self._fmu.is_fmi2 else 'Int64'
             getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
 
-    def _initialise(self, inputs: Sequence[float]) -> None:
+    def _initialise(self, inputs: Sequence[tuple[Any, float]]) -> None:
         if self._fmu.is_fmi2:
             self._instance.setupExperiment(startTime=0.0)
         self._instance.enterInitializationMode()
-        self._set(zip(self._inputs, inputs, strict=True))
+        self._set(inputs)
         self._instance.exitInitializationMode()
 
     @contextlib.contextmanager
     def _named(self, when: str) -> Iterator[None]:
         """Raise whatever FMPy raises as a DdctError."""
         self._said.clear()
-        try:
-            yield
-        except Exception as error:
-            if getattr(error, 'status', None) == _FATAL:
-                self._instance.component = None
-            said = f': {self._said[-1]}' if self._said else ''
-            raise DdctError(
-                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the FMU'
-            ) from error
+        with self._file.located():
+            try:
+                yield
+            except Exception as error:
+                if getattr(error, 'status', None) == _FATAL:
+                    self._instance.component = None
+                said = f': {self._said[-1]}' if self._said else ''
+                raise DdctError(
+                    f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the '
+                    'FMU'
+                ) from error
 
 
 def _free(instance: Any) -> None:
