@@ -12,8 +12,8 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import packaged_limits
 
 NEAR = 0.1

@@ -13,9 +13,8 @@ from support.runs import plan, record
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.failed_run import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_bringup.scores.measured import NEEDS
 from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scoring import NEEDS, score_recording
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES

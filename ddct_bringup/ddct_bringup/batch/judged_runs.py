@@ -6,10 +6,9 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from ddct_bringup.verdict.comfort import at_rest
 from ddct_bringup.verdict.criteria import JudgedRun, Values
-from ddct_bringup.verdict.lock import step_at
-from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, band_pass
+from ddct_bringup.verdict.judged_run import step_at
+from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, at_rest, band_pass
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, time_of_step
 
 _PADDING = 3 * (2 * BAND_PASS_ORDER + 1)

@@ -10,8 +10,7 @@ from typing import Any
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
-from ddct_plant.program.pulse import FAREWELL, PULSE_FD
-from ddct_plant.program.stop_signals import end_with_parent
+from ddct_plant.program.supervision import FAREWELL, PULSE_FD, end_with_parent
 
 START_S = 60.0
 """How long a node may take to start before it counts as hung."""

@@ -12,9 +12,9 @@ from ddct_bringup.run.folder_lock import run_folder
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.realtime_run import realtime_summary
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.tables import slow_notes
+from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError

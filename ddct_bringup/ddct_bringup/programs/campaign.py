@@ -11,7 +11,7 @@ from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
 from ddct_bringup.programs import campaign_replay, campaign_show
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
-from ddct_plant.program.stop_signals import stop_signals
+from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct campaign'
 _COMMANDS = {'replay': campaign_replay, 'show': campaign_show}

@@ -10,7 +10,6 @@ from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.folder_lock import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv, signals_csv
-from ddct_bringup.scores.realtime_run import MISS_TOLERANCE
 from ddct_bringup.scores.scoring import (
     Entry,
     score_recording,
@@ -18,6 +17,7 @@ from ddct_bringup.scores.scoring import (
     unreadable_entry,
 )
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
+from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError

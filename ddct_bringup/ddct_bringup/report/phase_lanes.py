@@ -5,7 +5,7 @@ from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.lock import LOCKED, SLIPPING
+from ddct_bringup.verdict.judged_run import LOCKED, SLIPPING
 
 LANES = 'phases'
 """Name of the chart."""

@@ -24,7 +24,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
-from ddct_plant.program.stop_signals import stop_signals
+from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 
 WORK_FOLDER = 'work'

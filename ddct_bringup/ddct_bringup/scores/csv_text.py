@@ -7,8 +7,7 @@ import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.scores.measured import NOT_COMPUTED
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
 from ddct_plant.base.errors import printable
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.graph.topics import (

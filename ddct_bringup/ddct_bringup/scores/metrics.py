@@ -9,8 +9,8 @@ import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.run_timing import RunTiming
-from ddct_bringup.verdict.comfort import jerk, vibration_dose, weighted_acceleration
 from ddct_bringup.verdict.criteria import finite
+from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 

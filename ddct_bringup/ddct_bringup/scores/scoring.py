@@ -3,37 +3,57 @@
 import dataclasses
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ddct_bringup.bag.file.records import salvage_records
+from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.failed_run import failed_run
 from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
-from ddct_bringup.scores.measured import NOT_COMPUTED, not_computed
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_bringup.scores.realtime_run import safe_state, why_not_real_time
+from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
 from ddct_bringup.verdict.criteria import JudgedRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
-from ddct_plant.scenario.plant import cut_speed, end_cause
+from ddct_plant.scenario.plant import cut_speed
 
 Entry = dict[str, Any]
 """One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, ..."""
 
 SCHEMA_VERSION = 2
 """Of `scores.json`; 1 had no verdict and did not say its version."""
+
+NOT_COMPUTED = 'not_computed'
+"""Key of `scores.json`, of such a log alone: reasons by figure."""
+NEEDS: Mapping[str, tuple[str, ...]] = {
+    TORSION: ('torsion_speed_std_rpm', 'judder', 'shuffle_amplitude', 'shuffle_decay'),
+    'vehicle_accel': (
+        'acceleration_std_m_s2',
+        'peak_jerk_m_s3',
+        'vdv_m_s1_75',
+        'weighted_acceleration_m_s2',
+        'peak_jerk',
+        'mean_jerk',
+        'peak_acceleration',
+        'weighted_acceleration',
+        'daily_vibration_dose',
+    ),
+    'slip_reference': ('slip_rmse_rpm',),
+    'clutch_torque': ('friction_energy_j', 'friction_energy'),
+    'torque_request': ('torque_total_variation_n_m', 'request_variation'),
+    'driveshaft_torque': ('torque_dip',),
+}
+"""Metrics and criteria by the quantity without which they do not exist."""
 
 METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
 _COUNT = re.compile('[0-9]{1,9}')
@@ -127,6 +147,19 @@ def entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
     }
 
 
+def not_computed(
+    recording: Recording, metrics: Mapping[str, Any], verdict: Mapping[str, Any]
+) -> dict[str, str]:
+    """Return why metrics and criteria that are null are so, where the log lacks a quantity."""
+    values = {each['name']: each['value'] for each in verdict['criteria']} | dict(metrics)
+    return {
+        name: recording.absent[quantity]
+        for quantity, names in NEEDS.items()
+        for name in names
+        if quantity in recording.absent and values.get(name) is None
+    }
+
+
 def fallbacks_in(trajectory: Trajectory) -> int | None:
     """
     Return at how many steps the controller had no solution of its program and said so.
@@ -137,28 +170,6 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     return int(count) if _COUNT.fullmatch(count) else None
 
 
-def why_invalid(recording: Recording) -> str:
-    """Return why a run does not count; empty if it does, also where its engine ended it early."""
-    trajectory, facts = recording.trajectory, recording.facts
-    reasons = [] if facts.lockstep else why_not_real_time(recording)
-    if trajectory.steps < facts.steps and not _engine_end(recording):
-        reasons.insert(0, _why_early(recording))
-    wrong = [] if recording.measured else not_finite(trajectory)
-    return '; '.join([*reasons, *wrong])
-
-
-def not_finite(trajectory: Trajectory) -> list[str]:
-    """Return of each signal that is not finite throughout where it first is not."""
-    found = []
-    for name, values in trajectory.signals.items():
-        if not isinstance(values, np.ndarray) or np.isfinite(values).all():
-            continue
-        rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
-        first = time_of_step(int(np.flatnonzero(~rows)[0]))
-        found.append(f'non-finite value in {name} at {first:g} s')
-    return found
-
-
 def _verdict(
     recording: Recording, metrics: dict[str, Any], limits: Limits, *, valid: bool
 ) -> Verdict:
@@ -166,28 +177,10 @@ def _verdict(
     start = steps_in('control_start_s', facts.control_start_s)
     engagements_a_day = limits.rules.engagements_a_day
     run = JudgedRun(trajectory, start, facts.score_window_s, metrics, engagements_a_day)
-    known = _engine_end(recording) if valid else INVALID
+    known = engine_end(recording) if valid else INVALID
     settings = recording.settings
     limiter = cut_speed(settings.scenario) if settings else math.inf
     return judge(run, limits, facts.scenario, known, limiter)
-
-
-def _engine_end(recording: Recording) -> str | None:
-    """Return `stalled` or `over_revved` where the run's last state is a reason to end it."""
-    if recording.settings is None:
-        return None
-    speed = float(recording.trajectory.joint_speed[-1, 0])
-    return end_cause(recording.settings.scenario, speed)
-
-
-def _why_early(recording: Recording) -> str:
-    got, wanted = recording.trajectory.steps, recording.facts.steps
-    early = f'ended early: {got} of {wanted} steps'
-    if recording.facts.lockstep:
-        return early
-    if recording.realtime.steps >= wanted:
-        return f'{early}: the driveline took them all, but the recorder did not hear the last'
-    return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
 
 
 def scores_document(runs: Sequence[Entry], limits: Limits) -> dict[str, Any]:

@@ -6,8 +6,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.text import Text
 
-from ddct_bringup.scores.measured import NOT_COMPUTED
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
 from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT

@@ -9,10 +9,16 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.comfort import strongest_stretch, weighted_acceleration
-from ddct_bringup.verdict.lock import Locking
+from ddct_bringup.verdict.judged_run import Locking
 from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
-from ddct_bringup.verdict.vibration import judder, mean_jerk, shuffle, torque_dip
+from ddct_bringup.verdict.vibration import (
+    judder,
+    mean_jerk,
+    shuffle,
+    strongest_stretch,
+    torque_dip,
+    weighted_acceleration,
+)
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Figure

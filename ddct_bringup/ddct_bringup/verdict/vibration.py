@@ -1,4 +1,9 @@
-"""Vibration of driveline and car during an engagement: judder, shuffle, dip, mean jerk."""
+"""
+What is felt of an engagement.
+
+By a passenger jerk, weighted acceleration and vibration dose; of driveline and car judder, shuffle
+and dip.
+"""
 
 from functools import cache
 
@@ -7,10 +12,92 @@ import scipy
 
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 
+JERK_CUTOFF_HZ = 20.0
+_JERK_FILTER_ORDER = 2
+"""Order of the Butterworth filter, which runs once forward and once backward."""
 JUDDER_BAND_HZ = (2.0, 20.0)
 BAND_PASS_ORDER = 2
 SHORTEST_JUDDER_S = 1.0
 """Of slipping: two periods of the lowest frequency of the band."""
+
+
+def jerk(acceleration: np.ndarray) -> np.ndarray:
+    """
+    Return the (..., n-1) jerk in m/s^3 midway between the (..., n) samples in m/s^2.
+
+    The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
+    that it is not delayed, and is differenced. Shorter than 10 samples gives an empty array.
+    """
+    padding = 3 * (_JERK_FILTER_ORDER + 1)
+    if acceleration.shape[-1] <= padding:
+        return np.empty((*acceleration.shape[:-1], 0))
+    return np.diff(scipy.signal.filtfilt(*_low_pass(), acceleration, padlen=padding)) / PERIOD_S
+
+
+@cache
+def _low_pass() -> tuple[np.ndarray, np.ndarray]:
+    return scipy.signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
+
+
+def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
+    """Return the (..., n) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
+    sos = _weighting()
+    return scipy.signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
+
+
+def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the states (sections, ..., 2) of a filter that rests on values (..., 1)."""
+    states = scipy.signal.sosfilt_zi(sos)
+    return states.reshape(len(sos), *(1,) * (values.ndim - 1), 2) * values
+
+
+@cache
+def _weighting() -> np.ndarray:
+    """
+    Return W_d as sections for 100 Hz.
+
+    ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and
+    (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
+    """
+    high_pass = 2.0 * np.pi * 0.4
+    corner, quality = 2.0 * np.pi * 2.0, 0.63
+    sections = [
+        ([1.0, 0.0, 0.0], [1.0, np.sqrt(2.0) * high_pass, high_pass**2]),
+        ([1.0 / corner, 1.0], [1.0 / corner**2, 1.0 / (quality * corner), 1.0]),
+    ]
+    return np.vstack([np.hstack(_digital(*section)) for section in sections])
+
+
+def vibration_dose(weighted: np.ndarray) -> np.ndarray:
+    """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
+    return scipy.integrate.trapezoid(_fourth_power(weighted), dx=PERIOD_S) ** 0.25
+
+
+def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return the largest r.m.s. and the largest dose of (..., n) `weighted` over any such stretch.
+
+    It has `periods` periods, of which there must be as many. What comes late cannot hide from it.
+    """
+    before = np.zeros((*weighted.shape[:-1], 1))
+    squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
+    fourths = scipy.integrate.cumulative_trapezoid(
+        _fourth_power(weighted), dx=PERIOD_S, initial=0.0
+    )
+    means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
+    doses = fourths[..., periods:] - fourths[..., :-periods]
+    return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
+
+
+def _fourth_power(values: np.ndarray) -> np.ndarray:
+    """Return a^4; numpy's power of 4 takes many times as long."""
+    return np.square(np.square(values))
+
+
+def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the digital section of an analogue one, each polynomial with three coefficients."""
+    b, a = scipy.signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
+    return np.pad(b, (0, 3 - len(b))), np.pad(a, (0, 3 - len(a)))
 
 
 @cache

@@ -20,7 +20,7 @@ WITHIN_S = 20.0
 """How long a small program may take to start or to end on a loaded machine."""
 LIVE = """
 import os, signal, sys, time
-from ddct_plant.program.pulse import beat, farewell
+from ddct_plant.program.supervision import beat, farewell
 def run():
     print('ready', flush=True)
     while True:

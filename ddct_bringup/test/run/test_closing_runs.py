@@ -3,9 +3,9 @@
 from functools import lru_cache
 
 import pytest
+from ddct_bringup.verdict.judged_run import Locking
 
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.lock import Locking
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

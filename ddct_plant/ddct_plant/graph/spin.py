@@ -21,8 +21,7 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import STEADY, GraphNode
 from ddct_plant.program.command_line import run_program
-from ddct_plant.program.pulse import beat, farewell
-from ddct_plant.program.stop_signals import ends_at_once, stop_signals
+from ddct_plant.program.supervision import beat, ends_at_once, farewell, stop_signals
 
 SLICE_S = 0.1
 """How often signals are looked at, and the longest time the executor is left alone."""

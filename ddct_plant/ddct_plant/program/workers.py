@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.stop_signals import end_with_parent
+from ddct_plant.program.supervision import end_with_parent
 
 _SET_THREADS = (
     'openblas_set_num_threads',

@@ -5,7 +5,7 @@ import signal
 
 import pytest
 
-from ddct_plant.program.stop_signals import stop_signals
+from ddct_plant.program.supervision import stop_signals
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

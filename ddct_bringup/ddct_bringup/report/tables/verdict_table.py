@@ -6,7 +6,7 @@ from typing import Any
 
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.typeset import number_text
-from ddct_bringup.scores.measured import NOT_COMPUTED
+from ddct_bringup.scores.scoring import NOT_COMPUTED
 from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.verdict import NO_LIMIT
 

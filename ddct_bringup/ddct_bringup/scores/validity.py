@@ -1,16 +1,60 @@
-"""Whether a real-time run counts, and what it says of itself in one line."""
+"""Whether a run counts, and what a real-time run says of itself in one line."""
 
 import math
 
+import numpy as np
+
 from ddct_bringup.bag.reader import Recording
-from ddct_plant.base.timebase import START_NS
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.timebase import START_NS, time_of_step
 from ddct_plant.graph.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE, LOAD_TORQUE
+from ddct_plant.scenario.plant import end_cause
 
 MISS_TOLERANCE = 0.01
 """
 Share of the steps that may have held a torque. A machine busy with other work missed 6 of 2500,
 which the figures do not show; a node that stands still for half a second misses 50 of 300.
 """
+
+
+def why_invalid(recording: Recording) -> str:
+    """Return why a run does not count; empty if it does, also where its engine ended it early."""
+    trajectory, facts = recording.trajectory, recording.facts
+    reasons = [] if facts.lockstep else why_not_real_time(recording)
+    if trajectory.steps < facts.steps and not engine_end(recording):
+        reasons.insert(0, _why_early(recording))
+    wrong = [] if recording.measured else not_finite(trajectory)
+    return '; '.join([*reasons, *wrong])
+
+
+def not_finite(trajectory: Trajectory) -> list[str]:
+    """Return of each signal that is not finite throughout where it first is not."""
+    found = []
+    for name, values in trajectory.signals.items():
+        if not isinstance(values, np.ndarray) or np.isfinite(values).all():
+            continue
+        rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        first = time_of_step(int(np.flatnonzero(~rows)[0]))
+        found.append(f'non-finite value in {name} at {first:g} s')
+    return found
+
+
+def engine_end(recording: Recording) -> str | None:
+    """Return `stalled` or `over_revved` where the run's last state is a reason to end it."""
+    if recording.settings is None:
+        return None
+    speed = float(recording.trajectory.joint_speed[-1, 0])
+    return end_cause(recording.settings.scenario, speed)
+
+
+def _why_early(recording: Recording) -> str:
+    got, wanted = recording.trajectory.steps, recording.facts.steps
+    early = f'ended early: {got} of {wanted} steps'
+    if recording.facts.lockstep:
+        return early
+    if recording.realtime.steps >= wanted:
+        return f'{early}: the driveline took them all, but the recorder did not hear the last'
+    return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
 
 
 def missed_steps(recording: Recording) -> int:

@@ -1,11 +1,21 @@
-"""What SIGINT and SIGTERM do for a while, and what ends a process whose parent is gone."""
+"""
+How a process ends, and what it tells whoever supervises it.
+
+What SIGINT and SIGTERM do for a while, what ends a process whose parent is gone; the pulse of a
+node that runs, and its farewell.
+"""
 
 import ctypes
+import os
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
+PULSE_FD = 'DDCT_PULSE_FD'
+"""Environment variable with the file descriptor, not blocking, that a supervisor has opened."""
+FAREWELL = b'!'
+"""Comes before the exit code of a node whose work is over."""
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
 
@@ -38,3 +48,21 @@ def _handled(by: Callable[[int, Any], Any] | signal.Handlers) -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def beat() -> None:
+    """Show that the node runs; called again and again."""
+    _tell(b'.')
+
+
+def farewell(code: int) -> None:
+    """Say that the node's work is over with this exit code: it only has to leave the graph."""
+    _tell(FAREWELL + str(code).encode())
+
+
+def _tell(what: bytes) -> None:
+    descriptor = os.environ.get(PULSE_FD, '')
+    if descriptor.isdecimal():
+        # Full or closed: the supervisor does not look at it now, or is gone.
+        with suppress(OSError):
+            os.write(int(descriptor), what)
