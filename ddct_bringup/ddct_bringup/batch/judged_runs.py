@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 import scipy
 
-from ddct_bringup.verdict.criteria import JudgedRun, Values
-from ddct_bringup.verdict.judged_run import step_at
+from ddct_bringup.verdict.judged_run import JudgedRun, Values, step_at
 from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, at_rest, band_pass
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, time_of_step
 
@@ -16,30 +15,28 @@ _PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
 
 
 @dataclass(frozen=True)
-class LinearLockings:
-    """`Locking` of R linear clutches, which never lock."""
+class JudgedRuns(JudgedRun):
+    """
+    R runs of one length and score window whose trajectory is a stack; all signals are finite.
 
-    slip_speed: np.ndarray
-    """(R, N+1) in rad/s."""
-    control_start: int
-    engagement_time_s: np.ndarray
-    """(R,), NaN where there is none."""
-    time_to_lock_s = None
-    releases = None
+    Their clutches are linear, and never lock.
+
+    Values are (R,), not finite where they are not defined.
+    """
 
     @cached_property
-    def together_from(self) -> np.ndarray:
+    def first_together(self) -> np.ndarray:
         """First step at or after t_a, (R,); one behind the last where there is none."""
-        at_s = time_of_step(self.control_start) + self.engagement_time_s
-        steps = self.slip_speed.shape[-1]
+        at_s = time_of_step(self.control_start) + self.metrics['engagement_time_s']
+        steps = self.trajectory.slip_speed.shape[-1]
         return np.array([steps if np.isnan(time) else step_at(time) for time in at_s.tolist()])
 
     @property
-    def slipping(self) -> tuple[np.ndarray, np.ndarray]:
+    def slipping_stretches(self) -> tuple[np.ndarray, np.ndarray]:
         """First sample of the longest stretch of slipping and the one behind its last, (R,)."""
-        runs, samples = self.slip_speed.shape
-        mask = self.slip_speed != 0.0
-        mask &= np.arange(samples) < self.together_from[:, np.newaxis]
+        runs, samples = self.trajectory.slip_speed.shape
+        mask = self.trajectory.slip_speed != 0.0
+        mask &= np.arange(samples) < self.first_together[:, np.newaxis]
         changes = np.diff(mask, prepend=False, append=False, axis=-1)
         rows, edges = (each.reshape(-1, 2) for each in np.nonzero(changes))
         # Each row's stretches from the longest to the shortest, the earlier of equals first.
@@ -49,26 +46,11 @@ class LinearLockings:
         longest[found] = edges[order][at]
         return longest[:, 0], longest[:, 1]
 
-
-@dataclass(frozen=True)
-class JudgedRuns(JudgedRun):
-    """
-    R runs of one length and score window whose trajectory is a stack; all signals are finite.
-
-    Values are (R,), not finite where they are not defined.
-    """
-
-    @cached_property
-    def locking(self) -> LinearLockings:  # type: ignore[override]
-        """When the plates come together."""
-        times = self.metrics['engagement_time_s']
-        return LinearLockings(self.trajectory.slip_speed, self.control_start, times)
-
     @cached_property
     def shuffle(self) -> tuple[Values, Values]:
         """Amplitude in rpm and decay in s of w_sr once the plates are together."""
         samples = np.arange(self.torsion_speed_rpm.shape[-1])
-        together = samples >= self.locking.together_from[:, np.newaxis]
+        together = samples >= self.first_together[:, np.newaxis]
         magnitude = np.where(together, np.abs(self.torsion_speed_rpm), -1.0)
         peak, largest = np.argmax(magnitude, axis=-1), np.max(magnitude, axis=-1)
         above = magnitude >= largest[:, np.newaxis] / np.e
@@ -80,7 +62,7 @@ class JudgedRuns(JudgedRun):
     @property
     def judder(self) -> Values:
         """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
-        first, after = self.locking.slipping
+        first, after = self.slipping_stretches
         long = (after - first - 1) * PERIOD_S >= SHORTEST_JUDDER_S
         found = np.full(len(first), np.nan)
         if long.any():

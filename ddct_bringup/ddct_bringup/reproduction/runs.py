@@ -11,7 +11,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import not_finite
 from ddct_bringup.thesis.table_5_1 import FIGURES
-from ddct_bringup.verdict.criteria import JudgedRun
+from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge

@@ -17,7 +17,7 @@ from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
-from ddct_bringup.verdict.criteria import JudgedRun
+from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import INVALID
 from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable

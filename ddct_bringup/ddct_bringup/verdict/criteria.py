@@ -1,92 +1,19 @@
 """The criteria of an engagement: one table of what is computed of every run, and in which unit."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.judged_run import Locking
+from ddct_bringup.verdict.judged_run import JudgedRun, Values
 from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
-from ddct_bringup.verdict.vibration import (
-    judder,
-    mean_jerk,
-    shuffle,
-    strongest_stretch,
-    torque_dip,
-    weighted_acceleration,
-)
-from ddct_plant.base.timebase import steps_in
-from ddct_plant.base.units import rpm_from_rad_s
+from ddct_bringup.verdict.vibration import mean_jerk, torque_dip
 from ddct_plant.program.table import Figure
 
 AXIS_FACTOR = 1.4
 """Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
-_DRIVESHAFT = 3
-"""Its place among the joints."""
-Values = float | int | np.ndarray
-"""A number, or one for each of many runs."""
-
-
-@dataclass(frozen=True)
-class JudgedRun:
-    """What the criteria are computed from."""
-
-    trajectory: Trajectory
-    control_start: int
-    """Step at which feedback starts."""
-    score_window_s: tuple[float, float]
-    metrics: Mapping[str, Any]
-    """Those of `scores.json`, by name."""
-    engagements_a_day: float
-
-    @cached_property
-    def locking(self) -> Locking:
-        """When the plates come together."""
-        return Locking(self.trajectory, self.control_start, self.metrics['engagement_time_s'])
-
-    @cached_property
-    def torsion_speed_rpm(self) -> np.ndarray:
-        """(N+1,) w_sr in rpm."""
-        return rpm_from_rad_s(self.trajectory.joint_speed[..., _DRIVESHAFT])
-
-    @cached_property
-    def shuffle(self) -> tuple[Values | None, Values | None]:
-        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
-        together = self.locking.together_from
-        return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
-
-    @property
-    def judder(self) -> Values | None:
-        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
-        return judder(self.torsion_speed_rpm[self.locking.slipping])
-
-    @cached_property
-    def strongest(self) -> tuple[Values | None, Values | None]:
-        """
-        Weighted acceleration and dose where they are strongest, None where the window has none.
-
-        That is over any stretch after control start as long as the score window. A window whose
-        place is known beforehand says nothing of plates that come together after it.
-        """
-        first, last = (steps_in('score_window_s', time) for time in self.score_window_s)
-        if self.metrics['vdv_m_s1_75'] is None:
-            return None, None
-        weighted = weighted_acceleration(self.trajectory.vehicle_accel)
-        return strongest_stretch(weighted[..., min(first, self.control_start) :], last - first)
-
-    @property
-    def acceleration(self) -> np.ndarray:
-        """A_x in m/s^2 from control start on."""
-        return self.trajectory.vehicle_accel[..., self.control_start :]
-
-    @property
-    def driveshaft_torque(self) -> np.ndarray:
-        """Torque of the driveshaft in N m from control start on."""
-        return self.trajectory.joint_effort[..., self.control_start :, _DRIVESHAFT]
 
 
 @dataclass(frozen=True)
@@ -147,7 +74,7 @@ CRITERIA = (
     _criterion(
         'time_to_lock',
         's',
-        lambda run: run.locking.time_to_lock_s,
+        lambda run: run.time_to_lock_s,
         'control start to the first lock',
         f'{_NO_LOCK}, or was locked there',
     ),
@@ -194,7 +121,7 @@ CRITERIA = (
     _criterion(
         'releases_after_lock',
         '1',
-        lambda run: run.locking.releases,
+        lambda run: run.releases,
         'how often the plates part again',
         _NO_LOCK,
     ),

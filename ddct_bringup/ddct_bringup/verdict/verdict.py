@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.verdict.criteria import CRITERIA, JudgedRun, criterion_values
+from ddct_bringup.verdict.criteria import CRITERIA, criterion_values
+from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID, slip_state
 

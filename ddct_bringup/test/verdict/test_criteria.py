@@ -5,7 +5,8 @@ import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
 from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.verdict.criteria import CRITERION_UNITS, JudgedRun, criterion_values
+from ddct_bringup.verdict.criteria import CRITERION_UNITS, criterion_values
+from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of

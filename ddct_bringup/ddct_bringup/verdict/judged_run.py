@@ -1,34 +1,84 @@
-"""When the plates come together, and while they slip before."""
+"""What an engagement is judged by: its signals from control start on, and when the plates meet."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_bringup.verdict.vibration import (
+    judder,
+    shuffle,
+    strongest_stretch,
+    weighted_acceleration,
+)
+from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
+from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models import driveline
 from ddct_plant.models.driveline import PHASES
 
 SLIPPING, LOCKED = PHASES.index(driveline.SLIPPING), PHASES.index(driveline.LOCKED)
 """Values of `clutch_phase`."""
+_DRIVESHAFT = 3
+"""Its place among the joints."""
+Values = float | int | np.ndarray
+"""A number, or one for each of many runs."""
 
 
 @dataclass(frozen=True)
-class Locking:
-    """What happened between the plates of one run."""
+class JudgedRun:
+    """What the criteria are computed from."""
 
     trajectory: Trajectory
     control_start: int
     """Step at which feedback starts."""
-    engagement_time_s: float | None
-    """t_a of the run, from control start."""
+    score_window_s: tuple[float, float]
+    metrics: Mapping[str, Any]
+    """Those of `scores.json`, by name."""
+    engagements_a_day: float
 
     @cached_property
-    def phase(self) -> np.ndarray | None:
-        """(N+1,) phase of the clutch at t_k; None for a linear clutch."""
-        return self.trajectory.clutch_phase
+    def torsion_speed_rpm(self) -> np.ndarray:
+        """(N+1,) w_sr in rpm."""
+        return rpm_from_rad_s(self.trajectory.joint_speed[..., _DRIVESHAFT])
+
+    @cached_property
+    def shuffle(self) -> tuple[Values | None, Values | None]:
+        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
+        together = self.together_from
+        return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
+
+    @property
+    def judder(self) -> Values | None:
+        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
+        return judder(self.torsion_speed_rpm[self.slipping])
+
+    @cached_property
+    def strongest(self) -> tuple[Values | None, Values | None]:
+        """
+        Weighted acceleration and dose where they are strongest, None where the window has none.
+
+        That is over any stretch after control start as long as the score window. A window whose
+        place is known beforehand says nothing of plates that come together after it.
+        """
+        first, last = (steps_in('score_window_s', time) for time in self.score_window_s)
+        if self.metrics['vdv_m_s1_75'] is None:
+            return None, None
+        weighted = weighted_acceleration(self.trajectory.vehicle_accel)
+        return strongest_stretch(weighted[..., min(first, self.control_start) :], last - first)
+
+    @property
+    def acceleration(self) -> np.ndarray:
+        """A_x in m/s^2 from control start on."""
+        return self.trajectory.vehicle_accel[..., self.control_start :]
+
+    @property
+    def driveshaft_torque(self) -> np.ndarray:
+        """Torque of the driveshaft in N m from control start on."""
+        return self.trajectory.joint_effort[..., self.control_start :, _DRIVESHAFT]
 
     @cached_property
     def locks_from_s(self) -> float | None:
@@ -59,11 +109,12 @@ class Locking:
     @property
     def together_from(self) -> int | None:
         """First step at or after the lock, or t_a for a linear clutch; None without."""
-        if self.phase is not None:
+        if self.trajectory.clutch_phase is not None:
             return None if self.locks_from_s is None else step_at(self.locks_from_s)
-        if self.engagement_time_s is None:
+        time = self.metrics['engagement_time_s']
+        if time is None:
             return None
-        return step_at(time_of_step(self.control_start) + self.engagement_time_s)
+        return step_at(time_of_step(self.control_start) + time)
 
     @property
     def slipping(self) -> slice:
@@ -73,8 +124,8 @@ class Locking:
         Of a linear clutch, which slips on after t_a, the samples before t_a at which w_d is not 0;
         without t_a all of them.
         """
-        if self.phase is not None:
-            mask = self.phase == SLIPPING
+        if self.trajectory.clutch_phase is not None:
+            mask = self.trajectory.clutch_phase == SLIPPING
         else:
             mask = self.trajectory.slip_speed != 0.0
             if self.together_from is not None:
@@ -87,8 +138,9 @@ class Locking:
 
     @property
     def _locked_at_control_start(self) -> bool:
-        phase = self.phase if self.phase is not None else np.empty(0)
-        return len(phase) > self.control_start and phase[self.control_start] == LOCKED
+        phase = self.trajectory.clutch_phase
+        start = self.control_start
+        return phase is not None and len(phase) > start and phase[start] == LOCKED
 
     def _times(self, kind: str) -> list[float]:
         """Return the scenario times in s of all locks or releases, none of a linear clutch."""
