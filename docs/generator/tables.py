@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Mapping
 
 from ddct_bringup.reproduction.calibration.tables import all_tables
-from ddct_bringup.reproduction.figures.command import collect_figures, figures_not_drawn
+from ddct_bringup.reproduction.figures.command import NOT_DRAWN, collect_figures
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute
 from ddct_bringup.reproduction.numbers.gate import judge
@@ -56,7 +56,7 @@ def calibration_tables() -> Mapping[str, Table]:
 def figure_tables(drawn: Mapping[ThesisFigure, str]) -> Mapping[str, Table]:
     """Return what agrees, of each figure that is drawn, and why the others are not."""
     shared: dict[str, list[str]] = {}
-    for number, reason in figures_not_drawn().items():
+    for number, reason in NOT_DRAWN.items():
         shared.setdefault(reason, []).append(number)
     rows = [(figure.number, figure.title, remark) for figure, remark in drawn.items()]
     headers = ('figure', 'shows', 'what agrees, what does not')

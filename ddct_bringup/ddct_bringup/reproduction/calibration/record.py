@@ -24,7 +24,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     values_of,
 )
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit
-from ddct_bringup.reproduction.calibration.search import Progress, search
+from ddct_bringup.reproduction.calibration.search import Progress, lowest_stable, search
 from ddct_bringup.thesis.table_5_1 import TOLERANCES
 from ddct_plant.scenario.scenario import Scenario
 
@@ -42,8 +42,8 @@ _SCENARIO_HEAD = (
 
 def calibrate(progress: Progress) -> Record:
     """Run the whole calibration and return its record; raise DdctError without a stable PI."""
-    found = search(progress)
-    optimum = found.chosen
+    windows, starts = search(progress)
+    optimum = lowest_stable(starts)
     frozen = rounded(optimum.values)
     require_stable_pi(frozen)
     analysis = identifiability(optimum)
@@ -59,8 +59,8 @@ def calibrate(progress: Progress) -> Record:
         'torque_and_slopes': _torque_and_slopes(optimum.values, analysis),
         'residuals': residual_rows(optimum.problem.figures(frozen)),
         'frozen_objective': optimum.problem.objective(frozen),
-        'windows': [_optimum(one) for one in found.windows],
-        'starts': [_optimum(one) for one in found.starts],
+        'windows': [_optimum(one) for one in windows],
+        'starts': [_optimum(one) for one in starts],
         'identifiability': {
             'degrees_of_freedom': analysis.degrees_of_freedom,
             'residual_std': analysis.residual_std,

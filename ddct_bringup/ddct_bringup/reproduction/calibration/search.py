@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from ddct_bringup.reproduction.calibration.parameters import BASE, DURATION_S, TARGETS
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit
@@ -17,36 +16,23 @@ WINDOW_ENDS_S = tuple(
 )
 """Tenths of a second from the end of the slowest printed engagement to the end of the run."""
 
-_PI_STARTS = ((0.10, 0.02), (0.02, 0.12))
-"""K_p and K_i: mostly proportional, mostly integral."""
-_TORQUE_STARTS = ((5.0, 300.0), (40.0, 250.0))
-_RISE_END_STARTS_S = (0.53, 0.40)
-_SLOPE_START = 105.0
 STARTS = tuple(
-    (*torques, rise_end, _SLOPE_START, *gains)
+    (*torques, rise_end, 105.0, *gains)
     for torques, rise_end, gains in itertools.product(
-        _TORQUE_STARTS, _RISE_END_STARTS_S, _PI_STARTS
+        ((5.0, 300.0), (40.0, 250.0)),
+        (0.53, 0.40),
+        ((0.10, 0.02), (0.02, 0.12)),  # K_p and K_i: mostly proportional, mostly integral
     )
 )
 """Start values for the window that is chosen; the first two serve every window."""
 
 
-@dataclass(frozen=True)
-class Search:
-    """Everything the search found."""
-
-    windows: tuple[Fit, ...]
-    """The best optimum of each kind of PI for each window end."""
-    starts: tuple[Fit, ...]
-    """What each of STARTS led to for the chosen window end."""
-    chosen: Fit
-
-
-def search(progress: Progress) -> Search:
+def search(progress: Progress) -> tuple[list[Fit], list[Fit]]:
     """
-    Return the lowest objective of any stable PI loop.
+    Return the best optimum of each kind of PI for each window end, and one from each of STARTS.
 
-    First over the window ends, each from two starts; then from all starts for the best window.
+    First over the window ends, each from two starts; then from all starts for the window of the
+    lowest objective of any stable PI loop.
     """
     windows: list[Fit] = []
     for end in WINDOW_ENDS_S:
@@ -57,7 +43,7 @@ def search(progress: Progress) -> Search:
     for number, start in enumerate(STARTS, 1):
         progress(f'start {number} of {len(STARTS)} for the window to the chosen end')
         starts.append(fit(chosen_window, start))
-    return Search(tuple(windows), tuple(starts), lowest_stable(starts))
+    return windows, starts
 
 
 def lowest_stable(optima: Sequence[Fit]) -> Fit:

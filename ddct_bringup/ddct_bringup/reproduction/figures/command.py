@@ -1,7 +1,7 @@
 """Subcommand `reproduce figures`: the thesis's figures as pictures with a gallery."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,15 +23,17 @@ FIGURES = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES, *SCENARIO_FIGURES)
 """Those without runs of a controller that can be chosen."""
 _PICTURE = 'a photograph or a scheme: nothing to compute'
 _DIAGRAM = 'a block diagram: nothing to compute'
-_NOT_DRAWN = {
-    **{f'1.{place}': _PICTURE for place in range(1, 9)},
-    **{f'1.{place}': _DIAGRAM for place in (9, 10, 11, 13, 15, 16, 17, *range(20, 23))},
-    **{f'1.{place}': _DIAGRAM for place in range(24, 27)},
+NOT_DRAWN: Mapping[str, str] = {
+    **dict.fromkeys((f'1.{place}' for place in range(1, 9)), _PICTURE),
+    **dict.fromkeys(('1.9', '1.10', '1.11', '1.13', '1.15', '1.16', '1.17'), _DIAGRAM),
     '1.18': _PICTURE,
     '1.19': 'a table that names the driveline parameters without their values',
-    **dict.fromkeys(('2.1', '3.1', '3.2', '3.4', '4.2'), _DIAGRAM),
+    **dict.fromkeys(('1.20', '1.21', '1.22', '1.24', '1.25', '1.26'), _DIAGRAM),
+    **dict.fromkeys(('2.1', '3.1', '3.2', '3.4'), _DIAGRAM),
     '4.1': 'explains the horizons: nothing to compute',
+    '4.2': _DIAGRAM,
 }
+"""For every figure that cannot be drawn the reason by its number, in order."""
 _DESCRIPTION = """\
 Draw the figures of the thesis that can be computed, as figure_<chapter>_<number>.png and
 .svg, with their data in .csv. The page index.html shows them in order. It says what agrees
@@ -69,9 +71,9 @@ def run(options: argparse.Namespace) -> int:
     """Draw into the folder and return the exit code."""
     figures = collect_figures(_own(options.controllers))
     numbers = {figure.number for figure in figures}
-    not_drawn = figures_not_drawn()
+    not_drawn = NOT_DRAWN
     if options.only:
-        wanted = _wanted(options.only, numbers, not_drawn)
+        wanted = _wanted(options.only, numbers)
         figures = [figure for figure in figures if figure.number in wanted]
         not_drawn = {}
     folder = Path(options.out)
@@ -80,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
         for figure in figures
         for file in figure_files(folder, gallery.file_name(figure.number))
     ]
-    _make_room(folder, [*files, folder / _PAGE], gallery.GENERATOR, options.overwrite)
+    _make_room(folder, [*files, folder / _PAGE], options.overwrite)
     drawn: dict[ThesisFigure, str] = {}
     for count, figure in enumerate(figures, start=1):
         complain('ddct reproduce figures', f'{count}/{len(figures)} {figure.heading}')
@@ -102,11 +104,6 @@ def collect_figures(own: Sequence[str] = ()) -> list[ThesisFigure]:
     return sorted(figures, key=lambda figure: figure_order(figure.number))
 
 
-def figures_not_drawn() -> dict[str, str]:
-    """Return, for every figure that cannot be drawn, the reason by its number, in order."""
-    return {number: _NOT_DRAWN[number] for number in sorted(_NOT_DRAWN, key=figure_order)}
-
-
 def _own(controllers: str | None) -> list[str]:
     """Return the controllers to add; raise the errors of `controller_spec` before any work."""
     chosen = [name.strip() for name in (controllers or '').split(',') if name.strip()]
@@ -119,16 +116,16 @@ def _own(controllers: str | None) -> list[str]:
     return chosen
 
 
-def _wanted(only: str, numbers: set[str], not_drawn: dict[str, str]) -> set[str]:
+def _wanted(only: str, numbers: set[str]) -> set[str]:
     wanted = {number.strip() for number in only.split(',')}
     for number in sorted(wanted - numbers):
-        if number in not_drawn:
-            raise ParameterError(f'figure {number} is not drawn: {not_drawn[number]}')
+        if number in NOT_DRAWN:
+            raise ParameterError(f'figure {number} is not drawn: {NOT_DRAWN[number]}')
         raise ParameterError(f'--only: the thesis has no figure {number!r}; write 2.10,3.5')
     return wanted
 
 
-def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool) -> None:
+def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:
     """Create the folder; raise DdctError when a file in it would be lost."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -136,14 +133,14 @@ def _make_room(folder: Path, files: list[Path], generator: str, overwrite: bool)
     except OSError as error:
         raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
     page = folder / _PAGE
-    if page.exists() and not _is_made_by(generator, page):
+    if page.exists() and not _is_ours(page):
         raise DdctError(f'{page} is not a page of ours: choose another --out')
     if taken and not overwrite:
         raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')
 
 
-def _is_made_by(generator: str, page: Path) -> bool:
+def _is_ours(page: Path) -> bool:
     try:
-        return generator in read_text_file(page)
+        return gallery.GENERATOR in read_text_file(page)
     except OSError:
         return False

@@ -7,8 +7,11 @@ import numpy as np
 import scipy
 from matplotlib.axes import Axes
 
-from ddct_bringup.reproduction.figures.loop_figures import nichols_figure, step_figure
-from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
+from ddct_bringup.reproduction.figures.thesis_figure import (
+    ThesisFigure,
+    nichols_figure,
+    step_figure,
+)
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY
 from ddct_controllers.design.drawing.charts import draw_bound

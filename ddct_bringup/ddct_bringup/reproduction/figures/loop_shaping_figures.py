@@ -10,8 +10,11 @@ from functools import partial
 import numpy as np
 from matplotlib.axes import Axes
 
-from ddct_bringup.reproduction.figures.loop_figures import nichols_figure, step_figure
-from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
+from ddct_bringup.reproduction.figures.thesis_figure import (
+    ThesisFigure,
+    nichols_figure,
+    step_figure,
+)
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, SKY, VERMILLION, line_styles
 from ddct_controllers.design.drawing.charts import decibel
@@ -67,10 +70,8 @@ def _draw_nyquist(whole: Axes, zoom: Axes, gain: float, printed_encirclements: i
         upper, closure = path(values), path(around_zero)
         axes.plot(upper.real, upper.imag, color=BLUE, label='ω > 0')
         axes.plot(upper.real, -upper.imag, color=SKY, linestyle='--', label='ω < 0')
-        label = 'past the poles at s = 0'
-        for side in (1.0, -1.0):
+        for side, label in ((1.0, 'past the poles at s = 0'), (-1.0, '_')):
             axes.plot(closure.real, side * closure.imag, color=BLACK, linestyle=':', label=label)
-            label = '_'
         critical = path(np.array([-1.0 + 0.0j]))
         axes.plot(critical.real, critical.imag, '+', color=VERMILLION, markersize=12, mew=2.5)
     whole.set(
@@ -109,15 +110,16 @@ def _draw_network(
     network: Callable[[float, float], FactoredTransferFunction],
 ) -> str:
     normalised = np.geomspace(0.01, 1000.0, 500)
-    for ratio, style in zip(_RATIOS, line_styles(), strict=False):
-        response = network(1.0, ratio).frequency_response(normalised)
-        for axes, values in zip(panels, (decibel(response), _degrees(response)), strict=True):
-            axes.semilogx(normalised, values, label=f'{ratio_name} = {ratio:g}', **style)
-    frequency = f'Normalised frequency ω/{corner}'
-    for axes, quantity in zip(panels, ('Magnitude, dB', 'Phase, °'), strict=True):
+    responses = [network(1.0, ratio).frequency_response(normalised) for ratio in _RATIOS]
+    quantities = {'Magnitude, dB': decibel, 'Phase, °': _degrees}
+    for axes, (quantity, measure) in zip(panels, quantities.items(), strict=True):
+        for ratio, response, style in zip(_RATIOS, responses, line_styles(), strict=False):
+            label = f'{ratio_name} = {ratio:g}'
+            axes.semilogx(normalised, measure(response), label=label, **style)
+        frequency = f'Normalised frequency ω/{corner}'
         axes.set(xlabel=frequency, ylabel=quantity, xlim=(0.01, 1000.0))
     panels[0].legend(loc='best')
-    largest = float(np.max(np.abs(_degrees(response))))
+    largest = float(np.max(np.abs(_degrees(responses[-1]))))
     return (
         f'For the {ratio_name} = {_RATIOS[-1]:g} of G_c1 the {name} is {largest:.0f}° at most. '
         'The thesis names the magnitude only, but also reads the phase off its chart.'

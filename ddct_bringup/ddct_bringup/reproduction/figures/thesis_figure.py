@@ -1,4 +1,4 @@
-"""What a figure of the thesis is here: its number, its subject and the function that draws it."""
+"""What a figure of the thesis is here, and the kinds of figure that several chapters have."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,9 +8,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_controllers.design.drawing.chart_style import line_styles, new_chart
-from ddct_controllers.design.drawing.charts import label_time_axis
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.drawing.chart_style import controller_style, line_styles, new_chart
+from ddct_controllers.design.drawing.charts import (
+    draw_nichols,
+    draw_step_response,
+    label_time_axis,
+)
+from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.lti import FactoredTransferFunction
+
+_STEP_DURATION_S = 4.0
 
 
 @dataclass(frozen=True)
@@ -56,3 +69,68 @@ def draw_over_time(
     for name, (time, values) in lines.items():
         axes.plot(time, values, label=name, **(styles.get(name) or next(others)))
     label_time_axis(axes, quantity, range_s)
+
+
+def nichols_figure(
+    number: str,
+    title: str,
+    *,
+    name: str,
+    controller: FactoredTransferFunction,
+    specifications: TimeSpecifications,
+    thesis_says: str,
+    styled_as: str | None = None,
+) -> ThesisFigure:
+    """
+    Return L of one controller, without hold and delay, with the bounds it was made for.
+
+    `styled_as` is the controller's registry name, None for one that has none.
+    """
+
+    def draw(axes: Axes) -> str:
+        loop = continuous_loop(controller)
+        curve = LoopCurve(loop)
+        styles = [controller_style(styled_as)] if styled_as else None
+        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
+        margins = loop_margins(loop)
+        if not margins.stable:
+            return f'The closed loop is unstable. Thesis: {thesis_says}.'
+        crossed = [
+            f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
+            for found in contours(curve, specifications)
+            if not found.respected
+        ]
+        return (
+            f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
+            f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
+            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
+        )
+
+    return ThesisFigure(number, title, draw)
+
+
+def step_figure(
+    number: str,
+    title: str,
+    *,
+    name: str,
+    controller: FactoredTransferFunction,
+    printed: tuple[float, float],
+    styled_as: str,
+) -> ThesisFigure:
+    """
+    Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot.
+
+    `styled_as` is the controller's registry name.
+    """
+
+    def draw(axes: Axes) -> str:
+        time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
+        draw_step_response(axes, {name: (time, output)}, [controller_style(styled_as)])
+        return (
+            f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
+            f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '
+            f'{100.0 * printed[1]:.0f} %.'
+        )
+
+    return ThesisFigure(number, title, draw)

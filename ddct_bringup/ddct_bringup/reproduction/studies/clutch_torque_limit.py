@@ -53,9 +53,11 @@ def clutch_torque_limit() -> Study:
             raise DdctError(f'{controller} does not engage in the thesis scenario')
         strays = strays_after(run.trajectory, round(time, 2))
         rows.append(_cells(controller, time, strays, run.metrics))
-    for row in clutch_only:
-        for strays in PRINTED_STRAYS_RAD_S:
-            rows.append(_cells(f'{row.label} as printed', row.engagement_time_s, strays, row))
+    rows += [
+        _cells(f'{row.label} as printed', row.engagement_time_s, strays, row)
+        for row in clutch_only
+        for strays in PRINTED_STRAYS_RAD_S
+    ]
     return Study(
         'Table 5.1 against the least that any clutch torque can give with the same t_a and stray',
         (
@@ -149,8 +151,8 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
         free.append(model.a @ free[-1] + model.b[:, known] @ inputs[k, known])
         response.append(model.a @ response[-1])
     shaft = np.zeros(len(state))
-    shaft[1] = driveline.halfshaft_damping / driveline.total_ratio
-    shaft[2], shaft[3] = -driveline.halfshaft_damping, driveline.halfshaft_stiffness
+    damping = driveline.halfshaft_damping
+    shaft[1:4] = (damping / driveline.total_ratio, -damping, driveline.halfshaft_stiffness)
     acceleration = vehicle.wheel_radius_m / driveline.vehicle_inertia * shaft
     load = vehicle.wheel_radius_m / driveline.vehicle_inertia * inputs[start : last + 1, 2]
     outputs = {

@@ -92,18 +92,13 @@ def run(options: argparse.Namespace) -> int:
         studies[name] = STUDIES[name]()
         if options.json != STDOUT:
             _print(studies[name])
-        if options.charts:
-            _draw(studies[name], Path(options.charts), name)
+        draw = studies[name].draw
+        if options.charts and draw:
+            with chart_style():
+                save_figure(draw(), Path(options.charts), name)
     if options.json:
         write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
     return 0
-
-
-def _draw(study: Study, folder: Path, name: str) -> None:
-    if study.draw is None:
-        return
-    with chart_style():
-        save_figure(study.draw(), folder, name)
 
 
 def _print(study: Study) -> None:

@@ -39,7 +39,6 @@ from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
 
-GROWTH_HEADERS = tuple(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS)
 STIFFER_PULL = 0.05
 """r of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
 Model = Callable[[DrivelineParameters, float], TransmissionModel]
@@ -90,14 +89,6 @@ def _no_delay(driveline: DrivelineParameters, wear_gain: float) -> TransmissionM
     return transmission_model(driveline, wear_gain, delay=False)
 
 
-def _previewed(settings: MpcSettings) -> MpcSettings:
-    return replace(settings, preview=True)
-
-
-def _held(settings: MpcSettings) -> MpcSettings:
-    return replace(settings, along_tangent=False)
-
-
 _SETTINGS = TwoInputCost().settings()
 _SQUARED = TwoInputCost(0.05, STIFFER_PULL).settings()
 _MIXED = TwoInputCost(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL).settings()
@@ -105,12 +96,12 @@ _NOWHERE = model_without_actuator, model_without_actuator
 """Neither the controller nor the plant has an actuator."""
 READINGS: Mapping[str, Reading] = {
     "x'Qx, reference along its tangent": Reading(_SETTINGS),
-    "x'Qx, coming reference": Reading(_previewed(_SETTINGS)),
-    "x'Qx, reference held": Reading(_held(_SETTINGS)),
+    "x'Qx, coming reference": Reading(replace(_SETTINGS, preview=True)),
+    "x'Qx, reference held": Reading(replace(_SETTINGS, along_tangent=False)),
     'state measured': Reading(_SETTINGS, observer=MeasuredState),
     'weights squared': Reading(_SQUARED),
-    'weights squared, coming reference': Reading(_previewed(_SQUARED)),
-    'weights squared, reference held': Reading(_held(_SQUARED)),
+    'weights squared, coming reference': Reading(replace(_SQUARED, preview=True)),
+    'weights squared, reference held': Reading(replace(_SQUARED, along_tangent=False)),
     'w_d in rpm, dw_d/dt in rad/s^2': Reading(_MIXED),
     'no delay in its model': Reading(_SETTINGS, _no_delay),
     'no actuator in its model': Reading(_SETTINGS, model_without_actuator),
@@ -118,7 +109,7 @@ READINGS: Mapping[str, Reading] = {
         _SETTINGS, model_without_actuator, observer=MeasuredState
     ),
     'no actuator at all': Reading(_SETTINGS, *_NOWHERE),
-    'no actuator at all, coming reference': Reading(_previewed(_SETTINGS), *_NOWHERE),
+    'no actuator at all, coming reference': Reading(replace(_SETTINGS, preview=True), *_NOWHERE),
     'no actuator at all, weights squared': Reading(_SQUARED, *_NOWHERE),
 }
 """The first is what the registry has."""
@@ -139,7 +130,10 @@ def mpc4_readings() -> Study:
     none = ('-',) * len(WEAR_GAINS)
     return Study(
         'MPC4 in the thesis scenario, by reading',
-        ('reading', *headers(TWO_INPUTS), *GROWTH_HEADERS),
+        (
+            *('reading', *headers(TWO_INPUTS)),
+            *(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS),
+        ),
         [
             *rows,
             ('C_fOL alone, C_m as demanded', *alone, *none),

@@ -143,7 +143,10 @@ def engine_authority() -> Study:
     """Run the controllers of both inputs between free authority over the engine and none."""
     cases = [(name, case) for name in ('mpc4', 'mpc4_wear') for case in AUTHORITIES]
     cases += [(name, 'none') for name in ('mpc3', 'mpc_preview')]
-    every = {**AUTHORITIES, 'none': EngineAuthority()}
+    settings = {
+        case: RunSettings(replace(THESIS_SCENARIO, engine_authority=authority))
+        for case, authority in {**AUTHORITIES, 'none': EngineAuthority()}.items()
+    }
     return run_study(
         'Two inputs in the thesis scenario, by what the engine may do about the demand',
         ('controller', 'authority'),
@@ -152,12 +155,8 @@ def engine_authority() -> Study:
             metric_column(METRICS['peak_jerk_m_s3'], '.1f'),
             Column('friction kJ', '.2f', friction_kj),
         ),
-        [((name, case), headless_run(_with_authority(every[case]), name)) for name, case in cases],
+        [((name, case), headless_run(settings[case], name)) for name, case in cases],
     )
-
-
-def _with_authority(authority: EngineAuthority) -> RunSettings:
-    return RunSettings(replace(THESIS_SCENARIO, engine_authority=authority))
 
 
 def two_input_wear() -> Study:

@@ -1,12 +1,12 @@
 """What we compute of a controller: every coefficient by name, z-form, rise time, overshoot."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.state_space import pulse_transfer_function
@@ -14,7 +14,7 @@ from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.cascade import Factor
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 _DURATION_S = 8.0
 _RISE_TOLERANCE = (0.08, 0.02)
@@ -61,7 +61,7 @@ def in_the_form_of(
 
 
 def _dealt(form: Sequence[Factor], roots: np.ndarray) -> tuple[Factor, ...]:
-    if sum(2 if isinstance(factor, tuple) else 1 for factor in form) != len(roots):
+    if sum(len(numbers_of(factor)) for factor in form) != len(roots):
         raise ParameterError(f'{len(roots)} roots do not fill {len(form)} printed factors')
     left = list(roots[np.argsort(np.abs(roots), kind='stable')])
     found: list[Factor] = list(form)
@@ -75,44 +75,33 @@ def _dealt(form: Sequence[Factor], roots: np.ndarray) -> tuple[Factor, ...]:
     return tuple(found)
 
 
-def real(factor: Factor) -> float:
-    """Return a of a factor (s + a)."""
-    assert isinstance(factor, float)
-    return factor
+def numbers_of(factor: Factor) -> tuple[float, ...]:
+    """Return a of a factor (s + a), or b and c of (s^2 + b s + c)."""
+    return factor if isinstance(factor, tuple) else (factor,)
 
 
-def pair(factor: Factor) -> tuple[float, float]:
-    """Return b and c of a factor (s^2 + b s + c)."""
-    assert isinstance(factor, tuple)
-    return factor
-
-
-def step_values(names: Iterable[str]) -> dict[str, float | None]:
+def step_values(
+    controllers: Mapping[str, FactoredTransferFunction],
+) -> dict[str, float | None]:
     """Return `NAME.rise time` in s and `NAME.overshoot` in % of these controllers."""
     found: dict[str, float | None] = {}
-    for name in names:
-        rise_time, percent = step_figures(continuous_loop(PRINTED_CONTROLLERS[name]))
-        found |= {f'{name}.rise time': rise_time, f'{name}.overshoot': percent}
+    for name, controller in controllers.items():
+        rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
+        found |= {f'{name}.rise time': rise_time, f'{name}.overshoot': 100.0 * over}
     return found
 
 
 def fulfilled(controller: FactoredTransferFunction, specifications: TimeSpecifications) -> str:
     """Return which specifications the step response meets, as far as a plot can tell."""
-    rise_time, percent = step_figures(continuous_loop(controller))
+    rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
     limit = specifications.rise_time_s
     quick = rise_time is not None and rise_time <= limit + max(
         _RISE_TOLERANCE[0] * limit, _RISE_TOLERANCE[1]
     )
-    low = percent <= 100.0 * specifications.overshoot + _OVERSHOOT_TOLERANCE
+    low = 100.0 * over <= 100.0 * specifications.overshoot + _OVERSHOOT_TOLERANCE
     if quick and low:
         return 'both'
     return 'only the rise time' if quick else 'only the overshoot' if low else 'none'
-
-
-def step_figures(loop: ContinuousLoop | StateSpace) -> tuple[float | None, float]:
-    """Return the rise time in s, and the overshoot in %."""
-    response = step_response(loop, _DURATION_S)
-    return rise_time_s(*response), 100.0 * overshoot(*response)
 
 
 def sampled_values(name: str) -> dict[str, float]:

@@ -9,10 +9,8 @@ from ddct_bringup.reproduction.values.controller_values import (
     coefficients,
     fulfilled,
     in_the_form_of,
-    pair,
-    real,
+    numbers_of,
     sampled_values,
-    step_figures,
     step_values,
 )
 from ddct_bringup.reproduction.values.loop_shaping_values import translation
@@ -26,7 +24,6 @@ from ddct_controllers.design.loop_shaping.networks import poles_at_zero
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.synthesised import synthesised_design
 from ddct_plant.base.units import RAD_S_PER_RPM
-from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 RAW_CONTROLLER = FactoredTransferFunction(
@@ -55,7 +52,7 @@ def h_infinity_values() -> dict[str, Value | None]:
         'W_2 of sderiv': _synthesised_weight(),
         **_norm_values(),
         **_synthesis_values(),
-        **step_values(('hinf2', 'hinf3')),
+        **step_values({name: H_INFINITY_CONTROLLERS[name] for name in ('hinf2', 'hinf3')}),
         'hinf3 integrators': poles_at_zero(H_INFINITY_CONTROLLERS['hinf3']),
         **sampled_values('hinf1'),
     }
@@ -80,7 +77,8 @@ def _norm_values() -> dict[str, Value | None]:
     """Section 3.2: the weights, and what the printed and the rescaled Hinf1 make of them."""
     hinf1 = H_INFINITY_CONTROLLERS['hinf1']
     # From the slow pole pair, (s + epsilon)^2, of the raw controller.
-    epsilon_rad_s = math.sqrt(pair(RAW_CONTROLLER.denominator[4])[1])
+    _, square = numbers_of(RAW_CONTROLLER.denominator[4])
+    epsilon_rad_s = math.sqrt(square)
     crossover = loop_margins(continuous_loop(RAW_CONTROLLER)).crossover_rad_s
     cleaned, _ = clean(RAW_CONTROLLER, epsilon_rad_s)
     rescaled = cleaned.gain / RAD_S_PER_RPM
@@ -105,7 +103,6 @@ def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value
     loop = continuous_loop(controller)
     w_s, w_t = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
     norms = weighted_norms(loop, w_s, w_t, PRINTED_W_U)
-    rise_time, percent = step_figures(loop)
     nominal = max(norms.sensitivity, norms.complementary) < 1.0
     return {
         f'{name}.norm W_s S': norms.sensitivity,
@@ -114,8 +111,7 @@ def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value
         f'{name}.nominal performance': 'ensured' if nominal else 'not ensured',
         f'{name}.robust stability': 'ensured' if norms.uncertainty < 1.0 else 'not ensured',
         f'{name}.specifications': fulfilled(controller, THESIS_SPECIFICATIONS),
-        f'{name}.rise time': rise_time,
-        f'{name}.overshoot': percent,
+        **step_values({name: controller}),
     }
 
 
@@ -141,16 +137,12 @@ def _cancelled() -> dict[str, Value | None]:
     half-plane.
     """
     plant = plant_in_rpm()
-    zeros = [factor for factor in plant.numerator if not _grows(factor)]
+    zeros = [factor for factor in plant.numerator if numbers_of(factor)[0] >= 0.0]
     poles = [factor for factor in plant.denominator if factor != 0.0]
     whole = FactoredTransferFunction(1.0, tuple(poles), tuple(zeros))
     found: dict[str, Value | None] = dict(coefficients('cancelled', whole))
     del found['cancelled.gain']
-    fast = pair(max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1]))
+    fast = max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1])
     numerator = H_INFINITY_CONTROLLERS['hinf2'].numerator
     has = any(isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _SAME for f in numerator)
     return found | {'hinf2 fast pair': Finding(has, f's^2 + {fast[0]:g} s + {fast[1]:g}')}
-
-
-def _grows(factor: Factor) -> bool:
-    return (factor[0] if isinstance(factor, tuple) else real(factor)) < 0.0

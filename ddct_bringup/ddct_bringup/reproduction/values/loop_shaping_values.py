@@ -9,8 +9,7 @@ from ddct_bringup.reproduction.values.controller_values import (
     coefficients,
     fulfilled,
     in_the_form_of,
-    pair,
-    real,
+    numbers_of,
     sampled_values,
     step_values,
 )
@@ -62,7 +61,7 @@ def loop_shaping_values() -> dict[str, Value | None]:
     # t_r w_c bounds what is chosen from below.
     bound = _PRINTED_PRODUCT / PLACEMENT_SPECIFICATIONS.rise_time_s
     # The printed pole pairs are s^2 + b s + ... and z^2 + ... + c: c = exp(-b T).
-    b, _ = pair(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
+    b, _ = numbers_of(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
     return {
         **translation('2.2', NETWORK_SPECIFICATIONS),
         '2.2 t_r w_c': rise_time_crossover_product(NETWORK_SPECIFICATIONS.damping),
@@ -123,6 +122,7 @@ def _networks() -> dict[str, Value | None]:
     response = continuous_loop(integrators(-1.0, 1)).response(np.array([_CROSSOVER_RAD_S]))[0]
     wanted = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
     s_peak, t_peak = contours(LoopCurve(continuous_loop(g_c1)), NETWORK_SPECIFICATIONS)
+    (lead_zero,) = numbers_of(g_c1.numerator[1])
     lead = lead_network(1.0, _LEAD_RATIO).frequency_response(np.ones(1))[0]
     made = in_the_form_of(g_c1, network_steps()[-1].controller)
     put_in = {'G_c1.zero 2', 'G_c1.zero 3', 'G_c1.pole 1', 'G_c1.pole 4'}
@@ -130,7 +130,7 @@ def _networks() -> dict[str, Value | None]:
         'missing phase': math.degrees(wanted - float(np.angle(-response))),
         'lead phase': math.degrees(float(np.angle(lead))),
         # w_c = 8 rad/s over the printed zero of the leads.
-        'lead zero': f'w_c / {_CROSSOVER_RAD_S / real(g_c1.numerator[1]):g}',
+        'lead zero': f'w_c / {_CROSSOVER_RAD_S / lead_zero:g}',
         **{name: x for name, x in coefficients('G_c1', made).items() if name not in put_in},
         'G_c1 in Nichols': 'out of the circles'
         if s_peak.respected and t_peak.respected

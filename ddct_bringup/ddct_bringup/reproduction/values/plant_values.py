@@ -8,7 +8,7 @@ import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
-from ddct_bringup.reproduction.values.controller_values import pair, real
+from ddct_bringup.reproduction.values.controller_values import numbers_of
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
@@ -66,35 +66,31 @@ def plant_values() -> dict[str, Value | None]:
 
 def _shared_poles(driveline: DrivelineParameters) -> dict[str, Value]:
     """Return the poles of P_3, which Section 1.5 makes those of P_2 without the one at 0."""
-    slow, fast = load_to_slip(driveline).denominator
-    b, c = pair(fast)
-    return {'p3.pole a': real(slow), 'p3.pole b': b, 'p3.pole c': c}
+    (a,), (b, c) = (numbers_of(factor) for factor in load_to_slip(driveline).denominator)
+    return {'p3.pole a': a, 'p3.pole b': b, 'p3.pole c': c}
 
 
 def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
     """Return what the equations of Section 1.5 have to be for the printed P_2 to come out."""
     model = driveline_matrices(driveline)
     minus = model.c[0].tolist() == [1.0, -1.0, 0.0, 0.0]
-    undamped = clutch_to_slip(dataclasses.replace(driveline, shaft_damping=0.0)).denominator[1]
+    undamped = clutch_to_slip(dataclasses.replace(driveline, shaft_damping=0.0))
+    (pole,) = numbers_of(undamped.denominator[1])
     return {
         'slip speed': 'w_m - w_p' if minus else 'not w_m - w_p',
-        **_wheel_coupling(model.a, driveline),
-        'p2.pole a without c_prim': real(undamped) + 0.0,  # no minus zero,
+        'w_r equation': _wheel_coupling(model.a, driveline),
+        'p2.pole a without c_prim': pole + 0.0,  # no minus zero,
     }
 
 
-def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> dict[str, Value]:
+def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> str:
     """Return which coefficient of w_p the w_r equation needs: one that leaves no growing pole."""
     growth = {}
-    for inertia in ('shaft_inertia', 'vehicle_inertia'):
+    for symbol, inertia in (('J_p', driveline.shaft_inertia), ('J_v', driveline.vehicle_inertia)):
         changed = a.copy()
-        coupling = driveline.halfshaft_damping / driveline.total_ratio
-        changed[2, 1] = coupling / getattr(driveline, inertia)
-        growth[inertia] = float(np.max(np.linalg.eigvals(changed).real))
-    symbols = {'shaft_inertia': 'J_p', 'vehicle_inertia': 'J_v'}
-    return {
-        'w_r equation': f'c_sa/({symbols[min(growth, key=lambda name: growth[name])]} tau)',
-    }
+        changed[2, 1] = driveline.halfshaft_damping / driveline.total_ratio / inertia
+        growth[symbol] = float(np.max(np.linalg.eigvals(changed).real))
+    return f'c_sa/({min(growth, key=lambda symbol: growth[symbol])} tau)'
 
 
 def _compensators() -> dict[str, Value]:

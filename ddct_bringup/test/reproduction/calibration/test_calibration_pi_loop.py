@@ -8,7 +8,7 @@ import pytest
 from ddct_bringup.reproduction.calibration import record
 from ddct_bringup.reproduction.calibration.parameters import pi_growth_rate
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem
-from ddct_bringup.reproduction.calibration.search import Search, lowest_stable
+from ddct_bringup.reproduction.calibration.search import lowest_stable
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -78,7 +78,7 @@ def test_a_pi_that_only_rounding_makes_unstable_does_not_leave_the_calibration(m
     """K_p = 0.0023 stabilises K_i = 0.04, the 0.002 that the scenario would keep does not."""
     chosen = optimum(0.0023, 0.04, 0.1)
     assert chosen.pi_stable
-    monkeypatch.setattr(record, 'search', lambda _: Search((), (), chosen))
+    monkeypatch.setattr(record, 'search', lambda _: ([], [chosen]))
     with pytest.raises(DdctError, match=r'gains 0\.002 and 0\.04 grows by 0\.0023/s'):
         record.calibrate(print)
 
