@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.linear.lti import own_matrices
 
 QpStatus = Literal['solved', 'iteration limit', 'infeasible']
 
@@ -44,27 +45,17 @@ class QpStructure:
     """w, above 0; needed when a row is soft."""
 
     def __post_init__(self) -> None:
-        hessian = _matrix('hessian', self.hessian)
-        constraints = _matrix('constraints', self.constraints)
-        size = len(hessian)
-        if hessian.shape != (size, size) or size == 0:
-            raise ParameterError(f'QP: the hessian is {hessian.shape}, it must be square')
-        if constraints.shape[1] != size:
+        own_matrices(self, 'QP', hessian='nn', constraints='mn')
+        _require_definite(self.hessian)
+        rows = len(self.constraints)
+        soft = np.array(np.zeros(rows, dtype=bool) if self.soft is None else self.soft)
+        if soft.shape != (rows,) or soft.dtype != bool:
             raise ParameterError(
-                f'QP: constraints is {constraints.shape}, but the hessian has {size} variables'
-            )
-        _require_definite(hessian)
-        given = np.zeros(len(constraints), dtype=bool) if self.soft is None else self.soft
-        soft = np.array(given)
-        if soft.shape != (len(constraints),) or soft.dtype != bool:
-            raise ParameterError(
-                f'QP: soft is {soft.dtype} {soft.shape}, it must be {len(constraints)} booleans'
+                f'QP: soft is {soft.dtype} {soft.shape}, it must be {rows} booleans'
             )
         if soft.any():
             require_number('QP: soft_weight', self.soft_weight, above=0.0)
         soft.setflags(write=False)
-        object.__setattr__(self, 'hessian', hessian)
-        object.__setattr__(self, 'constraints', constraints)
         object.__setattr__(self, 'soft', soft)
 
     @property
@@ -86,14 +77,6 @@ class QpSolution:
     'iteration limit' when the solver stopped short of its tolerance, 'infeasible' when the hard
     rows contradict each other.
     """
-
-
-def _matrix(name: str, given: np.ndarray) -> np.ndarray:
-    matrix = np.array(given, dtype=float)
-    if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
-        raise ParameterError(f'QP: {name} must be a matrix of finite numbers')
-    matrix.setflags(write=False)
-    return matrix
 
 
 def _require_definite(hessian: np.ndarray) -> None:

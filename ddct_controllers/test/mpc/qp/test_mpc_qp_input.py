@@ -49,7 +49,7 @@ def test_bad_vectors_are_named_and_harm_nothing(name, f, lower, upper, complaint
         ([[1.0, 2.0], [2.0, 1.0]], 'singular to working precision'),
         ([[1.0, 0.5], [0.4, 1.0]], 'not symmetric'),
         ([[1.0, math.nan], [math.nan, 1.0]], 'hessian must be a matrix of finite numbers'),
-        ([[1.0, 0.0]], 'must be square'),
+        ([[1.0, 0.0]], r'hessian is \(1, 2\), it must be \(1, 1\)'),
         ([1.0, 2.0], 'hessian must be a matrix'),
     ],
 )
@@ -61,7 +61,7 @@ def test_a_hessian_that_cannot_be_solved_is_refused_at_configuration(hessian, co
 @pytest.mark.parametrize(
     ('arguments', 'complaint'),
     [
-        ({'constraints': np.eye(3)}, 'hessian has 2 variables'),
+        ({'constraints': np.eye(3)}, r'constraints is \(3, 3\), it must be \(3, 2\)'),
         ({'constraints': np.full((1, 2), INF)}, 'constraints must be a matrix of finite'),
         ({'soft': np.array([True])}, '2 booleans'),
         ({'soft': np.array([0.0, 1.0])}, '2 booleans'),
