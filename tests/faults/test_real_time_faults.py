@@ -121,8 +121,8 @@ def _stop_when_answered(graph: InProcessGraph, clock: PatientClock, node: str) -
     """Take a node away right after the clutch has answered a step, and return that step."""
     owner = realtime_owner(graph)
     graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
-    while CLUTCH in owner.barrier.missing():
-        graph.spin_until(lambda: CLUTCH not in owner.barrier.missing(), 'a clutch torque')
+    while CLUTCH in owner.missing():
+        graph.spin_until(lambda: CLUTCH not in owner.missing(), 'a clutch torque')
     last = owner.step
     graph.remove(node)
     clock.release()

@@ -117,8 +117,8 @@ def test_real_time_gives_up_on_a_torque_that_stays_away(graph_of: GraphOf) -> No
     owner = realtime_owner(graph)
     clock = PatientClock(owner)
     graph.spin_until(lambda: owner.step >= 20, 'step 20')
-    while LOAD in owner.barrier.missing():
-        graph.spin_until(lambda: LOAD not in owner.barrier.missing(), 'a load torque')
+    while LOAD in owner.missing():
+        graph.spin_until(lambda: LOAD not in owner.missing(), 'a load torque')
     last = owner.step
     graph.remove('load')
     clock.release()

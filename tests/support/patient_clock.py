@@ -29,7 +29,7 @@ class PatientClock:
             return time.monotonic() + self._offset
         if started is None or owner.step == owner._plan.steps:
             return time.monotonic()
-        missing = set(owner.barrier.missing()) - self._not_awaited
+        missing = set(owner.missing()) - self._not_awaited
         return started + (owner.step + (0.5 if missing else 1.5)) * PERIOD_S
 
     def go_on_without(self, topic: str) -> None:

@@ -54,7 +54,8 @@ class NodeProcesses:
         while True:
             ended = [node for node in self._nodes if not node.running]
             if any(node.name != name or node.code != 0 for node in ended):
-                culprit = _culprit(ended)
+                # To blame is one that was killed or failed, before one that noticed.
+                culprit = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
                 raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
             if ended:
                 return
@@ -80,7 +81,7 @@ class NodeProcesses:
             for node in nodes:
                 node.send(number)
             deadline = time.monotonic() + patience_s
-            while time.monotonic() < deadline and _running(nodes):
+            while time.monotonic() < deadline and any(node.running for node in nodes):
                 time.sleep(POLL_S)
                 for node in nodes:
                     node.look(POLL_S)
@@ -90,12 +91,3 @@ class NodeProcesses:
         for node in self._nodes:
             if node.code != 0:
                 raise DdctError(f'{node.obituary()}; its log is {node.log}')
-
-
-def _running(nodes: Sequence[NodeProcess]) -> bool:
-    return any(node.running for node in nodes)
-
-
-def _culprit(ended: Sequence[NodeProcess]) -> NodeProcess:
-    """Return the node to blame: one that was killed or failed before one that noticed."""
-    return min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))

@@ -173,7 +173,7 @@ class DrivelineNode(GraphNode):
             ('steps', str(owner.step)),
             ('resends', str(owner.resends)),
             ('missed_steps', str(owner.missed_steps)),
-            ('late_messages', str(owner.barrier.late)),
+            ('late_messages', str(owner.late)),
         ]
         if isinstance(owner, RealtimeOwner):
             pairs += [(f'missed {topic}', str(n)) for topic, n in owner.missed_replies.items()]

@@ -58,13 +58,13 @@ class RealtimeOwner(TickOwner):
         if self._started_at is not None and self.step < self.last_step:
             return
         waited_s = self._clock() - self._opened_at
-        recorder_alone = self.barrier.missing() == [self._plan.recorder]
+        recorder_alone = self.missing() == [self._plan.recorder]
         if self._started_at is not None and recorder_alone and waited_s > RECORDER_PATIENCE_S:
             self._finish(None)
         else:
             super().watch()
 
-    def _awaited(self, step: int) -> tuple[str, ...]:
+    def _awaited_at(self, step: int) -> tuple[str, ...]:
         if step not in (0, self.last_step):
             return self._plan.torques
         awaited = self._plan.topics
@@ -78,7 +78,7 @@ class RealtimeOwner(TickOwner):
             self._on_started()
 
     def _take_step(self) -> None:
-        replies = {topic: self.barrier.replies.get(topic) for topic in self._plan.torques}
+        replies = {topic: self._replies.get(topic) for topic in self._plan.torques}
         self.missed_steps += any(reply is None for reply in replies.values())
         for topic, reply in replies.items():
             if reply is None:

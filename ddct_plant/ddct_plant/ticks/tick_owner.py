@@ -1,7 +1,7 @@
 """The owner of time: when the driveline steps, and on which replies. Knows nothing of ROS."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,47 +49,12 @@ def driveline_info(steps: int, clutch: FailSafeSettings | None = None) -> dict[s
     }
 
 
-class TickBarrier:
-    """
-    The replies to one tick, by topic.
-
-    Only replies stamped exactly t_k count; everything else is ignored, so that old data never
-    enters a step.
-    """
-
-    def __init__(self) -> None:
-        self._topics: tuple[str, ...] = ()
-        self._stamp_ns = stamp_of_step(0)
-        self.replies: dict[str, Any] = {}
-        """What has come so far."""
-        self.late = 0
-        """Replies to a tick that was already over."""
-
-    def open(self, step: int, topics: Sequence[str]) -> None:
-        """Forget the replies of the last tick and wait for those of `topics` to `step`."""
-        self._topics = tuple(topics)
-        self._stamp_ns = stamp_of_step(step)
-        self.replies = {}
-
-    def offer(self, topic: str, stamp_ns: int, reply: Any) -> bool:
-        """Take a reply; return whether it was the one that completed the tick."""
-        if stamp_ns != self._stamp_ns or topic not in self._topics or topic in self.replies:
-            self.late += stamp_ns < self._stamp_ns
-            return False
-        self.replies[topic] = reply
-        return len(self.replies) == len(self._topics)
-
-    def missing(self) -> list[str]:
-        """Return the topics that have not answered, in the order they were given."""
-        return [topic for topic in self._topics if topic not in self.replies]
-
-
 class TickOwner:
     """
     Publish a tick, wait for every reply stamped exactly t_k, integrate, go on: lock-step.
 
-    It never goes on with old data. `publish(step)` sends the driveline's present outputs;
-    `finish(error)` ends the run.
+    Everything but those replies is ignored, so that old data never enters a step.
+    `publish(step)` sends the driveline's present outputs; `finish(error)` ends the run.
     """
 
     def __init__(
@@ -106,7 +71,11 @@ class TickOwner:
         """N, less where `over()` says that the run ends with the present state."""
         self.resends = 0
         self.missed_steps = 0
-        self.barrier = TickBarrier()
+        self.late = 0
+        """Replies to a tick that was already over."""
+        self._awaited: tuple[str, ...] = ()
+        self._replies: dict[str, Any] = {}
+        """What has come of them so far, by topic."""
         self._driveline = driveline
         self._plan = plan
         self._publish = publish
@@ -122,13 +91,22 @@ class TickOwner:
 
     def offer(self, topic: str, stamp_ns: int, reply: Any) -> None:
         """Take one reply; the one that completes the tick may make the driveline step."""
-        if self.barrier.offer(topic, stamp_ns, reply):
+        due = stamp_of_step(self.step)
+        if stamp_ns != due or topic not in self._awaited or topic in self._replies:
+            self.late += stamp_ns < due
+            return
+        self._replies[topic] = reply
+        if len(self._replies) == len(self._awaited):
             self._on_complete()
+
+    def missing(self) -> list[str]:
+        """Return the topics that have not answered, in the order of the plan."""
+        return [topic for topic in self._awaited if topic not in self._replies]
 
     def watch(self) -> None:
         """Send an unanswered tick again, or end the run; called every few ms of wall time."""
         now = self._clock()
-        missing = self.barrier.missing()
+        missing = self.missing()
         if not missing:
             return
         if now - self._opened_at > self._plan.answer_timeout_s:
@@ -144,18 +122,19 @@ class TickOwner:
             self.resends += 1
             self._publish(self.step)
 
-    def _awaited(self, step: int) -> tuple[str, ...]:
+    def _awaited_at(self, step: int) -> tuple[str, ...]:
         return self._plan.topics
 
     def _on_complete(self) -> None:
         if self.step == self.last_step:
             self._finish(None)
         else:
-            self._integrate(self.barrier.replies)
+            self._integrate(self._replies)
 
     def _open(self, step: int) -> None:
         self.step = step
-        self.barrier.open(step, self._awaited(step))
+        self._awaited = self._awaited_at(step)
+        self._replies = {}
         self._opened_at = self._sent_at = self._clock()
         self._publish(step)
 

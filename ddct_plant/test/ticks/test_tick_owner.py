@@ -85,7 +85,7 @@ def test_lockstep_never_steps_on_a_reply_to_another_tick(lockstep):
     lockstep.answer(0)
     lockstep.answer(2)
     assert lockstep.published == [0, 1]
-    assert lockstep.owner.barrier.late == 3
+    assert lockstep.owner.late == 3
 
 
 def test_lockstep_sends_an_unanswered_tick_again_unchanged(lockstep):
@@ -267,7 +267,7 @@ def test_a_stick_slip_run_waits_for_the_holding_torque_and_steps_on_both_capacit
     harness = Harness(TickOwner, torques=STICK_SLIP, clutch=clutch)
     harness.owner.start()
     harness.answer(0)
-    assert harness.owner.barrier.missing() == [HOLDING]
+    assert harness.owner.missing() == [HOLDING]
     harness.answer(0, topics=(HOLDING,))
     assert harness.driveline.steps == [(1.0, 2.0, *clutch, 60.0)]
 
