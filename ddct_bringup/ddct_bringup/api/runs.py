@@ -32,6 +32,7 @@ from ddct_controllers.registry import (
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import options_of, require_known
+from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
@@ -226,7 +227,7 @@ def base_from(
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
     require_known(sorted(given), options_of(RunSettings), 'option')
     return RunBase(
-        str(scenario),
+        ScenarioFile.read(str(scenario)),
         {key: plain(changes[key]) for key in changes},
         {key: plain(given[key]) for key in given},
         tuple(labels),

@@ -1,14 +1,15 @@
 """The columns of `results.parquet`, and how rows become the bytes of a Parquet file."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_bringup.campaign.rows import CRITERION_COLUMNS, METRIC_COLUMNS
+from ddct_bringup.campaign.rows import CRITERION_COLUMNS, METRIC_COLUMNS, SERIAL
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
 
@@ -17,7 +18,7 @@ SCHEMA_VERSION = 1
 INDEX, CONTROLLER, PATH = 'index', 'controller', 'path'
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
-"""Rows at least, but in the last group."""
+"""Rows at least, but in the last group: each group costs a reader memory."""
 _VERDICT = (
     ('valid', pa.bool_()),
     ('reason', pa.string()),
@@ -26,6 +27,8 @@ _VERDICT = (
 )
 COMPARED = (*METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
 """What a run that is made again must have as its row has it."""
+VECTORISED_RTOL = 1e-9
+"""What a row of the vectorised path may differ by then, relative to the larger value."""
 
 
 def schema_of(spec: CampaignSpec) -> pa.Schema:
@@ -61,37 +64,30 @@ def holds_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
     return table.schema.equals(schema) and table[INDEX].to_pylist() == list(range(first, last))
 
 
-def merge(shards: Sequence[Path], schema: pa.Schema, target: Path, advice: str) -> None:
+def merge(
+    shards: Sequence[Path], shard_size: int, schema: pa.Schema, target: Path, advice: str
+) -> None:
     """
     Write the rows of all shards, in their order, into one file, whole or not at all.
 
-    Raise DdctError, with an advice, when that fails.
+    `shard_size` is the number of rows in each but the last. Raise DdctError, with an advice, when
+    that fails.
     """
+    in_group = -(-_ROW_GROUP // shard_size)
     partial = target.with_name(f'.{target.name}.partial')
     try:
         with (
             partial.open('wb') as file,
             parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
         ):
-            for tables in _row_groups(shards):
+            for first in range(0, len(shards), in_group):
+                tables = [parquet.read_table(each) for each in shards[first : first + in_group]]
                 writer.write_table(pa.concat_tables(tables))
         partial.replace(target)
     except (OSError, pa.ArrowException) as error:
         partial.unlink(missing_ok=True)
         why = getattr(error, 'strerror', None) or error
         raise DdctError(f'{target}: cannot be written ({why}); {advice}') from error
-
-
-def _row_groups(shards: Sequence[Path]) -> Iterator[list[pa.Table]]:
-    """Yield the tables of shards that make a row group together: each costs a reader memory."""
-    tables: list[pa.Table] = []
-    for shard in shards:
-        tables.append(parquet.read_table(shard))
-        if sum(len(table) for table in tables) >= _ROW_GROUP:
-            yield tables
-            tables = []
-    if tables:
-        yield tables
 
 
 def read_row(results: Path, index: int) -> dict[str, Any]:
@@ -103,6 +99,26 @@ def read_row(results: Path, index: int) -> dict[str, Any]:
     if not rows:
         raise DdctError(f'{results}: it has no row {index}')
     return rows[0]
+
+
+def differences(row: Mapping[str, Any], again: Mapping[str, Any]) -> list[str]:
+    """
+    Return in words what of a run that was made again is not what its row says.
+
+    Every metric, criterion and word of the verdict counts: of a serial row to the last bit.
+    """
+    rtol = 0.0 if row[PATH] == SERIAL else VECTORISED_RTOL
+    return [
+        f'{name} is {again[name]!r}, in the row {row[name]!r}'
+        for name in COMPARED
+        if not _same(row[name], again[name], rtol)
+    ]
+
+
+def _same(ours: Any, theirs: Any, rtol: float) -> bool:
+    if isinstance(ours, float) and isinstance(theirs, (int, float)):
+        return math.isclose(ours, theirs, rel_tol=rtol)
+    return ours == theirs
 
 
 def _cell(value: Any) -> Any:

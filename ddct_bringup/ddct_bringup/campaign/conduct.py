@@ -1,6 +1,6 @@
 """Carry out a campaign: the shards that are missing, each written whole, then all in one file."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from dataclasses import dataclass
 from itertools import islice
@@ -10,7 +10,7 @@ from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import ShardJob, compute_shard, shard_ranges
+from ddct_bringup.campaign.shards import ShardJob, compute_shard
 from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.output_folder import MARKER, mark_folder, require_ours_or_empty
 from ddct_bringup.verdict.limits import Limits
@@ -27,14 +27,6 @@ _MOST_DEATHS = 3
 """Of workers, one after the other, without a shard done in between."""
 _LOOK_S = 0.2
 """Between two looks at signals and workers."""
-
-
-@dataclass(frozen=True)
-class Shard:
-    """One shard in its place."""
-
-    job: ShardJob
-    file: Path
 
 
 def carry_out(
@@ -57,15 +49,15 @@ def carry_out(
         manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
         schema = schema_of(campaign.spec)
         shards = _shards(campaign, limits, manifest, out)
-        missing = [
-            each
-            for each in shards
-            if not holds_rows(each.file, schema, each.job.first, each.job.last)
-        ]
-        done = manifest.runs - sum(each.job.last - each.job.first for each in missing)
+        missing = {
+            file: job
+            for file, job in shards.items()
+            if not holds_rows(file, schema, job.first, job.last)
+        }
+        done = manifest.runs - sum(job.last - job.first for job in missing.values())
         progress = Progress('runs', manifest.runs, done=done)
         _Conduct(ready, progress, stopped).compute(missing, done)
-        merge([each.file for each in shards], schema, out / RESULTS, RESUME)
+        merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
     return out / RESULTS
 
 
@@ -87,82 +79,78 @@ def _begin(
         raise DdctError(f'{out}: there is nothing to go on with: leave --resume out')
     if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
         raise DdctError(f'{out} holds other results: choose another --out')
-    _require_buildable(campaign, stopped)
+    progress = Progress('planned', campaign.cases)
+    for done in campaign.plan():
+        require_going_on(stopped)
+        progress.tell(done)
+    progress.end()
     mark_folder(out)
     (out / SHARDS).mkdir(exist_ok=True)
     manifest.write(out)
     return manifest
 
 
-def _require_buildable(campaign: Campaign, stopped: Callable[[], bool]) -> None:
-    progress = Progress('planned', campaign.cases)
-
-    def tell(done: int) -> None:
-        require_going_on(stopped)
-        progress.tell(done)
-
-    campaign.require_buildable(tell)
-    progress.end()
-
-
-def _shards(campaign: Campaign, limits: Limits, manifest: Manifest, out: Path) -> list[Shard]:
-    return [
-        Shard(
-            ShardJob(campaign.spec, limits, manifest.code_digest, first, last),
-            out / SHARDS / f'{first:08d}.parquet',
+def _shards(
+    campaign: Campaign, limits: Limits, manifest: Manifest, out: Path
+) -> dict[Path, ShardJob]:
+    """Return what computes each shard, by its file, in the order of the runs."""
+    size, runs = manifest.shard_size, manifest.runs
+    return {
+        out / SHARDS / f'{first:08d}.parquet': ShardJob(
+            campaign.spec, limits, manifest.code_digest, first, min(first + size, runs)
         )
-        for first, last in shard_ranges(manifest.runs, manifest.shard_size)
-    ]
+        for first in range(0, runs, size)
+    }
 
 
+@dataclass
 class _Conduct:
     """Keeps workers at work until every shard is on the disk."""
 
-    def __init__(self, workers: Workers, progress: Progress, stopped: Callable[[], bool]) -> None:
-        self._workers = workers
-        self._progress = progress
-        self._stopped = stopped
+    workers: Workers
+    progress: Progress
+    stopped: Callable[[], bool]
 
-    def compute(self, shards: Sequence[Shard], done: int) -> None:
-        """Compute shards and write each; `done` runs were so before."""
-        missing = list(shards)
+    def compute(self, shards: Mapping[Path, ShardJob], done: int) -> None:
+        """Compute shards and write each into its file; `done` runs were so before."""
+        missing = dict(shards)
         deaths = 0
         while missing:
             try:
-                for shard in self._written(missing):
-                    missing.remove(shard)
-                    done += shard.job.last - shard.job.first
+                for file in self._written(missing):
+                    job = missing.pop(file)
+                    done += job.last - job.first
                     deaths = 0
-                    self._progress.tell(done)
+                    self.progress.tell(done)
             except (BrokenExecutor, CancelledError) as error:
-                self._workers.require_alive()
+                self.workers.require_alive()
                 deaths += 1
                 if deaths == _MOST_DEATHS:
                     raise DdctError(
                         f'workers died {deaths} times one after the other: free some memory or '
                         f'take fewer of them; {RESUME}'
                     ) from error
-        self._progress.end()
+        self.progress.end()
 
-    def _written(self, shards: Sequence[Shard]) -> Iterator[Shard]:
-        """Yield each shard once it is written; raise what breaks an executor."""
-        executor = self._workers.executor()
+    def _written(self, shards: Mapping[Path, ShardJob]) -> Iterator[Path]:
+        """Yield the file of each shard once it is written; raise what breaks an executor."""
+        executor = self.workers.executor()
         waiting = iter(tuple(shards))
-        running: dict[Future[bytes], Shard] = {}
+        running: dict[Future[bytes], Path] = {}
         while True:
-            free = _AHEAD * self._workers.count - len(running)
-            for shard in islice(waiting, max(free, 0)):
-                running[executor.submit(compute_shard, shard.job)] = shard
+            free = _AHEAD * self.workers.count - len(running)
+            for file in islice(waiting, max(free, 0)):
+                running[executor.submit(compute_shard, shards[file])] = file
             if not running:
                 return
             finished = wait(running, _LOOK_S, FIRST_COMPLETED).done
-            require_going_on(self._stopped)
+            require_going_on(self.stopped)
             if not finished:
-                self._workers.require_alive()
+                self.workers.require_alive()
             for future in finished:
-                shard = running.pop(future)
-                write_bytes(str(shard.file), _result(future, shard.job), RESUME)
-                yield shard
+                file = running.pop(future)
+                write_bytes(str(file), _result(future, shards[file]), RESUME)
+                yield file
 
 
 def require_going_on(stopped: Callable[[], bool]) -> None:

@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
-from typing import Protocol
 
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.program.workers import begin_worker
@@ -19,25 +18,8 @@ _ONE_THREAD = dict.fromkeys(('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM
 """So that sums are taken in one order, and workers do not wait for one another."""
 
 
-class Workers(Protocol):
-    """Executors of shards, and what to know of them."""
-
-    @property
-    def count(self) -> int:
-        """How many shards can be computed at once."""
-
-    def executor(self) -> Executor:
-        """Return the executor; a new one after that of before has broken."""
-
-    def require_alive(self) -> None:
-        """Raise DdctError when nobody is left who could go on."""
-
-    def close(self) -> None:
-        """End all of it at once; what is being computed is lost."""
-
-
 class LocalWorkers:
-    """Processes of this machine, each with one thread for its numerics."""
+    """Processes of this machine, each with one thread for its numerics; `count` at once."""
 
     def __init__(self, count: int | None = None) -> None:
         """Take as many as there are cores, unless told; raise ParameterError for less than one."""
@@ -47,7 +29,7 @@ class LocalWorkers:
         self._pool: ProcessPoolExecutor | None = None
 
     def executor(self) -> Executor:
-        """Return a new pool."""
+        """Return a new pool: that of before, if any, has broken."""
         self.close()
         # A new interpreter: a copy of this process would keep its threads' locks and its BLAS.
         context = multiprocessing.get_context('spawn')
@@ -58,7 +40,7 @@ class LocalWorkers:
         """Say nothing: a pool whose processes die is broken by itself."""
 
     def close(self) -> None:
-        """Kill the processes."""
+        """Kill the processes; what is being computed is lost."""
         if self._pool is None:
             return
         processes = list((self._pool._processes or {}).values())
@@ -118,10 +100,14 @@ class DaskWorkers:
         self._client.close(timeout=CONNECT_S)
 
 
+Workers = LocalWorkers | DaskWorkers
+"""Executors of shards, and what to know of them."""
+
+
 @contextmanager
 def workers_of(count: int | None, scheduler: str | None) -> Iterator[Workers]:
     """Give the workers of an address, or local ones, and end them."""
-    workers = DaskWorkers(scheduler) if scheduler else LocalWorkers(count)
+    workers: Workers = DaskWorkers(scheduler) if scheduler else LocalWorkers(count)
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ.update(_ONE_THREAD)
     try:

@@ -1,13 +1,15 @@
 """`manifest.json`: what a campaign is, so that it can go on and its rows can be made again."""
 
+import hashlib
 import json
 from dataclasses import asdict, dataclass, fields
+from functools import cache
+from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.code import code_digest
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import shard_size
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.run.source_commit import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits
@@ -20,6 +22,12 @@ from ddct_plant.program.command_line import package_version
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1
 """Of the manifest."""
+_PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+_SOURCES = ('.py', '.yaml')
+_MOST_RUNS = 2000
+"""Of a shard."""
+_LEAST_SHARDS = 50
+"""Of a campaign with so many runs: enough that all workers end together."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,7 @@ class Manifest:
     """`name`, `digest` and `schema_version` of what the runs are judged by."""
     runs: int
     shard_size: int
+    """How many runs a shard has: it depends on nothing but their number."""
     folder: str
     """What files of the specification are relative to."""
     spec: dict[str, Any]
@@ -55,7 +64,7 @@ class Manifest:
             spec_digest=campaign.digest(),
             limits=dict(limits.origin),
             runs=campaign.runs,
-            shard_size=shard_size(campaign.runs),
+            shard_size=min(_MOST_RUNS, -(-campaign.runs // _LEAST_SHARDS)),
             folder=str(campaign.spec.folder),
             spec=dict(campaign.spec.content),
         )
@@ -83,6 +92,16 @@ class Manifest:
         """Return the specification of the campaign."""
         return spec_of(self.spec, Path(self.folder))
 
+    def campaign(self, out: Path) -> Campaign:
+        """Return the campaign in `out`; raise DdctError where a file that it names has changed."""
+        campaign = Campaign(self.campaign_spec())
+        if campaign.digest() != self.spec_digest:
+            raise DdctError(
+                f'{out}: a scenario, profile or controller file of its specification has changed '
+                'since: put the old one back'
+            )
+        return campaign
+
     def require_same(self, other: 'Manifest', out: Path) -> None:
         """Raise DdctError that says what of another campaign is not as in this one, in `out`."""
         for what, ours, theirs in (
@@ -109,3 +128,30 @@ class Manifest:
     def code(self) -> str:
         """The commit, and what tells two dirty ones apart."""
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
+
+
+@cache
+def code_digest() -> str:
+    """Return a hash of the sources of our packages as they are now: a commit may be dirty."""
+    digest = hashlib.sha256()
+    for package in _PACKAGES:
+        _add(digest, package, files(package))
+    return digest.hexdigest()
+
+
+def require_code(digest: str) -> None:
+    """Raise DdctError unless this process has the sources that a campaign began with."""
+    if code_digest() != digest:
+        raise DdctError(
+            'a worker has other sources than the program that started the campaign: install the '
+            'same version there'
+        )
+
+
+def _add(digest: 'hashlib._Hash', name: str, item: Traversable) -> None:
+    if item.is_dir():
+        for each in sorted(item.iterdir(), key=lambda each: each.name):
+            _add(digest, f'{name}/{each.name}', each)
+    elif name.endswith(_SOURCES):
+        digest.update(name.encode())
+        digest.update(item.read_bytes())

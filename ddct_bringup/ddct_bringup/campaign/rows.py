@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from ddct_bringup.run.description import facts_of
@@ -15,11 +15,12 @@ from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
-from ddct_controllers.registry import Chosen, controller_label
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, printable
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.registry import Chosen, controller_label, make_controller
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable
 from ddct_plant.base.options import options_of
 from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.file import load_scenario, parsed_override
+from ddct_plant.scenario.file import ScenarioFile, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
 SERIAL, VECTORISED = 'serial', 'vectorised'
@@ -37,13 +38,12 @@ CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
 class RunBase:
     """What runs have in common, before something is varied."""
 
-    scenario: str = 'thesis'
-    """Name or file."""
-    changes: Mapping[str, Any] = field(default_factory=dict)
+    file: ScenarioFile
+    changes: Mapping[str, Any]
     """Values by dotted scenario key, as `--set` gives them."""
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any]
     """Those of `RunSettings` by name, such as `clutch`."""
-    labels: tuple[str, ...] = ()
+    labels: Sequence[str]
     """What the controllers are called: `changes` may hold options of theirs."""
 
     def at(self, varied: Mapping[str, Any]) -> RunSettings:
@@ -57,7 +57,7 @@ class RunBase:
         settings = {**self.settings, **{key: varied[key] for key in varied if key in own}}
         ours = {key: value for key, value in self.changes.items() if key not in varied}
         changes = ours | {key: varied[key] for key in varied if key not in own}
-        scenario = load_scenario(self.scenario, changes, settings.get('clutch', LINEAR))
+        scenario = self.file.scenario(changes, settings.get('clutch', LINEAR))
         return run_settings(scenario, self.labels, settings)
 
 
@@ -67,7 +67,17 @@ def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
     if options.duration is not None:
         changes['duration_s'] = options.duration
     settings = {name: getattr(options, name) for name in options_of(RunSettings)}
-    return RunBase(options.scenario, changes, settings, tuple(labels))
+    return RunBase(ScenarioFile.read(options.scenario), changes, settings, labels)
+
+
+def require_suitable(controller: Chosen, settings: RunSettings) -> None:
+    """Refuse a controller that its user has to mend; one that fails by itself has its rows."""
+    try:
+        make_architecture(settings, make_controller(controller, settings))
+    except ParameterError:
+        raise
+    except DdctError:
+        return
 
 
 def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> Entry:

@@ -1,22 +1,20 @@
 """The runs of a campaign, by index: what each of them is, and that all can be built."""
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.draws import run_seed, uniform
-from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, FILE_KEY, SCENARIO, run_options
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, FILE_KEY, SCENARIO
+from ddct_bringup.campaign.rows import RunBase, require_suitable
 from ddct_bringup.campaign.spec import MOST_RUNS, CampaignSpec
-from ddct_bringup.run.options import run_settings
-from ddct_controllers.architecture import make_architecture
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.registry import controller_spec, make_controller
+from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import ScenarioFile, is_packaged
 from ddct_plant.scenario.settings import RunSettings
 
@@ -57,7 +55,8 @@ class Campaign:
             raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}')
         varied = SCENARIO in spec.keys
         scenarios = spec.values_of(SCENARIO) if varied else (spec.common[SCENARIO],)
-        self._files = {name: ScenarioFile.read(self._scenario(name)) for name in scenarios}
+        files = {name: ScenarioFile.read(self._scenario(name)) for name in scenarios}
+        self._bases = {name: RunBase(files[name], {}, {}, self.labels) for name in files}
 
     @property
     def runs(self) -> int:
@@ -91,12 +90,12 @@ class Campaign:
         }
         return {key: values[key] for key in self.spec.grid} | drawn
 
-    def require_buildable(self, tell: Callable[[int], None] = lambda done: None) -> None:
+    def plan(self) -> Iterator[int]:
         """
         Build what every run needs, and each controller in the first run of each kind.
 
-        `tell` gets the number of cases that are done. Raise ParameterError that names the first
-        run that is refused.
+        Yield the number of cases that are done. Raise ParameterError that names the first run
+        that is refused.
         """
         known: set[tuple[str, ...]] = set()
         for case in range(self.cases):
@@ -105,7 +104,7 @@ class Campaign:
             if kind not in known:
                 known.add(kind)
                 self._require_controllers(case)
-            tell(case + 1)
+            yield case + 1
 
     def digest(self) -> str:
         """Return a hash of the specification and of the files that it names."""
@@ -121,7 +120,7 @@ class Campaign:
 
     def _named_files(self) -> Iterator[Path]:
         """Yield the scenarios and profiles that are files of the user's."""
-        for file in self._files.values():
+        for file in (base.file for base in self._bases.values()):
             if not is_packaged(file.name):
                 yield Path(file.name)
             for section in file.content.values():
@@ -136,13 +135,9 @@ class Campaign:
                     yield Path(placed[_CSV])
 
     def _settings(self, case: int, varied: Mapping[str, Any]) -> RunSettings:
-        given = {**self.spec.common, **varied}
-        file = self._files[given.pop(SCENARIO)]
-        own = {key: given.pop(key) for key in run_options() if key in given}
-        changes = {key: self._placed(key, value) for key, value in given.items()}
-        scenario = file.scenario(changes, own.get('clutch', LINEAR))
-        own = {'seed': run_seed(self.spec.root, case), **own}
-        return run_settings(scenario, self.labels, own)
+        given = {'seed': run_seed(self.spec.root, case), **self.spec.common, **varied}
+        base = self._bases[given.pop(SCENARIO)]
+        return base.at({key: self._placed(key, value) for key, value in given.items()})
 
     def _placed(self, key: str, value: Any) -> Any:
         """Return a value with the file that it names, if any, placed in the folder."""
@@ -153,15 +148,12 @@ class Campaign:
         return value
 
     def _require_controllers(self, case: int) -> None:
-        """Refuse a controller that its user has to mend; one that fails by itself has its rows."""
-        for number, controller in enumerate(self.controllers):
+        for number in range(len(self.controllers)):
             run = self.run(number * self.cases + case)
             try:
-                make_architecture(run.settings, make_controller(controller, run.settings))
+                require_suitable(run.controller, run.settings)
             except ParameterError as error:
                 raise ParameterError(f'run {run.index} ({_named(run.varied)}): {error}') from error
-            except DdctError:
-                continue
 
     def _require_distinct(self) -> None:
         for place, label in enumerate(self.labels):

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.batch.run_batch import batchable, run_batch
-from ddct_bringup.campaign.code import require_code
 from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
+from ddct_bringup.campaign.manifest import require_code
 from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import CampaignSpec
@@ -18,10 +18,6 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import THESIS, Controller
 from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.errors import FOREIGN_FAILURES
-
-_MOST_RUNS = 2000
-_LEAST_SHARDS = 50
-"""Of a campaign with so many runs: enough that all workers end together."""
 
 
 @dataclass(frozen=True)
@@ -35,16 +31,6 @@ class ShardJob:
     first: int
     last: int
     """One beyond the last index."""
-
-
-def shard_size(runs: int) -> int:
-    """Return how many runs a shard has: it depends on nothing but their number."""
-    return min(_MOST_RUNS, -(-runs // _LEAST_SHARDS))
-
-
-def shard_ranges(runs: int, size: int) -> list[tuple[int, int]]:
-    """Return (first, one beyond the last) index of every shard."""
-    return [(first, min(first + size, runs)) for first in range(0, runs, size)]
 
 
 def compute_shard(job: ShardJob) -> bytes:

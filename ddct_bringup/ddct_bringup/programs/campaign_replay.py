@@ -6,11 +6,15 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.campaign.code import code_digest
-from ddct_bringup.campaign.columns import COMPARED, PATH, read_row
+from ddct_bringup.campaign.columns import (
+    COMPARED,
+    PATH,
+    VECTORISED_RTOL,
+    differences,
+    read_row,
+)
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import Manifest
-from ddct_bringup.campaign.replay import VECTORISED_RTOL, campaign_in, differences
+from ddct_bringup.campaign.manifest import Manifest, code_digest
 from ddct_bringup.campaign.rows import SERIAL, result_row
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.folder_lock import run_folder
@@ -54,7 +58,7 @@ def _replay(options: argparse.Namespace) -> int:
     manifest = Manifest.read(options.folder)
     limits = load_limits(options.limits)
     manifest.require_limits(limits, options.folder)
-    campaign = campaign_in(options.folder, manifest)
+    campaign = manifest.campaign(options.folder)
     row = read_row(options.folder / RESULTS, options.index)
     if manifest.code_digest != code_digest():
         complain(PROGRAM, f'the campaign is of {manifest.code}, this is another code')

@@ -7,14 +7,13 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from ddct_bringup.campaign.rows import RunBase, scored_headless
-from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.campaign.rows import RunBase, require_suitable, scored_headless
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.scores.tables import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.table import Column, Figure, Table, table_of
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.differences import scenario_title
@@ -52,12 +51,7 @@ class Sweep:
                 f'mode is {first.mode}, but a sweep needs no graph: leave the mode out'
             )
         for controller in self.controllers:
-            try:
-                RunPlan(first, controller, 'headless')
-            except ParameterError:
-                raise
-            except DdctError:
-                continue  # what cannot be computed at one point is a row that says so
+            require_suitable(controller, first)
 
     @cached_property
     def points(self) -> list[dict[str, Any]]:

@@ -12,11 +12,9 @@ import pytest
 from in_this_process import OneByOne, in_this_process
 
 from ddct_bringup.campaign import conduct, shards
-from ddct_bringup.campaign.code import code_digest
-from ddct_bringup.campaign.columns import COMPARED
+from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.replay import differences
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest, code_digest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import compute_rows

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 from in_this_process import in_this_process
 
-from ddct_bringup.campaign.columns import COMPARED
+from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.replay import differences
 from ddct_bringup.programs import campaign
 
 ROW = {

@@ -7,10 +7,11 @@ from ddct_bringup.campaign.rows import WALL_CLOCK, RunBase, result_row, scored_h
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-BASE = RunBase(changes={'duration_s': 2.0}, settings={'clutch': 'stick_slip'})
+THESIS = ScenarioFile.read('thesis')
+BASE = RunBase(THESIS, {'duration_s': 2.0}, {'clutch': 'stick_slip'}, labels=())
 
 
 class Diverging(api.Controller):

@@ -15,13 +15,15 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
 from ddct_controllers.design.drawing.chart_style import chart_style, controller_style, save_chart
+from ddct_plant.scenario.file import ScenarioFile
 
 TIME = TABLE_5_1[:1]
 
 
 def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float | None]]) -> Any:
     """Return the figure of runs with these states and engagement times."""
-    sweep = Sweep(RunBase(), [axis_of(text) for text in over], controllers, packaged_limits())
+    base = RunBase(ScenarioFile.read('thesis'), {}, {}, labels=())
+    sweep = Sweep(base, [axis_of(text) for text in over], controllers, packaged_limits())
     entries = [
         {'verdict': {'state': state}, 'metrics': {'engagement_time_s': value}}
         for state, value in runs
