@@ -8,14 +8,14 @@ from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
-from ddct_bringup.programs import campaign_replay, campaign_show
+from ddct_bringup.programs import campaign_folder
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
 from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct campaign'
-_COMMANDS = {'replay': campaign_replay, 'show': campaign_show}
-"""By name what else can be done with a campaign's folder."""
+_COMMANDS = ('replay', 'show')
+"""What else can be done with a campaign's folder."""
 
 _EPILOG = """\
 examples:
@@ -36,7 +36,7 @@ def main(argv: list[str] | None = None) -> int:
     given = sys.argv[1:] if argv is None else argv
     if given and given[0] in _COMMANDS:
         parser = ProgramParser(prog=PROGRAM, description='What else can be done with a campaign.')
-        return run_subcommands(parser, tuple(_COMMANDS.values()), given, metavar='WHAT')
+        return run_subcommands(parser, [campaign_folder], given, metavar='WHAT')
     return run_program(PROGRAM, _campaign, given)
 
 

@@ -83,7 +83,7 @@ def test_every_row_of_a_campaign_replays_to_the_last_bit(
 def test_a_replay_that_differs_ends_with_1_and_its_figures(
     folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr('ddct_bringup.programs.campaign_replay.read_row', _another_row)
+    monkeypatch.setattr('ddct_bringup.programs.campaign_folder.read_row', _another_row)
     assert replay(folder, '--index', '0', '--overwrite') == 1
     assert 'run 0: verdict_state is ' in capfd.readouterr().err
 

@@ -1,0 +1,158 @@
+"""What else `campaign` does with the folder of a campaign: `replay` a row, `show` all."""
+
+import argparse
+import sys
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as arrow_csv
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.campaign.columns import (
+    COMPARED,
+    PATH,
+    VECTORISED_RTOL,
+    differences,
+    read_row,
+)
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign.manifest import Manifest, code_digest
+from ddct_bringup.campaign.rows import SERIAL, result_row
+from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write_campaign_page
+from ddct_bringup.campaign_report.words import RULES, replay_command, summary_tables
+from ddct_bringup.run.execution import run_with_progress
+from ddct_bringup.run.folder_lock import run_folder
+from ddct_bringup.run.options import add_layout_options
+from ddct_bringup.run.output_folder import StagedFolder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scoring import Entry, score_recording
+from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
+from ddct_plant.base.errors import DdctError, printable
+from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
+from ddct_plant.program.command_line import ProgramParser, complain
+from ddct_plant.program.table import print_tables
+
+_REPLAY = 'ddct campaign replay'
+_REPLAY_EPILOG = """\
+examples:
+  ddct campaign replay campaigns/wear --index 17 --out runs/again              through the graph
+  ddct campaign replay campaigns/wear --index 17 --out runs/again --headless
+
+The bag is RUN/<controller>/<controller>_0.mcap. The exit code is 0 only if the scores of the bag
+are those of the row: of a serial row to the last bit, of a vectorised one to 1e-9 relative.
+"""
+_SHOW_EPILOG = f"""\
+examples:
+  ddct campaign show campaigns/wear                      tables, and {PAGE} anew
+  ddct campaign show campaigns/wear --json summary.json  also the summary; '-' is standard output
+  ddct campaign show campaigns/wear --csv rows.csv       also every row as CSV
+
+Writes {SUMMARY} and {PAGE} into DIR.
+{fill(f'CVaR: {RULES["CVaR"]} {RULES["rank"]}', 96)}
+"""
+
+
+def add_parser(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
+    """Add `replay` and `show` to the subcommands of `campaign`."""
+    replay = subparsers.add_parser(
+        'replay',
+        help='make the bag of a row',
+        description='`campaign replay`: the bag of one row, and whether its scores are those of '
+        'the row.',
+        epilog=_REPLAY_EPILOG,
+    )
+    show = subparsers.add_parser(
+        'show',
+        help='tables and page of a campaign',
+        description='`campaign show`: what came out of a campaign, in the terminal and as a page.',
+        epilog=_SHOW_EPILOG,
+    )
+    for parser, run in ((replay, _replay), (show, _show)):
+        parser.add_argument('folder', metavar='DIR', type=Path, help='the folder of a campaign')
+        parser.set_defaults(run=run)
+    replay.add_argument('--index', type=int, metavar='I', required=True, help='of the row')
+    replay.add_argument('--out', type=Path, metavar='RUN', required=True, help='for the bag')
+    replay.add_argument('--overwrite', action='store_true', help='replace an earlier result')
+    replay.add_argument('--json', metavar='FILE', help="write what was found; '-' is stdout")
+    add_layout_options(replay)
+    add_limits_option(replay)
+    show.add_argument('--json', metavar='FILE', help=f"write {SUMMARY} to FILE; '-': stdout")
+    show.add_argument('--csv', metavar='FILE', help="write the rows as CSV to FILE; '-': stdout")
+
+
+def _replay(options: argparse.Namespace) -> int:
+    require_place('--json', options.json)
+    manifest = Manifest.read(options.folder)
+    limits = load_limits(options.limits)
+    manifest.require_limits(limits, options.folder)
+    campaign = manifest.campaign(options.folder)
+    row = read_row(options.folder / RESULTS, options.index)
+    if manifest.code_digest != code_digest():
+        complain(_REPLAY, f'the campaign is of {manifest.code}, this is another code')
+    run = campaign.run(options.index)
+    plan = RunPlan(run.settings, campaign.chosen(options.index), options.layout)
+    with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
+        entry = _made_again(plan, folder, row, limits)
+    found = differences(row, result_row(entry, run.varied))
+    if options.json:
+        report = {'index': options.index, 'path': row[PATH], 'differences': found}
+        write_json(options.json, report)
+    for line in found:
+        complain(_REPLAY, f'run {options.index}: {line}')
+    if not found:
+        how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
+        print(
+            f'{_REPLAY}: run {options.index}: its {len(COMPARED)} figures and words are those of '
+            f'the row, {how}',
+            file=sys.stderr,
+        )
+    return 1 if found else 0
+
+
+def _made_again(plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits: Limits) -> Entry:
+    """Carry out the run of a row and return its scores; a valid one gets its final name."""
+    try:
+        run_with_progress(plan, folder.path)
+    except DdctError as error:
+        if row['valid'] or not row['reason']:
+            raise
+        raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
+    entry = score_recording(read_bag(folder.path), plan.name, limits)
+    if entry['valid']:
+        folder.commit()
+        print(folder.final, flush=True)
+    return entry
+
+
+def _show(options: argparse.Namespace) -> int:
+    if options.json == STDOUT and options.csv == STDOUT:
+        raise DdctError('--json - and --csv - both want standard output: give one a file')
+    for option in ('json', 'csv'):
+        require_place(f'--{option}', getattr(options, option))
+    summary = write_campaign_page(options.folder)
+    if options.json:
+        write_json(options.json, summary)
+    if options.csv:
+        write_text(options.csv, _csv(options.folder))
+    if STDOUT not in (options.json, options.csv):
+        print_tables(summary_tables(summary))
+        for reason in dict.fromkeys(each['failed']['no_interval'] for each in summary['groups']):
+            if reason:
+                print(f'no interval: {reason}')
+        print(f'the bag of a run: {replay_command(str(options.folder), "I")}')
+        print(options.folder / PAGE)
+    return 0
+
+
+def _csv(folder: Path) -> str:
+    """Return every row of a campaign, the control characters of its words made visible."""
+    table = read_table(folder, Manifest.read(folder))
+    for place, field in enumerate(table.schema):
+        if pa.types.is_string(field.type):
+            words = [printable(each) for each in table[field.name].to_pylist()]
+            table = table.set_column(place, field, pa.array(words, field.type))
+    sink = pa.BufferOutputStream()
+    arrow_csv.write_csv(table, sink)
+    return sink.getvalue().to_pybytes().decode()
