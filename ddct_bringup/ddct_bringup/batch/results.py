@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,11 +9,11 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.judged_runs import JudgedRuns
 from ddct_bringup.scores.metrics import metric_values
-from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_bringup.scores.scoring import METRIC_NAMES, Entry
 from ddct_bringup.verdict.criteria import raw_criteria
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import slip_state
-from ddct_bringup.verdict.verdict import Verdict, verdict_of
+from ddct_bringup.verdict.verdict import verdict_of
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.settings import RunSettings
 
@@ -22,25 +21,14 @@ _NO_TIMING = {'update_time_median_us': None, 'update_time_p99_us': None, 'worst_
 _NOTHING_MISSED = {'missed_steps': 0, 'resends': 0}
 
 
-@dataclass(frozen=True)
-class BatchResult:
-    """What `scores.json` says of a run that counts, but for what needs a bag or a clock."""
-
-    metrics: Mapping[str, float | int | None]
-    """By name; the times of updates are None."""
-    verdict: Verdict
-    valid: bool = True
-    reason: str = ''
-    """Why it does not count: it does."""
-
-
 def stacked_results(
     runs: Sequence[RunSettings], trajectory: Trajectory, limits: Limits
-) -> list[BatchResult]:
+) -> list[Entry]:
     """
     Return the results of runs of one length, control start and score window.
 
-    `trajectory` holds them as a stack in which all is finite.
+    `trajectory` holds them as a stack in which all is finite. A result is what `scores.json` says
+    of a run that counts, but for what needs a bag or a clock: the times of updates are None.
     """
     scenario = runs[0].scenario
     start = scenario.control_start_step
@@ -56,7 +44,8 @@ def stacked_results(
     for index, run in enumerate(runs):
         state = slip_state(one_or_more(trajectory, index), start, limits.rules)
         verdict = verdict_of(state, by_criterion[index], limits, run.scenario.name)
-        results.append(BatchResult(by_metric[index], verdict))
+        counts = {'valid': True, 'reason': ''}
+        results.append({'metrics': by_metric[index], 'verdict': verdict, **counts})
     return results
 
 

@@ -1,8 +1,8 @@
 """
 Compute many runs of linear plants and controllers at once.
 
-    from ddct_bringup.batch.run_batch import batchable, run_batch
-    results = run_batch([(settings, controller), ...])
+    from ddct_bringup.batch.run_batch import run_batch
+    results = run_batch([(settings, controller), ...], limits)
 
 A result equals that of the run step by step to 1e-9 of each value, and does not depend on what
 other runs are in the batch. A run in which rounding grows beyond that has no result.
@@ -11,20 +11,19 @@ other runs are in the batch. A run in which rounding grows beyond that has no re
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.batchable import batchable
 from ddct_bringup.batch.loops import reference_kind, simulate_batch
-from ddct_bringup.batch.results import BatchResult, one_or_more, stacked_results
-from ddct_bringup.verdict.limits import Limits, packaged_limits
+from ddct_bringup.batch.results import one_or_more, stacked_results
+from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
-
-__all__ = ['BatchResult', 'batchable', 'run_batch', 'trajectories']
 
 MOST_RUNS = 1000
 """At once: a step's matrices of as many stay in the processor's cache."""
@@ -35,21 +34,23 @@ _MOVED = 1.0 + 2.0**-46
 _SAME = 1e-10
 """Of the largest slip: how far that may move it."""
 Run = tuple[RunSettings, Controller]
+_Linear = tuple[RunSettings, StateSpace]
+"""A run, and the feedback in it."""
 
 
-def run_batch(runs: Sequence[Run], limits: Limits | None = None) -> list[BatchResult | None]:
+def run_batch(runs: Sequence[Run], limits: Limits) -> list[Entry | None]:
     """
-    Return the result of each run, all `batchable`, in their order.
+    Return the result of each run, all `batchable`, in their order, as `stacked_results`.
 
-    A controller may stand in many runs; each starts with it as it is after a reset. `limits` are
-    the packaged ones by default. None stands for a run that must go step by step: there one that
-    grows beyond all numbers or cannot be built ends with the words that say so, and one that is
-    chaotic has figures that repeat.
+    A controller may stand in many runs; each starts with it as it is after a reset. None stands
+    for a run that must go step by step: there one that grows beyond all numbers or cannot be built
+    ends with the words that say so, and one that is chaotic has figures that repeat.
     """
-    limits = limits or packaged_limits()
-    results: list[BatchResult | None] = [None] * len(runs)
-    for chunk in _chunks(runs):
-        for index, result in zip(chunk, _results([runs[i] for i in chunk], limits), strict=True):
+    linear = _linear(runs)
+    results: list[Entry | None] = [None] * len(runs)
+    for chunk in _chunks(linear):
+        found = _results([linear[index] for index in chunk], limits)
+        for index, result in zip(chunk, found, strict=True):
             results[index] = result
     return results
 
@@ -62,14 +63,22 @@ def trajectories(runs: Sequence[Run]) -> Trajectory:
     request. All runs have one length, control start, architecture, equilibrium, kind of reference
     and order of the controller.
     """
-    return _stack([settings for settings, _ in runs], _models(runs))
+    return _stack(_linear(runs))
 
 
-def _stack(settings: Sequence[RunSettings], models: Sequence[StateSpace]) -> Trajectory:
+def _linear(runs: Sequence[Run]) -> list[_Linear]:
+    """Return runs with the feedback of their controllers; of one in many runs it is made once."""
+    controllers = {id(controller): controller for _, controller in runs}
+    models: dict[int, Any] = {key: each.linear_model() for key, each in controllers.items()}
+    assert None not in models.values(), 'run_batch takes batchable runs'
+    return [(settings, models[id(controller)]) for settings, controller in runs]
+
+
+def _stack(runs: Sequence[_Linear]) -> Trajectory:
     # A sum over one column alone is rounded in another order than one over many.
-    twice = 2 if len(settings) == 1 else 1
-    stack = simulate_batch([*settings] * twice, [*models] * twice)
-    return one_or_more(stack, slice(len(settings)))
+    several = [*runs] * 2 if len(runs) == 1 else runs
+    stack = simulate_batch([settings for settings, _ in several], [model for _, model in several])
+    return one_or_more(stack, slice(len(runs)))
 
 
 def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
@@ -86,10 +95,10 @@ def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
     )
 
 
-def _chunks(runs: Sequence[Run]) -> list[list[int]]:
+def _chunks(runs: Sequence[_Linear]) -> list[list[int]]:
     """Return which runs are computed together."""
     groups = defaultdict(list)
-    for index, ((settings, _), model) in enumerate(zip(runs, _models(runs), strict=True)):
+    for index, (settings, model) in enumerate(runs):
         groups[_alike(settings, model)].append(index)
     return [
         group[first : first + MOST_RUNS]
@@ -98,10 +107,10 @@ def _chunks(runs: Sequence[Run]) -> list[list[int]]:
     ]
 
 
-def _results(runs: Sequence[Run], limits: Limits) -> list[BatchResult | None]:
+def _results(runs: Sequence[_Linear], limits: Limits) -> list[Entry | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
-            stack = trajectories(runs)
+            stack = _stack(runs)
             counts = _finite(stack) & _repeatable(runs, stack)
     except DdctError:
         if len(runs) == 1:
@@ -114,7 +123,7 @@ def _results(runs: Sequence[Run], limits: Limits) -> list[BatchResult | None]:
     return [next(results) if each else None for each in counts]
 
 
-def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
+def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
     """
     Return of each run of a stack whether rounding stays small in it, (R,).
 
@@ -127,10 +136,11 @@ def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
         moved = [
-            replace(each, c=_MOVED * each.c, d=_MOVED * each.d) for each in _models(suspected)
+            (settings, replace(model, c=_MOVED * model.c, d=_MOVED * model.d))
+            for settings, model in suspected
         ]
         slip = stack.slip_speed[suspects]
-        again = _stack([settings for settings, _ in suspected], moved).slip_speed
+        again = _stack(moved).slip_speed
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SAME * np.max(np.abs(slip), axis=-1)
     return repeatable
@@ -143,14 +153,3 @@ def _finite(stack: Trajectory) -> np.ndarray:
         for values in stack.signals.values()
     ]
     return np.all(each, axis=0)
-
-
-def _models(runs: Sequence[Run]) -> list[StateSpace]:
-    """Return the feedback of each run; of a controller in many runs once."""
-    controllers = {id(controller): controller for _, controller in runs}
-    models = {}
-    for key, controller in controllers.items():
-        model = controller.linear_model()
-        assert model is not None, 'run_batch takes batchable runs'
-        models[key] = model
-    return [models[id(controller)] for _, controller in runs]

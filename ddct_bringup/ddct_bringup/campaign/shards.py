@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.run_batch import batchable, run_batch
+from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
 from ddct_bringup.campaign.manifest import require_code
 from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
@@ -71,7 +72,7 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
             suited.append((run, controller))
     results = run_batch([(run.settings, controller) for run, controller in suited], limits)
     return {
-        run.index: {'controller': run.controller.name, **vars(result)}
+        run.index: {'controller': run.controller.name, **result}
         for (run, _), result in zip(suited, results, strict=True)
         if result is not None
     }

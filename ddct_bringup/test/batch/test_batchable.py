@@ -119,7 +119,8 @@ def test_what_a_batch_does_not_know_keeps_a_run_out_of_it():
 
 def test_somebodys_linear_controller_gives_what_it_gives_step_by_step():
     controller = Proportional()
-    (ours,) = run_batch([(SETTINGS, controller)])
+    (ours,) = run_batch([(SETTINGS, controller)], packaged_limits())
+    assert ours is not None
     expected = scored_headless(SETTINGS, chosen_from(controller), packaged_limits())
     for name, value in expected['metrics'].items():
-        assert ours.metrics[name] == (None if value is None else pytest.approx(value, rel=1e-9))
+        assert ours['metrics'][name] == (None if value is None else pytest.approx(value, rel=1e-9))

@@ -6,7 +6,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ddct_bringup.batch.run_batch import batchable, run_batch, trajectories
+from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.run_batch import run_batch, trajectories
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -85,7 +86,7 @@ def runs():
 
 @pytest.fixture(scope='module')
 def batch(runs):
-    return run_batch(runs)
+    return run_batch(runs, LIMITS)
 
 
 @pytest.fixture(scope='module')
@@ -117,15 +118,15 @@ def test_every_run_can_be_in_a_batch(runs):
 
 def test_metrics_and_criteria_are_those_of_the_run_step_by_step(batch, serial):
     for ours, expected in zip(batch, serial, strict=True):
-        assert_close(ours.metrics, expected['metrics'])
-        assert_close(criteria(ours.verdict), criteria(expected['verdict']))
+        assert_close(ours['metrics'], expected['metrics'])
+        assert_close(criteria(ours['verdict']), criteria(expected['verdict']))
 
 
 def test_words_are_those_of_the_run_step_by_step(batch, serial):
     for ours, expected in zip(batch, serial, strict=True):
-        assert (ours.valid, ours.reason) == (expected['valid'], expected['reason'])
-        assert ours.verdict['limits'] == expected['verdict']['limits']
-        assert ours.verdict['state'] == expected['verdict']['state']
+        assert (ours['valid'], ours['reason']) == (expected['valid'], expected['reason'])
+        assert ours['verdict']['limits'] == expected['verdict']['limits']
+        assert ours['verdict']['state'] == expected['verdict']['state']
 
 
 def test_the_runs_are_of_many_kinds(serial):
@@ -136,9 +137,9 @@ def test_the_runs_are_of_many_kinds(serial):
 
 
 def test_a_result_does_not_depend_on_the_rest_of_the_batch(runs, batch):
-    assert run_batch(runs[::-1])[::-1] == batch
+    assert run_batch(runs[::-1], LIMITS)[::-1] == batch
     for index in range(0, len(runs), 9):
-        assert run_batch([runs[index]]) == [batch[index]]
+        assert run_batch([runs[index]], LIMITS) == [batch[index]]
 
 
 def test_whole_trajectories_are_those_of_the_run_step_by_step():
@@ -158,9 +159,9 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
 def test_a_controller_may_stand_in_many_runs_and_have_been_used():
     settings = RunSettings(load_scenario('thesis', SHORT))
     controller = make_controller('ls3', settings)
-    fresh = run_batch([(settings, controller)])
+    fresh = run_batch([(settings, controller)], LIMITS)
     run_headless(settings, controller)
-    assert run_batch([(settings, controller)] * 3) == 3 * fresh
+    assert run_batch([(settings, controller)] * 3, LIMITS) == 3 * fresh
 
 
 def test_a_run_that_grows_beyond_all_numbers_has_no_result():
@@ -168,9 +169,9 @@ def test_a_run_that_grows_beyond_all_numbers_has_no_result():
     one = np.ones((1, 1))
     wild = LinearController(StateSpace(1e4 * one, 1e3 * one, 1e3 * one, 0.0 * one, PERIOD_S))
     calm = PiController(0.1, 0.1)
-    none, counts = run_batch([(settings, wild), (settings, calm)])
+    none, counts = run_batch([(settings, wild), (settings, calm)], LIMITS)
     assert none is None
-    assert [counts] == run_batch([(settings, calm)])
+    assert [counts] == run_batch([(settings, calm)], LIMITS)
 
 
 def test_a_run_in_which_rounding_grows_has_no_result():
@@ -183,9 +184,9 @@ def test_a_run_in_which_rounding_grows_has_no_result():
     runs = [run_headless(settings, each).slip_speed for each in (swinging, moved)]
     assert np.abs(runs[0] - runs[1]).max() > 1.0, 'the run is not chaotic'
     calm = PiController(0.1, 0.1)
-    none, counts = run_batch([(settings, swinging), (settings, calm)])
+    none, counts = run_batch([(settings, swinging), (settings, calm)], LIMITS)
     assert none is None
-    assert [counts] == run_batch([(settings, calm)])
+    assert [counts] == run_batch([(settings, calm)], LIMITS)
 
 
 def test_a_run_that_cannot_be_built_leaves_the_others_alone():
@@ -196,6 +197,6 @@ def test_a_run_that_cannot_be_built_leaves_the_others_alone():
     )
     controller = PiController(0.1, 0.1)
     runs = [(settings, controller), (odd, controller), (settings, controller)]
-    first, none, last = run_batch(runs)
+    first, none, last = run_batch(runs, LIMITS)
     assert none is None
-    assert [first] == [last] == run_batch(runs[:1])
+    assert [first] == [last] == run_batch(runs[:1], LIMITS)
