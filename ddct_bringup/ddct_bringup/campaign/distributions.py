@@ -39,17 +39,16 @@ class Distribution:
         value = float(KINDS[self.kind].quantile(self.numbers, uniform))
         low, high = self.ends
         value = min(max(value, low), high)
-        return self._rounded(value) if STEP in self.numbers else value
+        if STEP not in self.numbers:
+            return value
+        step = self.numbers[STEP]
+        rounded = round(round(value / step) * step, _DIGITS)
+        return int(rounded) if self.whole else rounded
 
     @property
     def whole(self) -> bool:
         """Whether its values are whole numbers."""
         return float(self.numbers.get(STEP, 0.5)).is_integer()
-
-    def _rounded(self, value: float) -> float | int:
-        step = self.numbers[STEP]
-        rounded = round(round(value / step) * step, _DIGITS)
-        return int(rounded) if self.whole else rounded
 
     @property
     def ends(self) -> tuple[float, float]:

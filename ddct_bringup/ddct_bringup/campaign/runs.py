@@ -7,6 +7,8 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ddct_bringup.campaign.draws import run_seed, uniform
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, FILE_KEY, SCENARIO
 from ddct_bringup.campaign.rows import RunBase, require_suitable
@@ -15,7 +17,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.scenario.file import ScenarioFile, is_packaged
+from ddct_plant.scenario.file import is_packaged
 from ddct_plant.scenario.settings import RunSettings
 
 _CSV = 'csv'
@@ -46,22 +48,25 @@ class Campaign:
         points = prod(len(values) for values in spec.grid.values())
         self.cases = points * spec.samples
         """How many runs each controller has."""
-        self._names = [self._controller(each) for each in spec.controllers]
+        self._names = [
+            str(spec.folder / each) if is_controller_file(each) else each
+            for each in spec.controllers
+        ]
         self.controllers = [controller_spec(each) for each in self._names]
         self.labels = [each.name for each in self.controllers]
         """What the controllers are called."""
-        self._require_distinct()
+        for label in self.labels:
+            if self.labels.count(label) > 1:
+                raise ParameterError(f'{CONTROLLERS}: two are called {label}: rename one')
+        self.runs = self.cases * len(self.controllers)
+        """How many runs there are."""
         if self.runs > MOST_RUNS:
             raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}')
         varied = SCENARIO in spec.keys
         scenarios = spec.values_of(SCENARIO) if varied else (spec.common[SCENARIO],)
-        files = {name: ScenarioFile.read(self._scenario(name)) for name in scenarios}
-        self._bases = {name: RunBase(files[name], {}, {}, self.labels) for name in files}
-
-    @property
-    def runs(self) -> int:
-        """How many runs there are."""
-        return self.cases * len(self.controllers)
+        self._bases = {
+            name: RunBase(spec.scenario_file(name), {}, {}, self.labels) for name in scenarios
+        }
 
     def run(self, index: int) -> CampaignRun:
         """Return a run; raise ParameterError that names it where its scenario refuses it."""
@@ -79,16 +84,14 @@ class Campaign:
 
     def varied(self, case: int) -> dict[str, Any]:
         """Return the values of a case by key; the last key of the grid changes fastest."""
-        point, _ = divmod(case, self.spec.samples)
-        values = {}
-        for key, choices in reversed(list(self.spec.grid.items())):
-            point, place = divmod(point, len(choices))
-            values[key] = choices[place]
+        grid = self.spec.grid
+        shape = [len(values) for values in grid.values()]
+        places = np.unravel_index(case // self.spec.samples, shape)
         drawn = {
             key: distribution.value(uniform(self.spec.root, key, case))
             for key, distribution in self.spec.vary.items()
         }
-        return {key: values[key] for key in self.spec.grid} | drawn
+        return {key: grid[key][place] for key, place in zip(grid, places, strict=True)} | drawn
 
     def plan(self) -> Iterator[int]:
         """
@@ -154,17 +157,6 @@ class Campaign:
                 require_suitable(run.controller, run.settings)
             except ParameterError as error:
                 raise ParameterError(f'run {run.index} ({_named(run.varied)}): {error}') from error
-
-    def _require_distinct(self) -> None:
-        for place, label in enumerate(self.labels):
-            if label in self.labels[:place]:
-                raise ParameterError(f'{CONTROLLERS}: two are called {label}: rename one')
-
-    def _controller(self, name: str) -> str:
-        return str(self.spec.folder / name) if is_controller_file(name) else name
-
-    def _scenario(self, name: str) -> str:
-        return name if is_packaged(name) else str(self.spec.folder / name)
 
 
 def _named(varied: Mapping[str, Any]) -> str:

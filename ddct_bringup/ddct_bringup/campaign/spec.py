@@ -12,6 +12,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, require_known
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
+from ddct_plant.scenario.file import ScenarioFile, is_packaged
 
 SCHEMA_VERSION = 1
 """Of a specification."""
@@ -50,6 +51,10 @@ class CampaignSpec:
         """Return the values that a key can take, of numbers from a distribution none."""
         return self.grid[key] if key in self.grid else self.vary[key].values
 
+    def scenario_file(self, name: str) -> ScenarioFile:
+        """Return a scenario that a specification names; raise DdctError that says why not."""
+        return ScenarioFile.read(name if is_packaged(name) else str(self.folder / name))
+
     def text(self) -> str:
         """Return what was given as one text, the same however it was written."""
         return json.dumps(self.content)
@@ -87,7 +92,10 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
         samples=samples,
         vary=vary,
     )
-    _require_serialisable(spec)
+    try:
+        spec.text()
+    except (TypeError, ValueError) as error:  # what no file can hold, as Python may give it
+        raise ParameterError(f'the specification holds what YAML does not: {error}') from error
     return spec
 
 
@@ -176,11 +184,3 @@ def _distinct(where: str, values: list[Any]) -> tuple[Any, ...]:
         if value in values[:place]:
             raise ParameterError(f'{where} has {value!r} twice: give each once')
     return tuple(values)
-
-
-def _require_serialisable(spec: CampaignSpec) -> None:
-    """Refuse what no file can hold, as Python may give it."""
-    try:
-        spec.text()
-    except (TypeError, ValueError) as error:
-        raise ParameterError(f'the specification holds what YAML does not: {error}') from error

@@ -31,7 +31,6 @@ from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import values_by_key
-from ddct_plant.scenario.file import is_packaged, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SUMMARY, PAGE = 'summary.json', 'report.html'
@@ -75,7 +74,8 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     except ParameterError as error:
         raise DdctError(f'{path}: {error}') from error
     except (OSError, ValueError, pa.ArrowException) as error:
-        raise DdctError(f'{path}: it is damaged ({_first_line(error)}): {_AGAIN}') from error
+        why = next(iter(str(error).splitlines()), type(error).__name__)
+        raise DdctError(f'{path}: it is damaged ({why}): {_AGAIN}') from error
     schema = schema_of(manifest.campaign_spec())
     if not table.schema.equals(schema) or table[INDEX].to_pylist() != list(range(manifest.runs)):
         raise DdctError(f'{path}: it is not what {folder} was started with: {_AGAIN}')
@@ -98,9 +98,8 @@ def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     """
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}
-    name = common.pop(SCENARIO)
-    file = name if is_packaged(name) else str(spec.folder / name)
-    scenario = load_scenario(file, clutch=common.get('clutch', LINEAR))
+    file = spec.scenario_file(common.pop(SCENARIO))
+    scenario = file.scenario(clutch=common.get('clutch', LINEAR))
     given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
     found: dict[str, float] = {}
     for key in spec.keys:
@@ -124,10 +123,6 @@ def _facts(manifest: Manifest) -> dict[str, Any]:
         'digest of the specification': manifest.spec_digest,
         'specification': dump_yaml(manifest.spec),
     }
-
-
-def _first_line(error: Exception) -> str:
-    return next(iter(str(error).splitlines()), type(error).__name__)
 
 
 def campaign_page(

@@ -64,17 +64,9 @@ def _map(results: Results, keys: Sequence[str]) -> dict[str, Any]:
     panels = []
     for group in results.groups:
         rows = results.others_nominal(group.rows, keys)
-        parts = _cells(results, rows, keys) if cells else [np.array([row]) for row in rows]
+        parts = results.alike(rows, keys) if cells else [np.array([row]) for row in rows]
         panels.append(_panel(results, parts[: None if cells else MOST_POINTS], keys))
     return {'keys': list(keys), 'cells': cells, 'others': others, 'panels': panels}
-
-
-def _cells(results: Results, rows: np.ndarray, keys: Sequence[str]) -> list[np.ndarray]:
-    """Return the rows of each pair of values."""
-    found: dict[tuple[float, ...], list[int]] = {}
-    for row in rows:
-        found.setdefault(tuple(float(results.columns[key][row]) for key in keys), []).append(row)
-    return [np.array(each) for each in found.values()]
 
 
 def _panel(results: Results, parts: Sequence[np.ndarray], keys: Sequence[str]) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -72,14 +73,18 @@ class Results:
         """The runs by controller, and by all else that varies and is no number."""
         named = [key for key in (*self.grid, *self.random) if not is_number(self.columns[key])]
         keys = [CONTROLLER, *(key for key in named if len(set(self.columns[key].tolist())) > 1)]
-        rows: dict[tuple[str, ...], list[int]] = {}
-        names = zip(*(map(str, self.columns[key].tolist()) for key in keys), strict=True)
-        for row, of_row in enumerate(names):
-            rows.setdefault(of_row, []).append(row)
         return [
-            Group(dict(zip(keys, of_group, strict=True)), np.array(found))
-            for of_group, found in rows.items()
+            Group({key: str(self.columns[key][rows[0]]) for key in keys}, rows)
+            for rows in self.alike(np.arange(self.rows), keys)
         ]
+
+    def alike(self, rows: np.ndarray, keys: Sequence[str]) -> list[np.ndarray]:
+        """Return rows in parts, each of those with the same values of keys."""
+        found: dict[tuple[Any, ...], list[int]] = {}
+        values = zip(*(self.columns[key][rows].tolist() for key in keys), strict=True)
+        for row, of_row in zip(rows, values, strict=True):
+            found.setdefault(of_row, []).append(row)
+        return [np.array(each) for each in found.values()]
 
     def is_sample(self, group: 'Group') -> bool:
         """Say whether the runs of a group differ by what was drawn at random alone."""
