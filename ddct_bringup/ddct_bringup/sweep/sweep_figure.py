@@ -1,6 +1,6 @@
 """The figure that `sweep` draws: metrics as lines over one value, states as maps over two."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -56,103 +56,79 @@ def write_sweep_figure(
 def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Drawing:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
-    each = len(sweep.points)
-    by_name = {
-        name: list(runs[index * each : (index + 1) * each]) for index, name in enumerate(names)
-    }
-    return _lines(sweep, by_name, metrics) if len(sweep.axes) == 1 else _maps(sweep, by_name)
-
-
-def _lines(
-    sweep: Sweep, by_name: Mapping[str, Sequence[Entry]], metrics: Sequence[Figure]
-) -> Drawing:
-    lane = 0.5 + _LANE_IN * len(by_name)
+    states = np.array([run['verdict']['state'] for run in runs]).reshape(len(names), -1)
+    if len(sweep.axes) > 1:
+        return _maps(sweep, names, states)
+    lane = 0.5 + _LANE_IN * len(names)
     heights = [*(_PANEL_IN for _ in metrics), lane]
     drawing = Drawing(figsize=(_WIDTH_IN, sum(heights) + 0.8))
     panels = drawing.subplots(len(heights), sharex=True, height_ratios=heights)
     places = places_of(sweep.axes[0])
     for axes, figure in zip(panels, metrics, strict=False):
-        _draw_metric(axes, places, by_name, figure)
-    names = panels[0].get_legend_handles_labels()
-    drawing.legend(*names, ncols=_LEGEND_COLUMNS, loc='outside upper center')
-    _draw_lanes(panels[-1], places, by_name)
+        values = np.array([run['metrics'][figure.key] for run in runs], dtype=float)
+        axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
+        _draw_metric(axes, places, names, values.reshape(states.shape), states == ENGAGED)
+    lines = panels[0].get_legend_handles_labels()
+    drawing.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside upper center')
+    _draw_lanes(panels[-1], places, names, states)
     label_values(sweep.axes[0], panels[-1].xaxis)
     marks = [Line2D([], [], color=GREY, label=meaning, **mark) for mark, meaning in _MARKS_OF_RUNS]
-    state_legend(drawing, {_state(run) for runs in by_name.values() for run in runs}, marks)
+    state_legend(drawing, {*states.flat}, marks)
     return drawing
 
 
 def _draw_metric(
-    axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[Entry]], figure: Figure
+    axes: Axes, places: np.ndarray, names: Sequence[str], values: np.ndarray, engaged: np.ndarray
 ) -> None:
     """
     Draw lines through engaged runs; a cross marks another, at the edge if it is far beyond.
 
-    An engaged run without a value is a ring at the lower edge.
+    An engaged run without a value is a ring at the lower edge. `values` and `engaged` are
+    (controllers, places).
     """
-    axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
-    values = {
-        name: np.array([run['metrics'][figure.key] for run in runs], dtype=float)
-        for name, runs in by_name.items()
-    }
-    engaged = {
-        name: np.array([_state(run) == ENGAGED for run in runs]) for name, runs in by_name.items()
-    }
-    low, high = _range(
-        np.concatenate([values[name][engaged[name]] for name in by_name]),
-        np.concatenate(list(values.values())),
-    )
+    low, high = _range(values[engaged], values)
     axes.set_ylim(low, high)
-    for name, each in values.items():
+    for name, each, good in zip(names, values, engaged, strict=True):
         style = {'marker': 'o', **controller_style(name), 'markersize': 4.0, 'markevery': None}
         axes.plot(places, each, color=style['color'], linewidth=0.6, alpha=0.5)
-        axes.plot(places, np.where(engaged[name], each, np.nan), label=name, **style)
+        axes.plot(places, np.where(good, each, np.nan), label=name, **style)
         at = np.clip(np.nan_to_num(each, nan=low), low, high)
-        for mark, chosen in (
-            (_CROSS, ~engaged[name]),
-            (_RING, engaged[name] & ~np.isfinite(each)),
-        ):
+        for mark, chosen in ((_CROSS, ~good), (_RING, good & ~np.isfinite(each))):
             if chosen.any():  # an empty line beyond the clip would have the layout collapse
                 axes.plot(places[chosen], at[chosen], color=style['color'], clip_on=False, **mark)
 
 
-def _draw_lanes(axes: Axes, places: np.ndarray, by_name: Mapping[str, Sequence[Entry]]) -> None:
-    """Draw the states, a lane per controller, the first on top."""
-    rows = np.arange(len(by_name))
-    states = [[_state(run) for run in runs] for runs in by_name.values()]
-    draw_states(axes, (edges_of(places), edges_of(rows.astype(float))), states)
-    axes.set_yticks(rows, list(by_name))
+def _draw_lanes(axes: Axes, places: np.ndarray, names: Sequence[str], states: np.ndarray) -> None:
+    """Draw the (controllers, places) states, a lane per controller, the first on top."""
+    rows = np.arange(len(names))
+    draw_states(axes, (edges_of(places), edges_of(rows.astype(float))), states.tolist())
+    axes.set_yticks(rows, names)
     axes.invert_yaxis()
     axes.set_ylabel('state')
 
 
-def _maps(sweep: Sweep, by_name: Mapping[str, Sequence[Entry]]) -> Drawing:
+def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Drawing:
     """Draw a map of states per controller, the first axis across, the second up."""
     across, up = sweep.axes
-    columns = min(_ACROSS, len(by_name))
-    rows = -(-len(by_name) // columns)
+    columns = min(_ACROSS, len(names))
+    rows = -(-len(names) // columns)
     drawing = Drawing(figsize=(max(_MAP_IN * columns, 4.5), _MAP_IN * rows + 0.6))
     panels = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     edges = (edges_of(places_of(across)), edges_of(places_of(up)))
-    for axes, (name, runs) in zip(panels.flat, by_name.items(), strict=False):
-        states = np.array([_state(run) for run in runs]).reshape(len(across.values), -1).T
-        draw_states(axes, edges, states.tolist())
+    for axes, name, each in zip(panels.flat, names, states, strict=False):
+        draw_states(axes, edges, each.reshape(len(across.values), -1).T.tolist())
         axes.set_title(name)
         axes.label_outer()
-    for axes in panels.flat[len(by_name) :]:
+    for axes in panels.flat[len(names) :]:
         axes.set_axis_off()
     for column in range(columns):
-        lowest = panels[(len(by_name) - 1 - column) // columns, column]
+        lowest = panels[(len(names) - 1 - column) // columns, column]
         label_values(across, lowest.xaxis)
         lowest.xaxis.set_tick_params(labelbottom=True)
     for axes in panels[:, 0]:
         label_values(up, axes.yaxis)
-    state_legend(drawing, {_state(run) for runs in by_name.values() for run in runs})
+    state_legend(drawing, {*states.flat})
     return drawing
-
-
-def _state(run: Entry) -> str:
-    return run['verdict']['state']
 
 
 def _range(engaged: np.ndarray, every: np.ndarray) -> tuple[float, float]:
