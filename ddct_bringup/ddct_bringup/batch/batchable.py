@@ -7,7 +7,7 @@ import numpy as np
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.linear import DiscreteFilter, LinearController
 from ddct_controllers.pi import PiController
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET
@@ -67,8 +67,6 @@ def _why_not_controller(controller: Controller) -> str:
         controller.reset()
     except FOREIGN_FAILURES as error:
         return f'the controller failed when it was tried ({type(error).__name__}: {error})'
-    except DdctError as error:
-        return f'the controller failed when it was tried ({error})'
     return '' if same else 'the controller does not do what its linear_model says'
 
 

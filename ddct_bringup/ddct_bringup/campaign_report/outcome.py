@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from ddct_bringup.verdict.criteria import finite
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED = 'failed'
@@ -141,8 +142,8 @@ def tail_of(values: np.ndarray, outcomes: np.ndarray) -> Tail:
     runs = -(-len(ordered) // ONE_IN)
     return Tail(
         with_value=len(ordered) - infinite,
-        median=_finite(np.median(ordered)),
-        cvar=_finite(conditional_value_at_risk(ordered)),
+        median=finite(np.median(ordered)),
+        cvar=finite(conditional_value_at_risk(ordered)),
         runs=runs,
         lacking=min(infinite, runs),
         worst_engaged=_largest(ranked),
@@ -163,10 +164,6 @@ def conditional_value_at_risk(values: np.ndarray) -> float:
     if rest:
         total += rest / ONE_IN * float(descending[whole])
     return total / (len(values) / ONE_IN)
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _largest(magnitudes: np.ndarray) -> int | None:

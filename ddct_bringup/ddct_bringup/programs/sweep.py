@@ -3,10 +3,8 @@
 import argparse
 import sys
 import time
-from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import TextIO
 
 from rich.text import Text
 
@@ -65,10 +63,12 @@ def _sweep(argv: list[str]) -> int:
         _require_picture(options.figure, len(options.over))
     sweep = _planned(options)
     runs = _carried_out(sweep)
-    stream = sys.stderr if options.json == STDOUT else sys.stdout
     if options.json:
         write_json(options.json, sweep_document(sweep, runs))
-    _print(sweep, runs, metrics, stream)
+    console = table_console(sys.stderr if options.json == STDOUT else sys.stdout)
+    console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
+    for text in sweep_notes(runs, metrics):
+        console.print(Text(printable(text)), soft_wrap=True)
     if options.figure:
         # Only here: matplotlib takes long to import.
         from ddct_bringup.sweep.sweep_figure import write_sweep_figure
@@ -100,13 +100,6 @@ def _carried_out(sweep: Sweep) -> list[Entry]:
         done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))
     complain(PROGRAM, f'{len(done)} runs in {time.monotonic() - started:.1f} s')
     return done
-
-
-def _print(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure], stream: TextIO) -> None:
-    console = table_console(stream)
-    console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
-    for text in sweep_notes(runs, metrics):
-        console.print(Text(printable(text)), soft_wrap=True)
 
 
 def _metrics(text: str) -> list[Figure]:

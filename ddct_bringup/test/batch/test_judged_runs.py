@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.judged_runs import JudgedRuns
-from ddct_bringup.batch.results import one_or_more
+from ddct_bringup.batch.results import JudgedRuns, one_or_more
 from ddct_bringup.scores.metrics import metric_values
 from ddct_bringup.verdict.criteria import finite, raw_criteria
 from ddct_bringup.verdict.judged_run import JudgedRun
