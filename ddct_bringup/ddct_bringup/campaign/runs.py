@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -72,10 +73,10 @@ class Campaign:
         """Return a run; raise ParameterError that names it where its scenario refuses it."""
         number, case = divmod(index, self.cases)
         varied = self.varied(case)
-        try:
-            settings = self._settings(case, varied)
-        except ParameterError as error:
-            raise ParameterError(f'run {index} ({_named(varied)}): {error}') from error
+        given = {'seed': run_seed(self.spec.root, case), **self.spec.common, **varied}
+        base = self._bases[given.pop(SCENARIO)]
+        with _naming(index, varied):
+            settings = base.at({key: self._placed(key, value) for key, value in given.items()})
         return CampaignRun(index, self.controllers[number], varied, settings)
 
     def chosen(self, index: int) -> str:
@@ -102,11 +103,13 @@ class Campaign:
         """
         known: set[tuple[str, ...]] = set()
         for case in range(self.cases):
-            varied = self.run(case).varied
-            kind = tuple(varied.get(key, '') for key in COMMON)
+            run = self.run(case)
+            kind = tuple(run.varied.get(key, '') for key in COMMON)
             if kind not in known:
                 known.add(kind)
-                self._require_controllers(case)
+                for number, controller in enumerate(self.controllers):
+                    with _naming(number * self.cases + case, run.varied):
+                        require_suitable(controller, run.settings)
             yield case + 1
 
     def digest(self) -> str:
@@ -137,11 +140,6 @@ class Campaign:
                 elif isinstance(placed, Mapping) and _CSV in placed:
                     yield Path(placed[_CSV])
 
-    def _settings(self, case: int, varied: Mapping[str, Any]) -> RunSettings:
-        given = {'seed': run_seed(self.spec.root, case), **self.spec.common, **varied}
-        base = self._bases[given.pop(SCENARIO)]
-        return base.at({key: self._placed(key, value) for key, value in given.items()})
-
     def _placed(self, key: str, value: Any) -> Any:
         """Return a value with the file that it names, if any, placed in the folder."""
         if key.endswith(FILE_KEY) and isinstance(value, str):
@@ -150,14 +148,12 @@ class Campaign:
             return {**value, _CSV: str(self.spec.folder / value[_CSV])}
         return value
 
-    def _require_controllers(self, case: int) -> None:
-        for number in range(len(self.controllers)):
-            run = self.run(number * self.cases + case)
-            try:
-                require_suitable(run.controller, run.settings)
-            except ParameterError as error:
-                raise ParameterError(f'run {run.index} ({_named(run.varied)}): {error}') from error
 
-
-def _named(varied: Mapping[str, Any]) -> str:
-    return ', '.join(f'{key} {value}' for key, value in varied.items())
+@contextmanager
+def _naming(index: int, varied: Mapping[str, Any]) -> Iterator[None]:
+    """Let the refusal of a run say which it is."""
+    try:
+        yield
+    except ParameterError as error:
+        values = ', '.join(f'{key} {value}' for key, value in varied.items())
+        raise ParameterError(f'run {index} ({values}): {error}') from error

@@ -107,15 +107,11 @@ def _worst(
             found.append((None, None))
         else:
             row = rows[np.nanargmax(values[rows])]
-            found.append((_short(values[row]), int(results.columns['index'][row])))
+            value = float(f'{values[row]:.{_DIGITS}g}')
+            found.append((value, int(results.columns['index'][row])))
     return found
 
 
 def _places(values: np.ndarray, parts: Sequence[np.ndarray]) -> list[float]:
     """Return the varied number of each cell."""
     return [float(f'{values[rows[0]]:.{_PLACE_DIGITS}g}') for rows in parts]
-
-
-def _short(value: float) -> float:
-    """Return a number with the digits that the page shows."""
-    return float(f'{value:.{_DIGITS}g}')
