@@ -13,8 +13,7 @@ from support.complaints import assert_one_line
 from support.third_party import install
 
 from ddct_controllers.check import program
-from ddct_controllers.check.checks import CHECKS, check_controller
-from ddct_controllers.check.outcome import FAIL, PASS, SKIPPED, Outcome
+from ddct_controllers.check.checks import CHECKS, FAIL, PASS, SKIPPED, Outcome, check_controller
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_names
 from ddct_controllers.template.new_controller import install_command

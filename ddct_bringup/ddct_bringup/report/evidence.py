@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.report.runs import ReportRun
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import read_text_file

@@ -27,7 +27,7 @@ from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
     LIGHT_COLOURS,

@@ -8,7 +8,7 @@ from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 
 SIGNALS = (*QUANTITIES, *CLUTCH_QUANTITIES, *SENSOR_QUANTITIES)
 GROUPS = {group.title: group.entries for group in definitions(SIGNALS, thesis=True)}

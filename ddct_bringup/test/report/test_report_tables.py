@@ -13,7 +13,7 @@ from ddct_bringup.report.tables.update_times import TICKS, update_times
 from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -5,18 +5,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ddct_controllers.check import conduct, installation, loops, signals
-from ddct_controllers.check.outcome import (
-    FAIL,
-    PASS,
-    SKIPPED,
-    CheckFailedError,
-    CheckSkippedError,
-    Outcome,
-)
-from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
 from ddct_controllers.check.watch import Printed
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.settings import RunSettings
+
+PASS, FAIL, SKIPPED = 'pass', 'fail', 'skipped'
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A line of the report."""
+
+    name: str
+    state: str
+    """PASS, FAIL or SKIPPED."""
+    detail: str
+    """What was measured; of a fail also where, and what to do."""
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError
-from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.subject import CheckFailedError, Subject
 from ddct_controllers.check.trial import more_slip, played
 from ddct_controllers.check.watch import watched
 from ddct_controllers.interface import Controller
@@ -57,7 +56,7 @@ def own_state(subject: Subject) -> str:
             f'make that an attribute of self, in __init__ or reset '
             f'({place_of_method(subject.sample, "__init__")})'
         )
-    if _same_again(subject, alone):
+    if np.array_equal(alone, played(subject.make(), subject.measured)):
         raise CheckFailedError(
             'a second object that runs beside it changes what it answers: they share an object '
             f'or a file; keep state in self ({place_of_method(one, "__init__")})'
@@ -97,10 +96,6 @@ def reset(subject: Subject) -> str:
             f'all state anew in {place_of_method(controller, "reset")}'
         )
     return 'after reset it answers as a new object'
-
-
-def _same_again(subject: Subject, answers: np.ndarray) -> bool:
-    return np.array_equal(answers, played(subject.make(), subject.measured))
 
 
 def _shared(controller: Controller, package: str) -> dict[str, str]:

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote, urlparse
 
-from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError, root_cause
-from ddct_controllers.check.subject import Subject
+from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject, root_cause
 from ddct_controllers.check.watch import AskedGains
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
-from ddct_controllers.check.subject import Subject
-from ddct_controllers.check.trial import closed_trial
+from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
+from ddct_controllers.check.trial import closed_trial, step_response
 from ddct_controllers.linear import DiscreteFilter
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.timebase import PERIOD_S
@@ -74,7 +73,7 @@ def rate(subject: Subject) -> str:
 
 def unit(subject: Subject) -> str:
     """Check that no factor 30/pi makes the difference between a bad loop and a good one."""
-    response = subject.step_response(1.0)
+    response = subject.response
     found = f'a step of the reference is followed to {response.followed:.0%} after 1 s'
     if response.diverges:
         found, what, factor = 'the loop is unstable', '1/9.55', RAD_S_PER_RPM
@@ -82,7 +81,7 @@ def unit(subject: Subject) -> str:
         what, factor = '9.55', RPM_PER_RAD_S
     else:
         return found
-    other = subject.step_response(factor)
+    other = step_response(subject.settings, subject.make, factor)
     if other.diverges or other.followed < WELL:
         return f'{found}, and {what} of the torque does not make it a good loop'
     raise CheckFailedError(
@@ -95,7 +94,7 @@ def unit(subject: Subject) -> str:
 
 def stability(subject: Subject) -> str:
     """Check that the loop settles: in a run, and by its poles if the controller is linear."""
-    if subject.step_response(1.0).diverges:
+    if subject.response.diverges:
         raise CheckFailedError(
             'in the closed loop the slip ends further from its reference than control found it, '
             'or the answer to a step of the reference grows: check sign, unit and the '

@@ -4,8 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from ddct_controllers.check.checks import check_controller
-from ddct_controllers.check.outcome import FAIL, Outcome
+from ddct_controllers.check.checks import FAIL, Outcome, check_controller
 from ddct_plant.base.errors import printable
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write

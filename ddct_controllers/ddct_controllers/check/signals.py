@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, CheckSkippedError
-from ddct_controllers.check.subject import Subject
-from ddct_controllers.check.trial import PROBE_RAD_S, PROBE_RPM, more_slip, played
+from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
+from ddct_controllers.check.trial import PROBE_RAD_S, PROBE_RPM, more_slip, played, probe_step
 from ddct_controllers.interface import Measurement
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.errors import DdctError
@@ -24,7 +23,7 @@ WITHIN_STEPS = 30
 def not_a_number(subject: Subject) -> str:
     """Check that a measurement of NaN is refused, ends the run, or is left out: never hidden."""
     controller = subject.make()
-    first = subject.probe_step
+    first = probe_step(subject.settings)
     try:
         after = played(controller, subject.measured, _without_number, first, first + 1)
     except DdctError as error:
@@ -54,7 +53,7 @@ def _after_nan(subject: Subject, change: np.ndarray) -> str:
 
 def spike(subject: Subject) -> str:
     """Check that one wild speed is survived."""
-    torques = subject.played(lambda m: _faster(m, SPIKE_RAD_S), steps=1)
+    torques = subject.played(lambda m: more_slip(m, SPIKE_RAD_S), steps=1)
     change = _finite(subject, torques, f'a spike of {SPIKE_RAD_S:g} rad/s in the engine speed')
     return (
         f'a spike of {SPIKE_RAD_S:g} rad/s moves the torque by up to {np.abs(change).max():.4g} '
@@ -64,7 +63,7 @@ def spike(subject: Subject) -> str:
 
 def saturation(subject: Subject) -> str:
     """Check that slip that no torque brings down is survived."""
-    torques = subject.played(lambda m: _faster(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
+    torques = subject.played(lambda m: more_slip(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
     change = _finite(subject, torques, f'{HARD_RAD_S:g} rad/s more slip over 0.5 s')
     most = float(np.abs(change).max())
     return (
@@ -104,7 +103,7 @@ def preview(subject: Subject) -> str:
 def sign(subject: Subject) -> str:
     """Check that more slip asks for more torque of the clutch, or less of the engine."""
     change = subject.played(more_slip) - subject.answers
-    first = subject.probe_step
+    first = probe_step(subject.settings)
     clutch, engine = change[first : first + WITHIN_STEPS].mean(axis=0)
     found = f'{PROBE_RPM:g} rpm more slip changes the clutch torque by {clutch:+.4g} N m'
     if subject.sample.commands_engine:
@@ -123,10 +122,6 @@ def sign(subject: Subject) -> str:
 
 def _without_number(measurement: Measurement) -> Measurement:
     return replace(measurement, engine_speed=math.nan)
-
-
-def _faster(measurement: Measurement, by: float) -> Measurement:
-    return replace(measurement, engine_speed=measurement.engine_speed + by)
 
 
 def _other_future(measurement: Measurement) -> Measurement:

@@ -1,12 +1,11 @@
 """The controller under check, and what several checks want to know of it."""
 
 import importlib.metadata
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ddct_controllers.check.outcome import CheckFailedError, root_cause
 from ddct_controllers.check.trial import (
     Change,
     Heard,
@@ -25,6 +24,21 @@ from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.scenario.settings import RunSettings
 
 
+class CheckFailedError(Exception):
+    """A check found an error; the text says what was measured, where, and what to do."""
+
+
+class CheckSkippedError(Exception):
+    """A check does not apply; the text says why."""
+
+
+def root_cause(error: BaseException) -> BaseException:
+    """Return the error that an error was first raised from."""
+    while error.__cause__:
+        error = error.__cause__
+    return error
+
+
 @dataclass
 class Subject:
     """A controller by name; every `make` is a new object."""
@@ -32,8 +46,6 @@ class Subject:
     name: str
     settings: RunSettings
     printed: Printed
-    responses: dict[float, StepResponse] = field(default_factory=dict)
-    """Those measured so far, by the factor on all torques."""
 
     @cached_property
     def points(self) -> list[importlib.metadata.EntryPoint]:
@@ -89,19 +101,12 @@ class Subject:
         """(steps, 2) what a new object answers to `measured`, in N m."""
         return played(self.make(), self.measured)
 
-    def step_response(self, scale: float) -> StepResponse:
-        """Return how slip answers a step of its reference, with all torques times `scale`."""
-        if scale not in self.responses:
-            plain = self.closed if scale == 1.0 else None
-            self.responses[scale] = step_response(self.settings, self.make, scale, plain)
-        return self.responses[scale]
-
-    @property
-    def probe_step(self) -> int:
-        """The step at which trials change something."""
-        return probe_step(self.settings)
+    @cached_property
+    def response(self) -> StepResponse:
+        """How slip answers a step of its reference."""
+        return step_response(self.settings, self.make, plain=self.closed)
 
     def played(self, change: Change, steps: int = 10**9) -> np.ndarray:
         """Return what a new object answers where `steps` measurements from the probe on change."""
-        first = self.probe_step
+        first = probe_step(self.settings)
         return played(self.make(), self.measured, change, first, first + steps)

@@ -44,12 +44,6 @@ class Heard:
     """Wall time of each update."""
 
     @property
-    def error(self) -> np.ndarray:
-        """(steps,) slip less its reference in rad/s."""
-        wanted = [measurement.slip_reference[0] for _, measurement in self.measured]
-        return np.array(self.slip) - wanted
-
-    @property
     def too_slow(self) -> bool:
         """Whether most updates take longer than their period."""
         return len(self.update_s) >= TIMED and statistics.median(self.update_s) > PERIOD_S
@@ -83,9 +77,9 @@ def _scaled(command: Command, measurement: Measurement, scale: float) -> Command
     return replace(command, clutch_torque=scale * command.clutch_torque, engine_torque=engine)
 
 
-def more_slip(measurement: Measurement) -> Measurement:
-    """Return a measurement with PROBE_RAD_S more slip."""
-    return replace(measurement, engine_speed=measurement.engine_speed + PROBE_RAD_S)
+def more_slip(measurement: Measurement, by_rad_s: float = PROBE_RAD_S) -> Measurement:
+    """Return a measurement with more slip."""
+    return replace(measurement, engine_speed=measurement.engine_speed + by_rad_s)
 
 
 def probe_step(settings: RunSettings) -> int:
@@ -169,7 +163,10 @@ class StepResponse:
 
 
 def step_response(
-    settings: RunSettings, make: Callable[[], Controller], scale: float, plain: Heard | None = None
+    settings: RunSettings,
+    make: Callable[[], Controller],
+    scale: float = 1.0,
+    plain: Heard | None = None,
 ) -> StepResponse:
     """
     Return the difference that a step of the reference makes, with all torques times `scale`.
@@ -187,5 +184,7 @@ def step_response(
     missing = np.abs(1.0 - response)
     half = len(missing) // 2
     grows = missing[half:].max() > GROWTH * missing[:half].max()
-    runs_away = np.abs(plain.error[probe + half :]).max() > abs(plain.slip[start])
+    wanted = [measurement.slip_reference[0] for _, measurement in plain.measured]
+    error = np.array(plain.slip) - wanted
+    runs_away = np.abs(error[probe + half :]).max() > abs(plain.slip[start])
     return StepResponse(float(response[round(1.0 / PERIOD_S)]), bool(grows or runs_away))

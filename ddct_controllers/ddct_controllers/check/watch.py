@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.check.outcome import place_of_caller
-
 CLOCKS = ('time', 'monotonic', 'perf_counter')
 """Clocks of the module time; each has a twin in ns."""
 SOURCES: tuple[tuple[ModuleType, tuple[str, ...]], ...] = (
@@ -26,6 +24,12 @@ SOURCES: tuple[tuple[ModuleType, tuple[str, ...]], ...] = (
 )
 LEAP_S = 1_000_003
 """How far the watched clocks are ahead, so that one that is read in whole days differs too."""
+
+
+def place_of_caller(depth: int) -> str:
+    """Return `FILE line N` of who called the function `depth` calls above this one."""
+    frame = sys._getframe(depth + 1)
+    return f'{frame.f_code.co_filename} line {frame.f_lineno}'
 
 
 class Printed(io.TextIOBase):

@@ -83,9 +83,8 @@ class _Problem:
 def _problem(driveline: DrivelineParameters, torque_rate_weight: float) -> _Problem:
     plant = discretise_zoh(series(_actuator_stage(), _relative_driveline(driveline)), PERIOD_S)
     states = len(plant.a)
-    a, b = np.zeros((states + 1, states + 1)), np.zeros((states + 1, 1))
+    a, b = np.zeros((states + 1, states + 1)), np.eye(states + 1)[:, [states]]
     a[:states] = np.hstack([plant.a, plant.b[:, [_CLUTCH]]])  # the last state is u of k - 1
-    b[states] = 1.0
     g = np.zeros((states + 1, 3))
     g[:states, [0, 2]] = plant.b[:, [_ENGINE, _LOAD]]
     c, d, f = np.zeros((2, states + 1)), np.zeros((2, 1)), np.zeros((2, 3))

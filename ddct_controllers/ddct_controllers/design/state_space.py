@@ -5,6 +5,7 @@ They are ours because run-time controllers are designed and verified with them: 
 takes a second to load, and its realisation of factors through polynomials is off by percents.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import scipy
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 _FAR = 1e8
@@ -27,7 +29,19 @@ def series(*systems: StateSpace) -> StateSpace:
     """
     product = systems[0]
     for system in systems[1:]:
-        product = _after(product, system)
+        if product.period_s != system.period_s:
+            raise ParameterError(
+                f'series: sampling periods {product.period_s} and {system.period_s} s differ: '
+                'discretise both alike'
+            )
+        corner = np.zeros((len(product.a), len(system.a)))
+        product = StateSpace(
+            np.block([[product.a, corner], [system.b @ product.c, system.a]]),
+            np.vstack([product.b, system.b @ product.d]),
+            np.hstack([system.d @ product.c, system.c]),
+            system.d @ product.d,
+            product.period_s,
+        )
     return product
 
 
@@ -102,12 +116,31 @@ def factored_form(system: StateSpace) -> FactoredTransferFunction:
     _require_one_by_one(system)
     poles = np.linalg.eigvals(system.a)
     size = 1.0 + float(np.max(np.abs(poles), initial=0.0))
-    zeros = _zeros(system, _FAR * size)
+    pencil = np.block([[system.a, system.b], [system.c, system.d]])
+    mass = scipy.linalg.block_diag(np.eye(len(system.a)), 0.0)
+    with np.errstate(divide='ignore', invalid='ignore'):
+        zeros = scipy.linalg.eigvals(pencil, mass)
+    zeros = zeros[np.isfinite(zeros) & (np.abs(zeros) < _FAR * size)]
     point = 2.0 * max(size, float(np.max(np.abs(zeros), initial=0.0)))
     resolvent = np.linalg.solve(point * np.eye(len(system.a)) - system.a, system.b)
     value = float((system.c @ resolvent + system.d)[0, 0])
     gain = value * float((np.prod(point - poles) / np.prod(point - zeros)).real)
     return FactoredTransferFunction.from_roots(gain, zeros, poles)
+
+
+def factors_text(factors: Sequence[Factor], variable: str = 's', digits: int = 4) -> str:
+    """Return factors one beside the other, as the thesis prints them, which is with 4 digits."""
+    return ' '.join(_factor_text(factor, variable, digits) for factor in factors)
+
+
+def _factor_text(factor: Factor, variable: str, digits: int) -> str:
+    if factor == 0.0:
+        return variable
+    numbers = factor if isinstance(factor, tuple) else (factor,)
+    signed = [f'{"-" if x < 0.0 else "+"} {abs(x):.{digits}g}' for x in numbers]
+    if len(signed) == 1:
+        return f'({variable} {signed[0]})'
+    return f'({variable}^2 {signed[0]} {variable} {signed[1]})'
 
 
 def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTransferFunction:
@@ -119,34 +152,9 @@ def pulse_transfer_function(controller: FactoredTransferFunction) -> FactoredTra
     return factored_form(discretise_zoh(controller.to_state_space(), PERIOD_S))
 
 
-def _after(first: StateSpace, second: StateSpace) -> StateSpace:
-    if first.period_s != second.period_s:
-        raise ParameterError(
-            f'series: sampling periods {first.period_s} and {second.period_s} s differ: '
-            'discretise both alike'
-        )
-    corner = np.zeros((len(first.a), len(second.a)))
-    return StateSpace(
-        np.block([[first.a, corner], [second.b @ first.c, second.a]]),
-        np.vstack([first.b, second.b @ first.d]),
-        np.hstack([second.d @ first.c, second.c]),
-        second.d @ first.d,
-        first.period_s,
-    )
-
-
 def _require_one_by_one(system: StateSpace) -> None:
     if system.d.shape != (1, 1):
         raise ParameterError(
             f'state space: it has {system.d.shape[1]} inputs and {system.d.shape[0]} outputs, '
             'it must have one of each'
         )
-
-
-def _zeros(system: StateSpace, far: float) -> np.ndarray:
-    pencil = np.block([[system.a, system.b], [system.c, system.d]])
-    mass = np.zeros_like(pencil)
-    mass[: len(system.a), : len(system.a)] = np.eye(len(system.a))
-    with np.errstate(divide='ignore', invalid='ignore'):
-        found = scipy.linalg.eigvals(pencil, mass)
-    return found[np.isfinite(found) & (np.abs(found) < far)]

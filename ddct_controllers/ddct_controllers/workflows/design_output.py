@@ -58,7 +58,7 @@ def write_design(
     if not path:
         return
     # matplotlib takes most of a second to load.
-    from ddct_controllers.design.drawing.design_charts import write_design_charts
+    from ddct_controllers.design.drawing.charts import write_design_charts
 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -44,8 +44,6 @@ examples:
   ddct design h-infinity --weights fitted --method lmi
   ddct design h-infinity --weights fitted --rise-time 0.5 --overshoot 15 --name mine --out designs
   ddct compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
-_DEFAULTS = THESIS_SPECIFICATIONS
-_DEFAULT_RECIPE = 'thesis'
 
 
 def add_parser(subparsers: Any) -> None:
@@ -57,7 +55,7 @@ def add_parser(subparsers: Any) -> None:
         epilog=_EXAMPLES,
     )
     add = parser.add_argument
-    add('--weights', choices=tuple(RECIPES), default=_DEFAULT_RECIPE, help='(default: thesis)')
+    add('--weights', choices=tuple(RECIPES), default='thesis', help='(default: thesis)')
     add('--low-frequency-gain', type=float, metavar='K', help='|S| near 0 over w^2')
     add('--bandwidth', type=float, metavar='W_2', help='corner of W_t in rad/s')
     add(
@@ -82,8 +80,10 @@ def run(options: argparse.Namespace) -> int:
     """Print the tables, write the files, and return the exit code."""
     name = free_name(options)
     specifications = TimeSpecifications(
-        _DEFAULTS.rise_time_s if options.rise_time is None else options.rise_time,
-        _DEFAULTS.overshoot if options.overshoot is None else options.overshoot / 100.0,
+        THESIS_SPECIFICATIONS.rise_time_s if options.rise_time is None else options.rise_time,
+        THESIS_SPECIFICATIONS.overshoot
+        if options.overshoot is None
+        else options.overshoot / 100.0,
     )
     weights = make_weights(
         options.weights,

@@ -4,8 +4,8 @@ import argparse
 import sys
 from typing import Any
 
-from ddct_controllers.design.analysis.loops import plant_in_rpm
-from ddct_controllers.design.loop_shaping.networks import required_integrators
+from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, plant_in_rpm
+from ddct_controllers.design.loop_shaping.design import required_integrators
 from ddct_controllers.design.loop_shaping.report import (
     design_record,
     provenance,
@@ -23,7 +23,6 @@ from ddct_controllers.workflows.design_output import (
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import engine_to_slip
-from ddct_plant.models.parameters import DrivelineParameters
 
 _DESCRIPTION = """\
 With --rise-time and --overshoot: find a controller that meets them in the sampled loop. --out
@@ -86,15 +85,14 @@ def _design(options: argparse.Namespace) -> None:
         raise ParameterError(f'{missing} is missing: a design needs --rise-time and --overshoot')
     specifications = TimeSpecifications(options.rise_time, options.overshoot / 100.0)
     name = free_name(options)
-    parameters = DrivelineParameters()
     order = _DISTURBANCES[options.disturbance or 'step']
     integrators = 0
     if order is not None:
-        plant, path = plant_in_rpm(parameters), engine_to_slip(parameters)
-        integrators = required_integrators(plant, path, order)
+        disturbance_path = engine_to_slip(IDENTIFIED_DRIVELINE)
+        integrators = required_integrators(plant_in_rpm(), disturbance_path, order)
     print('ddct design loop-shaping: searching', file=sys.stderr, flush=True)
     structures = (options.structure,) if options.structure else STRUCTURES
-    design = design_loop_shaping(specifications, integrators, parameters, structures)
+    design = design_loop_shaping(specifications, integrators, IDENTIFIED_DRIVELINE, structures)
     designed = DesignedController(name, design.controller, provenance(design))
     record = design_record(name, design)
     show(options, design_tables(record), record)

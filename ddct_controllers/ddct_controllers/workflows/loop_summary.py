@@ -1,19 +1,17 @@
 """What a linear controller in a file is, and whether its loop is stable, told before it runs."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURE_OF
 from ddct_controllers.design.analysis.loops import sampled_loop
-from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
-from ddct_controllers.design.state_space import factored_form, scaled
+from ddct_controllers.design.analysis.margins import LOOP_FIGURE_OF, loop_margins, unstable_poles
+from ddct_controllers.design.state_space import factored_form, factors_text, scaled
 from ddct_controllers.linear import BILINEAR, LinearController
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
+_DIGITS = 6
 _MARGINS = (
     ('gain margin', LOOP_FIGURE_OF['gain_margin_db']),
     ('phase margin', replace(LOOP_FIGURE_OF['phase_margin_deg'], form='.0f')),
@@ -57,23 +55,10 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
 
 def formula(function: FactoredTransferFunction, variable: str) -> str:
     """Return a transfer function as a reader writes it."""
-    gain = f'{function.gain:.6g}'
     numerator, denominator = (
-        product(side, variable) for side in (function.numerator, function.denominator)
+        factors_text(side, variable, _DIGITS)
+        for side in (function.numerator, function.denominator)
     )
-    above = f'{gain} {numerator}'.rstrip()
+    above = f'{function.gain:.{_DIGITS}g} {numerator}'.rstrip()
     several = len(function.denominator) > 1
     return f'{above} / {f"[{denominator}]" if several else denominator}' if denominator else above
-
-
-def product(factors: Sequence[Factor], variable: str) -> str:
-    """Return factors (s + a) and (s^2 + b s + c), or those of z, one beside the other."""
-    return ' '.join(_factor(factor, variable) for factor in factors)
-
-
-def _factor(factor: Factor, variable: str) -> str:
-    if isinstance(factor, tuple):
-        linear, constant = (f'{abs(x):.6g}' for x in factor)
-        signs = ['-' if x < 0.0 else '+' for x in factor]
-        return f'({variable}^2 {signs[0]} {linear} {variable} {signs[1]} {constant})'
-    return f'({variable} {"-" if factor < 0.0 else "+"} {abs(factor):.6g})' if factor else variable

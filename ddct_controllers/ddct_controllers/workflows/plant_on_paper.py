@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_controllers.workflows.loop_summary import product
+from ddct_controllers.design.state_space import factors_text
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
@@ -54,13 +54,8 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
             'states': STATES,
             'inputs': INPUTS,
             'outputs': OUTPUTS,
-            **dict(
-                zip(
-                    MATRICES,
-                    (_plain(each) for each in (model.a, model.b, model.c, model.d)),
-                    strict=True,
-                )
-            ),
+            # + 0.0 makes 0 of -0.
+            **{name: (getattr(model, name.lower()) + 0.0).tolist() for name in MATRICES},
         },
         'transfer_functions': {
             name: {'input': source, 'output': output, **_entry(function)}
@@ -74,10 +69,6 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
             )
         },
     }
-
-
-def _plain(matrix: np.ndarray) -> list[list[float]]:
-    return (matrix + 0.0).tolist()  # no -0
 
 
 def _entry(function: FactoredTransferFunction) -> dict[str, Any]:
@@ -97,8 +88,8 @@ def _polynomial(factors: Sequence[Factor]) -> np.ndarray:
 
 def factored_text(entry: Mapping[str, Any]) -> str:
     """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / [...]."""
-    above = f'{entry["gain"]:.6g} {product(entry["numerator"], "s")}'.rstrip()
-    return f'{above} / [{product(entry["denominator"], "s")}]'
+    above, below = (factors_text(entry[side], digits=6) for side in ('numerator', 'denominator'))
+    return f'{entry["gain"]:.6g} {above}'.rstrip() + f' / [{below}]'
 
 
 def as_matlab(paper: Mapping[str, Any]) -> str:

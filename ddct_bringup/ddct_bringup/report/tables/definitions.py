@@ -7,7 +7,7 @@ from ddct_bringup.report.quantities import Quantity
 from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.program.table import Figure
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.report.evidence import LoopEvidence
 from ddct_bringup.report.typeset import number_text
-from ddct_controllers.design.analysis.loop_figures import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence
 
 NOT_LINEAR = 'not linear, so without a frequency response'

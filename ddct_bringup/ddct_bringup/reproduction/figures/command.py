@@ -11,8 +11,7 @@ from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_
 from ddct_bringup.reproduction.figures.run_figures import run_figures
 from ddct_bringup.reproduction.figures.scenario_figures import SCENARIO_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure_order
-from ddct_controllers.design.drawing.chart_files import figure_files, save_figure
-from ddct_controllers.design.drawing.chart_style import chart_style
+from ddct_controllers.design.drawing.chart_style import chart_style, figure_files, save_figure
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file

@@ -12,7 +12,12 @@ from ddct_bringup.reproduction.figures.thesis_figure import (
     nichols_figure,
     step_figure,
 )
-from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.loops import (
+    WEAR_RANGE,
+    ContinuousLoop,
+    continuous_loop,
+    plant_in_rpm,
+)
 from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY
 from ddct_controllers.design.drawing.charts import draw_bound
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
@@ -23,7 +28,6 @@ from ddct_controllers.design.h_infinity.uncertainty import (
     wear_family,
     weighted_norms,
 )
-from ddct_controllers.design.verified_design import WEAR_GAINS
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
@@ -80,7 +84,7 @@ def _draw_bounded(
 def _draw_uncertainty(axes: Axes) -> str:
     omega = np.geomspace(1.0, 1e6, 600)
     nominal, family = plant_in_rpm(), wear_family()
-    for wear_gain, worn, style in zip(WEAR_GAINS, family, _ERROR_LINES, strict=True):
+    for wear_gain, worn, style in zip(WEAR_RANGE, family, _ERROR_LINES, strict=True):
         error = relative_error(nominal, (worn,), omega)
         axes.semilogx(omega, error, label=f'error, K_usura = {wear_gain:g}', **style)
     weight = np.abs(PRINTED_W_U.frequency_response(omega))

@@ -15,15 +15,17 @@ from ddct_bringup.reproduction.figures.thesis_figure import (
     nichols_figure,
     step_figure,
 )
+from ddct_controllers.design.analysis.closed_loop import nyquist_count
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, SKY, VERMILLION, line_styles
 from ddct_controllers.design.drawing.charts import decibel
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_SPECIFICATIONS,
+    integrators,
+    lag_network,
+    lead_network,
 )
-from ddct_controllers.design.loop_shaping.networks import integrators, lag_network, lead_network
-from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction

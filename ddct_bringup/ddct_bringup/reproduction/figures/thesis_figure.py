@@ -8,18 +8,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
+from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import controller_style, line_styles, new_chart
 from ddct_controllers.design.drawing.charts import (
     draw_nichols,
     draw_step_response,
     label_time_axis,
 )
-from ddct_controllers.design.loop_shaping.nichols import contours, nichols_curve
+from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.design.loop_shaping.verification import contours
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
 

@@ -17,8 +17,7 @@ from ddct_bringup.reproduction.studies import (
     wear,
 )
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction
-from ddct_controllers.design.drawing.chart_files import save_figure
-from ddct_controllers.design.drawing.chart_style import chart_style
+from ddct_controllers.design.drawing.chart_style import chart_style, save_figure
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.command_line import complain

@@ -20,7 +20,7 @@ from ddct_controllers.design.h_infinity.cleaning import clean
 from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
-from ddct_controllers.design.loop_shaping.networks import poles_at_zero
+from ddct_controllers.design.loop_shaping.design import poles_at_zero
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.synthesised import synthesised_design
 from ddct_plant.base.units import RAD_S_PER_RPM

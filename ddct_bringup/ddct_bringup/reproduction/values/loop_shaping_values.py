@@ -13,30 +13,27 @@ from ddct_bringup.reproduction.values.controller_values import (
     sampled_values,
     step_values,
 )
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.closed_loop import nyquist_count
+from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop, plant_in_rpm
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
     PLACEMENT_SPECIFICATIONS,
+    integrators,
     largest_zero_rad_s,
+    lead_network,
     network_steps,
     placement,
-)
-from ddct_controllers.design.loop_shaping.networks import (
-    integrators,
-    lead_network,
     poles_at_zero,
     required_integrators,
     stabilising_sign,
 )
-from ddct_controllers.design.loop_shaping.nichols import contours
-from ddct_controllers.design.loop_shaping.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     prototype_phase_margin,
     rise_time_crossover_product,
 )
+from ddct_controllers.design.loop_shaping.verification import contours
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
@@ -124,7 +121,7 @@ def _networks() -> dict[str, Value | None]:
     s_peak, t_peak = contours(LoopCurve(continuous_loop(g_c1)), NETWORK_SPECIFICATIONS)
     (lead_zero,) = numbers_of(g_c1.numerator[1])
     lead = lead_network(1.0, _LEAD_RATIO).frequency_response(np.ones(1))[0]
-    made = in_the_form_of(g_c1, network_steps()[-1].controller)
+    made = in_the_form_of(g_c1, list(network_steps().values())[-1])
     put_in = {'G_c1.zero 2', 'G_c1.zero 3', 'G_c1.pole 1', 'G_c1.pole 4'}
     return {
         'missing phase': math.degrees(wanted - float(np.angle(-response))),

@@ -5,13 +5,17 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ddct_controllers.design.analysis.driveline_mode import (
+from ddct_controllers.design.analysis.closed_loop import (
     damping,
     locked_driveline_zero,
     nearest_mode,
 )
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_plant
+from ddct_controllers.design.analysis.loops import (
+    IDENTIFIED_DRIVELINE,
+    WEAR_RANGE,
+    LoopCurve,
+    sampled_plant,
+)
 from ddct_controllers.design.state_space import (
     close_loop,
     frequency_response,
@@ -24,8 +28,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
-WEAR_GAINS = (0.7, 1.0, 1.3)
-"""K_usura from one end of Table 5.2 to the other."""
+WEAR_GAINS = (WEAR_RANGE[0], 1.0, WEAR_RANGE[1])
 _CANDIDATE_SHARE = 0.95
 """Corners whose M_s on the grid reaches this share of the highest are solved for exactly."""
 

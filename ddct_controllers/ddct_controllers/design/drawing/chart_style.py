@@ -1,19 +1,27 @@
-"""The one look of every chart: sizes, line styles, and colours fit for colour-blind readers."""
+"""
+The one look of every chart, and its files: a picture, a drawing to scale, and its data.
 
+The colours are fit for colour-blind readers.
+"""
+
+import io
 import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
-from itertools import cycle
+from itertools import cycle, zip_longest
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from ddct_controllers.design.drawing.line_looks import LineLook, controller_look
-from ddct_plant.base.errors import DdctError
+from ddct_plant.files.csv_table import csv_text
+from ddct_plant.files.output_file import write_bytes, write_text
 
 BLACK = '#000000'
 GREY = '#7f7f7f'
@@ -35,6 +43,9 @@ _LINE_WIDTH = 1.5
 _MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """A symbol with its index and perhaps a power, such as W_s^-1."""
+ENDINGS = ('.png', '.svg', '.csv')
+Column = tuple[str, np.ndarray]
+"""Heading with the unit, and the values, (n,)."""
 _STYLE: dict[Any, Any] = {
     'figure.figsize': (8.0, 5.0),
     'figure.dpi': 130.0,
@@ -99,15 +110,11 @@ def save_chart(figure: Figure, path: Path) -> None:
     """
     for text in figure.findobj(Text):
         text.set_text(typeset(text.get_text()))
-    temporary = path.with_name(f'.partial-{path.name}')
-    try:
-        # Without the date the same figure is the same file.
-        figure.savefig(temporary, metadata={'Date': None} if path.suffix == '.svg' else None)
-        temporary.replace(path)
-    except OSError as error:
-        raise DdctError(f'{path}: cannot be written ({error.strerror})') from error
-    finally:
-        temporary.unlink(missing_ok=True)
+    content = io.BytesIO()
+    # Without the date the same figure is the same file.
+    metadata = {'Date': None} if path.suffix == '.svg' else None
+    figure.savefig(content, format=path.suffix.removeprefix('.'), metadata=metadata)
+    write_bytes(str(path), content.getvalue())
 
 
 def typeset(text: str) -> str:
@@ -119,3 +126,55 @@ def _mathematics(symbol: re.Match[str]) -> str:
     letter, index, power = symbol.groups()
     exponent = f'^{{{power}}}' if power else ''
     return f'${letter}_{{{index}}}{exponent}$'
+
+
+def figure_files(folder: Path, name: str) -> list[Path]:
+    """Return the files that `save_figure` writes."""
+    return [folder / f'{name}{ending}' for ending in ENDINGS]
+
+
+def save_figure(figure: Figure, folder: Path, name: str) -> None:
+    """
+    Write a figure as NAME.png, NAME.svg and NAME.csv into the folder.
+
+    Raise DdctError when a file cannot be written.
+    """
+    picture, drawing, data = figure_files(folder, name)
+    columns = figure_data(figure)  # before symbols become typeset
+    cells = ([f'{value:.9g}' for value in values] for _, values in columns)
+    rows = zip_longest(*cells, fillvalue='')  # a shorter column ends in empty cells
+    write_text(str(data), csv_text((heading for heading, _ in columns), rows))
+    save_chart(figure, picture)
+    save_chart(figure, drawing)
+
+
+def figure_data(figure: Figure) -> list[Column]:
+    """
+    Return the labelled lines of a figure as columns.
+
+    Lines over the same values share that column. A heading is the axis label with its unit, after
+    the title of the panel where there are several and the name of the curve. Lines across the
+    whole panel, such as a reference of 1, have no data.
+    """
+    panels = figure.axes
+    columns: dict[tuple[str, bytes], Column] = {}
+    for axes in panels:
+        before = f'{axes.get_title()}: ' if len(panels) > 1 and axes.get_title() else ''
+        for heading, values in _panel_data(axes):
+            columns[before + heading, values.tobytes()] = before + heading, values
+    return list(columns.values())
+
+
+def _panel_data(axes: Axes) -> Iterator[Column]:
+    groups: dict[bytes, list[Line2D]] = {}
+    for line in axes.get_lines():
+        labelled = not str(line.get_label()).startswith('_')
+        if labelled and line.get_transform() == axes.transData and np.size(line.get_xdata()):
+            groups.setdefault(np.asarray(line.get_xdata(), dtype=float).tobytes(), []).append(line)
+    for lines in groups.values():
+        names = ' and '.join(str(line.get_label()) for line in lines)
+        across = axes.get_xlabel() if len(groups) == 1 else f'{names}: {axes.get_xlabel()}'
+        yield across, np.asarray(lines[0].get_xdata(), dtype=float)
+        for line in lines:
+            up = np.asarray(line.get_ydata(), dtype=float)
+            yield f'{line.get_label()}: {axes.get_ylabel()}', up

@@ -6,7 +6,6 @@ controllers are shown, and in whichever order.
 """
 
 import hashlib
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -90,12 +89,8 @@ def controller_look(name: str, repeat: int = 0) -> LineLook:
 
 def looks_of(controllers: Iterable[str]) -> list[LineLook]:
     """Return one look per run, given the controllers of the runs."""
-    seen: Counter[str] = Counter()
-    looks = []
-    for name in controllers:
-        looks.append(controller_look(name, seen[name]))
-        seen[name] += 1
-    return looks
+    names = list(controllers)
+    return [controller_look(name, names[:run].count(name)) for run, name in enumerate(names)]
 
 
 def css_colours(colours: Sequence[str]) -> str:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ddct_controllers.design.state_space import factors_text
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.cascade import Factor
@@ -58,7 +59,7 @@ def _without_fast(
             stay.append(factor)
         else:
             gain *= factor
-            steps.append(CleaningStep(f'fast {kind}, gain at rest kept', factor_text(factor)))
+            steps.append(CleaningStep(f'fast {kind}, gain at rest kept', factors_text([factor])))
     return stay, gain
 
 
@@ -101,7 +102,9 @@ def _without_pairs(
             numerator.remove(zero)
             denominator.remove(pole)
             steps.append(
-                CleaningStep('pair that cancels', f'{factor_text(zero)} over {factor_text(pole)}')
+                CleaningStep(
+                    'pair that cancels', f'{factors_text([zero])} over {factors_text([pole])}'
+                )
             )
     return numerator, denominator
 
@@ -123,14 +126,3 @@ def _order(factor: Factor) -> int:
 def rate_of(factor: Factor) -> float:
     """Return the magnitude of the factor's roots in rad/s, their geometric mean for two."""
     return math.sqrt(abs(factor[1])) if isinstance(factor, tuple) else abs(factor)
-
-
-def factor_text(factor: Factor, variable: str = 's', digits: int = 4) -> str:
-    """Return a factor as the thesis prints it, which is with 4 digits."""
-    if factor == 0.0:
-        return variable
-    numbers = factor if isinstance(factor, tuple) else (factor,)
-    signed = [f'{"-" if x < 0.0 else "+"} {abs(x):.{digits}g}' for x in numbers]
-    if len(signed) == 1:
-        return f'({variable} {signed[0]})'
-    return f'({variable}^2 {signed[0]} {variable} {signed[1]})'

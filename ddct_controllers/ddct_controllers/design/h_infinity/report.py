@@ -3,6 +3,7 @@
 import dataclasses
 from typing import Any
 
+from ddct_controllers.design.analysis.closed_loop import step_figures
 from ddct_controllers.design.analysis.loops import (
     ContinuousLoop,
     continuous_loop,
@@ -10,7 +11,6 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
-from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
@@ -86,6 +86,7 @@ def lacks(record: Record) -> list[str]:
 def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Record:
     """Return what a controller's file says of where it comes from."""
     weights = design.weights
+    w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
     sampled = loop_record(sampled_loop(design.sampled), weights, specifications)
     continuous = None
     if not weights.sampled:
@@ -100,7 +101,18 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
             'complementary_peak': specifications.complementary_peak,
             'natural_frequency_rad_s': specifications.natural_frequency_rad_s,
         },
-        'weights': {'recipe': recipe, **_weights_record(weights)},
+        'weights': {
+            'recipe': recipe,
+            'low_frequency_gain': w_s.low_frequency_gain,
+            'sensitivity_corner_rad_s': w_s.corner_rad_s,
+            'offset_rad_s': w_s.offset_rad_s,
+            'bandwidth_rad_s': w_t.corner_rad_s,
+            'complementary_damping': w_t.damping,
+            'effort_n_m_per_rpm': effort.torque_n_m_per_rpm if effort else None,
+            'effort_corner_rad_s': effort.corner_rad_s if effort else None,
+            'hold_and_delay_in_plant': weights.sampled,
+            'back_off': weights.back_off,
+        },
         'gamma': design.synthesis.gamma,
         'cleaning': [dataclasses.asdict(step) for step in design.cleaning],
         'continuous_loop': continuous,
@@ -138,21 +150,6 @@ def uncertainty_record() -> Record:
         'printed': dataclasses.asdict(PRINTED_W_U),
         'printed_falls_short_by': float((1.0 - printed / error).max()),
         'printed_falls_short_above_rad_s': shortfall_from_rad_s(PRINTED_W_U, largest),
-    }
-
-
-def _weights_record(weights: HinfWeights) -> Record:
-    w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
-    return {
-        'low_frequency_gain': w_s.low_frequency_gain,
-        'sensitivity_corner_rad_s': w_s.corner_rad_s,
-        'offset_rad_s': w_s.offset_rad_s,
-        'bandwidth_rad_s': w_t.corner_rad_s,
-        'complementary_damping': w_t.damping,
-        'effort_n_m_per_rpm': effort.torque_n_m_per_rpm if effort else None,
-        'effort_corner_rad_s': effort.corner_rad_s if effort else None,
-        'hold_and_delay_in_plant': weights.sampled,
-        'back_off': weights.back_off,
     }
 
 

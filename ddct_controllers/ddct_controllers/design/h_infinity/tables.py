@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from ddct_controllers.design.analysis.loop_figures import DESIGN_FIGURE_OF
-from ddct_controllers.design.h_infinity.cleaning import factor_text
+from ddct_controllers.design.analysis.margins import DESIGN_FIGURE_OF
 from ddct_controllers.design.h_infinity.report import Record
-from ddct_plant.linear.cascade import Factor
+from ddct_controllers.design.state_space import factors_text
 from ddct_plant.program.table import Table, text_or_dash
 
 _LOOP_FIGURES = [
@@ -145,15 +144,16 @@ def _controller_table(records: Sequence[Record]) -> Table:
         [
             (
                 record['name'],
-                form,
+                f'G_c({variable})',
                 f'{record[key]["gain"]:.4g}',
-                _product(record[key]['numerator'], form[-2]),
-                _product(record[key]['denominator'], form[-2]),
+                factors_text(record[key]['numerator'], variable, digits),
+                factors_text(record[key]['denominator'], variable, digits),
             )
             for record in records
-            for form, key in (
-                ('G_c(s)', 'controller'),
-                ('G_c(z)', 'pulse_transfer_function'),
+            # With 4 digits in z a slow pole would read as an integrator.
+            for variable, digits, key in (
+                ('s', 4, 'controller'),
+                ('z', 5, 'pulse_transfer_function'),
             )
         ],
     )
@@ -188,9 +188,3 @@ def _loop_cells(loop: Record) -> tuple[str, ...]:
         'yes' if loop['meets_specifications'] else 'no',
         *(figure.cell(loop) for figure in _LOOP_FIGURES),
     )
-
-
-def _product(factors: Sequence[Factor], variable: str) -> str:
-    """Return factors; with 4 digits in z a slow pole would read as an integrator."""
-    digits = 5 if variable == 'z' else 4
-    return ' '.join(factor_text(factor, variable, digits) for factor in factors)

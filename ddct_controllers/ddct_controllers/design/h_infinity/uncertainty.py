@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
+    WEAR_RANGE,
     ContinuousLoop,
+    LoopCurve,
     plant_in_rpm,
 )
 from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, SensitivityWeight
-from ddct_controllers.design.verified_design import WEAR_GAINS
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 PRINTED_W_U = FactoredTransferFunction(0.2987, (3913.0 / 0.2987,), (13030.0,))
@@ -42,7 +42,7 @@ def shortfall_from_rad_s(weight: FactoredTransferFunction, error: float) -> floa
 
 def wear_family() -> tuple[FactoredTransferFunction, ...]:
     """Return G_a P_2 30/pi at both ends of the range of K_usura."""
-    return tuple(plant_in_rpm(IDENTIFIED_DRIVELINE, gain) for gain in WEAR_GAINS)
+    return tuple(plant_in_rpm(IDENTIFIED_DRIVELINE, gain) for gain in WEAR_RANGE)
 
 
 def relative_error(

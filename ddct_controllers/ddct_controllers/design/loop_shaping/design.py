@@ -1,18 +1,16 @@
-"""The thesis's loop shaping (Section 2.2): G_c1 from networks, G_c2 by placing poles and zeros."""
+"""
+The thesis's loop shaping (Section 2.2): sign, integrators, networks and gain.
 
-from dataclasses import dataclass
+G_c1 is made of networks, G_c2 by placing poles and zeros.
+"""
 
+import numpy as np
 import scipy
 
+from ddct_controllers.design.analysis.closed_loop import overshoot, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.analysis.step_response import overshoot, step_response
-from ddct_controllers.design.loop_shaping.networks import (
-    integrators,
-    lag_network,
-    lead_network,
-    with_crossover,
-)
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import clutch_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
@@ -24,6 +22,87 @@ PLACEMENT_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.6, overshoot=0.14)
 """What G_c2 is designed for."""
 PLACEMENT_CROSSOVER_RAD_S = 3.5
 """w_c that the thesis takes for t_r = 0.6 s."""
+_SLOW = 1e-7
+"""A frequency below all others of a plant, relative to its slowest pole or zero."""
+
+
+def integrators(gain: float, count: int) -> FactoredTransferFunction:
+    """Return K_c / s^mu."""
+    return FactoredTransferFunction(gain, (), (0.0,) * count)
+
+
+def poles_at_zero(transfer_function: FactoredTransferFunction) -> int:
+    """Return the number of poles at s = 0, less that of zeros there."""
+    poles = np.count_nonzero(transfer_function.poles == 0.0)
+    return int(poles - np.count_nonzero(transfer_function.zeros == 0.0))
+
+
+def required_integrators(
+    plant: FactoredTransferFunction,
+    disturbance_path: FactoredTransferFunction,
+    disturbance_order: int = 0,
+) -> int:
+    """
+    Return mu, the least number of poles at 0 in G_c for no error from a disturbance at t = inf.
+
+    The disturbance is D_p0 / s^(h + 1), h = `disturbance_order`: 0 a step, 1 a ramp. It reaches
+    the output through `disturbance_path` with q poles at 0 (P_1: q = 1), the loop through `plant`
+    with p. e = s |path / (1 + L)| D_p0 / s^(h + 1) goes as s^(mu + p - q - h), so that
+    mu + p >= q + h + 1; Section 2.2 writes it for P_1, mu + p >= 2.
+    """
+    if disturbance_order < 0:
+        raise ParameterError(
+            f'disturbance order is {disturbance_order}: it must be 0 (a step), 1 (a ramp) or more'
+        )
+    needed = poles_at_zero(disturbance_path) + disturbance_order + 1
+    return max(0, needed - poles_at_zero(plant))
+
+
+def stabilising_sign(plant: FactoredTransferFunction, integrators: int) -> int:
+    """
+    Return the only sign of K_c in K_c/s^mu times networks that can stabilise the loop, +1 or -1.
+
+    On the positive real axis a network is positive, so L(s) = K_c/s^mu R(s) G(s) has one sign
+    from some s down to 0. If it is negative there, 1 + L goes from minus infinity to 1 and has a
+    positive root, and P_cl is odd, whatever the networks: then K_c has the wrong sign.
+    """
+    corners = np.abs(np.concatenate([plant.zeros, plant.poles]))
+    slow = _SLOW * np.min(corners[corners > 0.0], initial=1.0)
+    value = plant * FactoredTransferFunction(1.0, (), (0.0,) * integrators)
+    return 1 if value.at(np.array(slow)).real > 0.0 else -1
+
+
+def lead_network(zero_rad_s: float, ratio: float) -> FactoredTransferFunction:
+    """
+    Return R_d(s) = (1 + s/z_d) / (1 + s/(m_d z_d)): phase lead, and gain from z_d on.
+
+    `ratio` is m_d > 1. Raise ParameterError that names a bad number.
+    """
+    require_number('lead network: z_d', zero_rad_s, unit='rad/s', above=0.0)
+    require_number('lead network: m_d', ratio, above=1.0)
+    return FactoredTransferFunction(ratio, (zero_rad_s,), (ratio * zero_rad_s,))
+
+
+def lag_network(pole_rad_s: float, ratio: float) -> FactoredTransferFunction:
+    """
+    Return R_i(s) = (1 + s/(m_i p_i)) / (1 + s/p_i): attenuation by m_i, and phase lag.
+
+    `ratio` is m_i > 1. Raise ParameterError that names a bad number.
+    """
+    require_number('lag network: p_i', pole_rad_s, unit='rad/s', above=0.0)
+    require_number('lag network: m_i', ratio, above=1.0)
+    return FactoredTransferFunction(1.0 / ratio, (ratio * pole_rad_s,), (pole_rad_s,))
+
+
+def with_crossover(
+    shape: FactoredTransferFunction, plant: FactoredTransferFunction, crossover_rad_s: float
+) -> FactoredTransferFunction:
+    """Return `shape` with the size of its gain changed so that |shape plant| = 1 there."""
+    response = (shape * plant).frequency_response(np.array([crossover_rad_s]))
+    gain = shape.gain / float(np.abs(response)[0])
+    return FactoredTransferFunction(gain, shape.numerator, shape.denominator)
+
+
 _LEAD = lead_network(zero_rad_s=1.0, ratio=16.0)
 """As G_c1 has it: the text says z_d = w_c = 8 rad/s, the printed zeros and poles are 1 and 16."""
 _LAG = lag_network(pole_rad_s=0.6, ratio=16.0)
@@ -31,24 +110,16 @@ _GAIN = 0.3
 """|K_c| of G_c1."""
 
 
-@dataclass(frozen=True)
-class DesignStep:
-    """One stage of a design by hand."""
-
-    name: str
-    controller: FactoredTransferFunction
-
-
-def network_steps() -> tuple[DesignStep, ...]:
-    """Return the stages from K_c/s to G_c1, equation (2.1), which is the last one."""
+def network_steps() -> dict[str, FactoredTransferFunction]:
+    """Return the stages from K_c/s to G_c1, equation (2.1), which is the last one, by name."""
     networks = integrators(1.0, 1) * _LEAD * _LEAD * _LAG
-    return (
-        DesignStep('-1/s', integrators(-1.0, 1)),
-        DesignStep('and one lead', integrators(-1.0, 1) * _LEAD),
-        DesignStep('and two leads', integrators(-1.0, 1) * _LEAD * _LEAD),
-        DesignStep('and the lag', integrators(-1.0, 1) * _LEAD * _LEAD * _LAG),
-        DesignStep('|K_c| = 0.3: G_c1', integrators(-_GAIN, 0) * networks),
-    )
+    return {
+        '-1/s': integrators(-1.0, 1),
+        'and one lead': integrators(-1.0, 1) * _LEAD,
+        'and two leads': integrators(-1.0, 1) * _LEAD * _LEAD,
+        'and the lag': integrators(-1.0, 1) * _LEAD * _LEAD * _LAG,
+        '|K_c| = 0.3: G_c1': integrators(-_GAIN, 0) * networks,
+    }
 
 
 def placement(

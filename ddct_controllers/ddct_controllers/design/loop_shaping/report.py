@@ -3,15 +3,16 @@
 import dataclasses
 from typing import Any
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.closed_loop import step_figures
 from ddct_controllers.design.analysis.loops import (
+    WEAR_RANGE,
     ContinuousLoop,
+    LoopCurve,
     continuous_loop,
     plant_in_rpm,
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
-from ddct_controllers.design.analysis.step_response import step_figures
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
@@ -19,11 +20,10 @@ from ddct_controllers.design.loop_shaping.design import (
     largest_zero_rad_s,
     network_steps,
     placement,
+    with_crossover,
 )
-from ddct_controllers.design.loop_shaping.networks import with_crossover
-from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
-from ddct_controllers.design.verified_design import WEAR_GAINS
+from ddct_controllers.design.loop_shaping.verification import Contour, contours
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
@@ -39,8 +39,8 @@ def thesis_record() -> Record:
     """Return the way to G_c1 and to G_c2, and both loops in three versions."""
     return {
         'network_steps': [
-            {'step': step.name, **_loop_record(continuous_loop(step.controller))}
-            for step in network_steps()
+            {'step': step, **_loop_record(continuous_loop(controller))}
+            for step, controller in network_steps().items()
         ],
         'placement': [
             {'version': version, **_placement_record(controller)}
@@ -86,7 +86,7 @@ def provenance(design: LoopShapingDesign) -> Record:
             **found.margins.plain(),
             'stable_with_wear_gain': {
                 str(gain): stable
-                for gain, stable in zip(WEAR_GAINS, found.stable_when_worn, strict=True)
+                for gain, stable in zip(WEAR_RANGE, found.stable_when_worn, strict=True)
             },
         },
     }

@@ -1,18 +1,20 @@
 """From specifications to a loop-shaping controller that is verified in the sampled loop."""
 
 import math
+from bisect import bisect
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
+from ddct_controllers.design.analysis.closed_loop import step_figures
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
 from ddct_controllers.design.analysis.margins import closed_loop_stable
-from ddct_controllers.design.analysis.step_response import step_figures
-from ddct_controllers.design.loop_shaping.design import placement
-from ddct_controllers.design.loop_shaping.networks import (
+from ddct_controllers.design.loop_shaping.design import (
     integrators,
     lead_network,
+    placement,
     stabilising_sign,
     with_crossover,
 )
@@ -20,12 +22,12 @@ from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     require_reachable,
 )
-from ddct_controllers.design.state_space import frequency_response, series
-from ddct_controllers.design.verified_design import (
+from ddct_controllers.design.loop_shaping.verification import (
     LARGEST_SENSITIVITY_PEAK,
     Verification,
     verify,
 )
+from ddct_controllers.design.state_space import frequency_response, series
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
@@ -139,28 +141,26 @@ class _Search:
 
     def _slower_s(self, structure: str) -> float:
         """Return the rise time with the highest crossover below those that were tried, or inf."""
-        for crossover in _CROSSOVERS_RAD_S[: self._first][::-1]:
-            found = self._quickest(structure, float(crossover), within_contours=False)
-            if found is not None and math.isfinite(found[1]):
-                return found[1]
-        return math.inf
+        slower = _CROSSOVERS_RAD_S[: self._first][::-1]
+        found = (self._quickest(structure, float(each), within_contours=False) for each in slower)
+        return next((each[1] for each in found if each and math.isfinite(each[1])), math.inf)
 
     def _quickest(
         self, structure: str, crossover: float, within_contours: bool
     ) -> tuple[FactoredTransferFunction, float] | None:
         """Return the controller with the largest allowed zeros, and its rise time in s."""
-        best = self._allowed(structure, crossover, _ZERO_RATIOS[0], within_contours)
-        if best is None or not self._count:
-            return best
-        allowed, refused = 0, len(_ZERO_RATIOS)
-        while refused - allowed > 1:
-            middle = (allowed + refused) // 2
-            found = self._allowed(structure, crossover, _ZERO_RATIOS[middle], within_contours)
-            if found is None:
-                refused = middle
-            else:
-                allowed, best = middle, found
-        return best
+
+        @cache
+        def found(index: int) -> tuple[FactoredTransferFunction, float] | None:
+            return self._allowed(structure, crossover, _ZERO_RATIOS[index], within_contours)
+
+        def refused(index: int) -> bool:
+            return found(index) is None
+
+        if refused(0) or not self._count:
+            return found(0)
+        first_refused = bisect(range(len(_ZERO_RATIOS)), False, lo=1, key=refused)
+        return found(first_refused - 1)
 
     def _allowed(
         self, structure: str, crossover: float, ratio: float, within_contours: bool
@@ -169,9 +169,7 @@ class _Search:
         controller = self._controller(structure, crossover, float(ratio))
         sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
         loop = series(sampled, self._sampled_plant)
-        if not closed_loop_stable(loop):
-            return None
-        if not self._within_bounds(sampled, within_contours):
+        if not closed_loop_stable(loop) or not self._within_bounds(sampled, within_contours):
             return None
         rise_time_s, highest = step_figures(loop, _SEARCH_TIME / crossover)
         if highest > self._specifications.overshoot:
@@ -186,8 +184,8 @@ class _Search:
             return bool(np.max(sensitivity) <= LARGEST_SENSITIVITY_PEAK)
         s_p = min(self._specifications.sensitivity_peak, LARGEST_SENSITIVITY_PEAK)
         t_p = self._specifications.complementary_peak
-        below = np.max(sensitivity) <= s_p and np.max(sensitivity * np.abs(values)) <= t_p
-        return bool(below)
+        complementary = sensitivity * np.abs(values)
+        return bool(np.max(sensitivity) <= s_p and np.max(complementary) <= t_p)
 
     def _controller(
         self, structure: str, crossover: float, ratio: float

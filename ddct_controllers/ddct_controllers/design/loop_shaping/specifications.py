@@ -47,13 +47,27 @@ class TimeSpecifications:
 
     @property
     def sensitivity_peak(self) -> float:
-        """S_p, the bound on max |S|."""
-        return prototype_sensitivity_peak(self.damping)
+        """
+        S_p = 2 zeta sqrt(2 + 4 zeta^2 + 2 r) / (r + 4 zeta^2 - 1), r = sqrt(1 + 8 zeta^2).
+
+        It is max |S| of the prototype, and the bound on that of the loop.
+        """
+        damping = self.damping
+        root = math.sqrt(1.0 + 8.0 * damping**2)
+        above = 2.0 * damping * math.sqrt(2.0 + 4.0 * damping**2 + 2.0 * root)
+        return above / (root + 4.0 * damping**2 - 1.0)
 
     @property
     def complementary_peak(self) -> float:
-        """T_p, the bound on max |T|."""
-        return prototype_complementary_peak(self.damping)
+        """
+        T_p = 1 / (2 zeta sqrt(1 - zeta^2)), and 1 from zeta = 1/sqrt(2) on.
+
+        It is max |T| of the prototype, and the bound on that of the loop.
+        """
+        damping = self.damping
+        if damping >= math.sqrt(0.5):
+            return 1.0
+        return 1.0 / (2.0 * damping * math.sqrt(1.0 - damping**2))
 
     @property
     def natural_frequency_rad_s(self) -> float:
@@ -64,24 +78,6 @@ class TimeSpecifications:
     def crossover_rad_s(self) -> float:
         """Least w_c, from t_r w_c at this zeta."""
         return rise_time_crossover_product(self.damping) / self.rise_time_s
-
-
-def prototype_sensitivity_peak(damping: float) -> float:
-    """
-    Return S_p = max |S| of the prototype.
-
-    S_p = 2 zeta sqrt(2 + 4 zeta^2 + 2 r) / (r + 4 zeta^2 - 1) with r = sqrt(1 + 8 zeta^2).
-    """
-    root = math.sqrt(1.0 + 8.0 * damping**2)
-    above = 2.0 * damping * math.sqrt(2.0 + 4.0 * damping**2 + 2.0 * root)
-    return above / (root + 4.0 * damping**2 - 1.0)
-
-
-def prototype_complementary_peak(damping: float) -> float:
-    """Return T_p = max |T| = 1 / (2 zeta sqrt(1 - zeta^2)), and 1 from zeta = 1/sqrt(2) on."""
-    if damping >= math.sqrt(0.5):
-        return 1.0
-    return 1.0 / (2.0 * damping * math.sqrt(1.0 - damping**2))
 
 
 def rise_angle(damping: float) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ddct_controllers.design.analysis.loop_figures import DESIGN_FIGURE_OF
+from ddct_controllers.design.analysis.margins import DESIGN_FIGURE_OF
 from ddct_controllers.design.loop_shaping.report import Record
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,

@@ -7,10 +7,15 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from ddct_controllers.design.drawing.chart_files import figure_data, figure_files, save_figure
-from ddct_controllers.design.drawing.chart_style import chart_style, new_chart
+from ddct_controllers.design.drawing.chart_style import (
+    chart_style,
+    figure_data,
+    figure_files,
+    new_chart,
+    save_figure,
+)
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
-from ddct_controllers.design.loop_shaping.nichols import nichols_curve
+from ddct_controllers.design.drawing.nichols import nichols_curve
 
 TIME = np.linspace(0.0, 1.0, 5)
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.design.h_infinity.cleaning import FAST_RAD_S, clean, factor_text
+from ddct_controllers.design.h_infinity.cleaning import FAST_RAD_S, clean
+from ddct_controllers.design.state_space import factors_text
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -76,7 +77,7 @@ def test_what_no_rule_fits_is_said(raw, complaint):
 
 
 def test_factors_read_as_the_thesis_prints_them():
-    assert factor_text(0.0) == 's'
-    assert factor_text(89.52) == '(s + 89.52)'
-    assert factor_text((-1.915, 0.948), 'z') == '(z^2 - 1.915 z + 0.948)'
-    assert factor_text(-0.99993, 'z', 5) == '(z - 0.99993)'
+    assert factors_text([0.0]) == 's'
+    assert factors_text([89.52]) == '(s + 89.52)'
+    assert factors_text([(-1.915, 0.948)], 'z') == '(z^2 - 1.915 z + 0.948)'
+    assert factors_text([-0.99993], 'z', 5) == '(z - 0.99993)'

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, make_weights
 from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
 from ddct_controllers.design.state_space import factored_form

@@ -5,16 +5,17 @@ import math
 import numpy as np
 import pytest
 
+from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins, unstable_poles
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
+    lag_network,
     largest_zero_rad_s,
+    lead_network,
     network_steps,
     placement,
 )
-from ddct_controllers.design.loop_shaping.networks import lag_network, lead_network
 from ddct_controllers.design.loop_shaping.specifications import prototype_phase_margin
 from ddct_controllers.design.state_space import factored_form, pulse_transfer_function
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
@@ -70,14 +71,14 @@ def test_ls3_overshoots_by_28_8_percent_and_not_by_21():
 
 def test_the_networks_make_g_c1_exactly():
     """K_c/s, two leads from 1 rad/s and a lag from 0.6 rad/s, m = 16, and |K_c| = 0.3."""
-    g_c1, printed = network_steps()[-1].controller, PRINTED_CONTROLLERS['ls2']
+    g_c1, printed = list(network_steps().values())[-1], PRINTED_CONTROLLERS['ls2']
     assert g_c1.gain == printed.gain == -4.8
     assert sorted(g_c1.numerator) == sorted(printed.numerator)
     assert sorted(g_c1.denominator) == sorted(printed.denominator)
 
 
 def test_the_steps_to_g_c1_end_with_a_stable_loop_and_the_crossover():
-    unstable = [unstable_poles(continuous_loop(step.controller)) for step in network_steps()]
+    unstable = [unstable_poles(continuous_loop(step)) for step in network_steps().values()]
     assert unstable == [2, 0, 2, 0, 0]
 
 
@@ -90,7 +91,7 @@ def test_leads_from_w_c_on_as_the_text_has_them_are_unstable():
 
 
 def test_the_loop_of_minus_1_over_s_lacks_about_70_degrees_at_8_rad_s():
-    loop = continuous_loop(network_steps()[0].controller)
+    loop = continuous_loop(network_steps()['-1/s'])
     phase = float(np.angle(-loop.response(np.array([8.0]))[0]))
     missing = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping) - phase
     assert math.degrees(missing) == pytest.approx(67.9, abs=0.05)

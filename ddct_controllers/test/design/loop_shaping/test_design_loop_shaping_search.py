@@ -8,8 +8,8 @@ from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
 )
+from ddct_controllers.design.loop_shaping.verification import verify
 from ddct_controllers.design.state_space import close_loop
-from ddct_controllers.design.verified_design import verify
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S

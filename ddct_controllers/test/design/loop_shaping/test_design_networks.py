@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
-from ddct_controllers.design.loop_shaping.networks import (
+from ddct_controllers.design.loop_shaping.design import (
     lag_network,
     lead_network,
     with_crossover,

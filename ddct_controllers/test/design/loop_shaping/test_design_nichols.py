@@ -5,17 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import continuous_loop
-from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS
-from ddct_controllers.design.loop_shaping.nichols import (
+from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
+from ddct_controllers.design.drawing.nichols import (
     NicholsCurve,
     constant_m_curve,
     constant_n_curve,
     constant_s_curve,
-    contours,
     nichols_curve,
 )
+from ddct_controllers.design.loop_shaping.design import NETWORK_SPECIFICATIONS
+from ddct_controllers.design.loop_shaping.verification import contours
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 

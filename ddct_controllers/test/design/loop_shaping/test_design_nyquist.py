@@ -3,11 +3,14 @@
 import pytest
 from nyquist_contour import unstable_by_contour
 
+from ddct_controllers.design.analysis.closed_loop import NyquistCount, nyquist_count
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.margins import unstable_poles
-from ddct_controllers.design.loop_shaping.design import network_steps
-from ddct_controllers.design.loop_shaping.networks import integrators, stabilising_sign
-from ddct_controllers.design.loop_shaping.nyquist import NyquistCount, nyquist_count
+from ddct_controllers.design.loop_shaping.design import (
+    integrators,
+    network_steps,
+    stabilising_sign,
+)
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -59,10 +62,8 @@ def test_the_sign_of_k_c_must_be_negative():
     """With the other sign P_cl is odd whatever the networks, so no network can mend it."""
     assert stabilising_sign(plant_in_rpm(), 1) == -1
     assert stabilising_sign(plant_in_rpm(), 0) == -1
-    for step in network_steps():
-        flipped = FactoredTransferFunction(
-            -step.controller.gain, step.controller.numerator, step.controller.denominator
-        )
+    for step in network_steps().values():
+        flipped = FactoredTransferFunction(-1.0) * step
         assert nyquist_count(continuous_loop(flipped)).closed_loop_unstable % 2 == 1
 
 

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     highest_crossover_rad_s,
-    prototype_complementary_peak,
     prototype_phase_margin,
-    prototype_sensitivity_peak,
     require_reachable,
     rise_time_crossover_product,
     unavoidable_lag,
@@ -56,11 +54,10 @@ def test_the_formulas_are_those_of_the_prototype(damping):
     time, output = step_response(loop, 40.0)
     expected = math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
     assert overshoot(time, output) == pytest.approx(expected, rel=1e-5)
-    assert TimeSpecifications(1.0, expected).damping == pytest.approx(damping, rel=1e-12)
-    assert prototype_sensitivity_peak(damping) == pytest.approx(margins.sensitivity_peak, rel=1e-8)
-    assert prototype_complementary_peak(damping) == pytest.approx(
-        margins.complementary_peak, rel=1e-8
-    )
+    asked = TimeSpecifications(1.0, expected)
+    assert asked.damping == pytest.approx(damping, rel=1e-12)
+    assert asked.sensitivity_peak == pytest.approx(margins.sensitivity_peak, rel=1e-8)
+    assert asked.complementary_peak == pytest.approx(margins.complementary_peak, rel=1e-8)
     assert math.degrees(prototype_phase_margin(damping)) == pytest.approx(
         margins.phase_margin_deg, abs=1e-6
     )
@@ -77,7 +74,9 @@ def test_t_r_w_c_of_2_02_belongs_to_a_damping_of_0_63_and_not_to_14_percent():
 
 
 def test_a_well_damped_prototype_has_no_peak_of_t():
-    assert prototype_complementary_peak(0.8) == 1.0
+    asked = TimeSpecifications(1.0, overshoot=0.015)
+    assert asked.damping == pytest.approx(0.8, abs=0.001)
+    assert asked.complementary_peak == 1.0
 
 
 @pytest.mark.parametrize(

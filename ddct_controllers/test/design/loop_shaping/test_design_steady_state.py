@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
-from ddct_controllers.design.loop_shaping.networks import (
+from ddct_controllers.design.loop_shaping.design import (
     integrators,
     poles_at_zero,
     required_integrators,

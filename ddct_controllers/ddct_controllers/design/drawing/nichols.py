@@ -1,17 +1,17 @@
-"""The grid of a Nichols chart: the closed loop's magnitude and phase on its contours."""
+"""The Nichols chart: its coordinates, curves of constant |T|, |S| and arg T, and its grid."""
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from ddct_controllers.design.loop_shaping.nichols import (
-    NicholsCurve,
-    constant_m_curve,
-    constant_n_curve,
-)
+from ddct_plant.base.errors import require_number
 
+_CURVE_POINTS = 720
+_SMALLEST_SIZE = 1e-4
+"""Of |T| on a curve of constant phase."""
 TURN_DEG = 360.0
 _MAGNITUDES_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
 """Levels of |T|."""
@@ -31,6 +31,56 @@ _TEXT: dict[str, Any] = {
 _LABEL = 'closed loop: |T| in dB, arg T in °'
 _INSET = 0.045
 """Of a label from the edge of the chart, as a share of its height or width."""
+
+
+@dataclass(frozen=True, eq=False)
+class NicholsCurve:
+    """A curve of L in the chart's coordinates."""
+
+    phase_deg: np.ndarray
+    """arg L, (n,)."""
+    magnitude_db: np.ndarray
+    """20 log10 |L|, (n,)."""
+
+
+def constant_m_curve(level: float) -> NicholsCurve:
+    """Return where |T| = |L/(1 + L)| is `level` (an M-circle), from L = T/(1 - T)."""
+    closed = require_number('level of |T|', level, above=0.0) * _unit_circle()
+    return nichols_curve(closed / (1.0 - closed), unwrap=False)
+
+
+def constant_n_curve(phase_deg: float) -> NicholsCurve:
+    """Return where arg T = arg(L/(1 + L)) is `phase_deg`, from L = T/(1 - T); it is not closed."""
+    sizes = np.geomspace(_SMALLEST_SIZE, 1.0 / _SMALLEST_SIZE, _CURVE_POINTS)
+    closed = sizes * np.exp(1j * math.radians(phase_deg))
+    return nichols_curve(closed / (1.0 - closed), unwrap=False)
+
+
+def constant_s_curve(level: float) -> NicholsCurve:
+    """Return where |S| = 1/|1 + L| is `level`, from L = 1/S - 1."""
+    closed = require_number('level of |S|', level, above=0.0) * _unit_circle()
+    return nichols_curve(1.0 / closed - 1.0, unwrap=False)
+
+
+def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
+    """
+    Return L's values in the coordinates of the chart.
+
+    The phase starts in (-360, 0] degrees and is continuous from there, or stays there with
+    `unwrap=False`.
+    """
+    phase = np.angle(values)
+    if unwrap:
+        phase = np.unwrap(phase)
+        phase = phase - math.tau * np.ceil(phase[:1] / math.tau)
+    else:
+        phase = np.where(phase > 0.0, phase - math.tau, phase)
+    return NicholsCurve(np.degrees(phase), 20.0 * np.log10(np.abs(values)))
+
+
+def _unit_circle() -> np.ndarray:
+    """Return points of it, symmetric, none of them at 1, where L is infinite or 0."""
+    return np.exp(2j * math.pi * (np.arange(_CURVE_POINTS) + 0.5) / _CURVE_POINTS)
 
 
 def draw_nichols_grid(

@@ -2,22 +2,48 @@
 
 from dataclasses import dataclass
 
-from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import sampled_loop
+import numpy as np
+
+from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.loops import (
+    WEAR_RANGE,
+    LoopCurve,
+    Measure,
+    complementary,
+    sampled_loop,
+    sensitivity,
+)
 from ddct_controllers.design.analysis.margins import LoopMargins, closed_loop_stable, loop_margins
-from ddct_controllers.design.analysis.step_response import step_figures
-from ddct_controllers.design.loop_shaping.nichols import Contour, contours
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
-WEAR_GAINS = (0.7, 1.3)
-"""Ends of the range of K_usura, inequality (3.2)."""
 LARGEST_SENSITIVITY_PEAK = 2.0
 """Bound on M_s, whatever the overshoot: at least 30 degrees and 6 dB of margin."""
 _LOOK_AHEAD = 40.0
 """Length of the step response in rise times asked for."""
+
+
+@dataclass(frozen=True)
+class Contour:
+    """A closed curve that L has to stay out of, and what L does there."""
+
+    name: str
+    """S or T."""
+    level: float
+    """S_p or T_p."""
+    peak: float
+    """M_s or M_t of the loop."""
+    peak_rad_s: float
+    """Frequency of the peak."""
+    inside_rad_s: tuple[tuple[float, float], ...]
+    """First and last frequency of every stretch of L inside the curve, as far as L is known."""
+
+    @property
+    def respected(self) -> bool:
+        """Whether L stays out."""
+        return not self.inside_rad_s
 
 
 @dataclass(frozen=True)
@@ -33,7 +59,7 @@ class Verification:
     contours: tuple[Contour, ...]
     """At the curves of S_p and T_p."""
     stable_when_worn: tuple[bool, ...]
-    """Whether the loop is stable, for each of WEAR_GAINS."""
+    """Whether the loop is stable, at each end of WEAR_RANGE."""
 
     @property
     def complaints(self) -> tuple[str, ...]:
@@ -50,7 +76,7 @@ class Verification:
         peak = self.margins.sensitivity_peak
         if peak is None or peak > LARGEST_SENSITIVITY_PEAK:
             found.append(f'sensitivity peak M_s above {LARGEST_SENSITIVITY_PEAK:g}')
-        for wear_gain, stable in zip(WEAR_GAINS, self.stable_when_worn, strict=True):
+        for wear_gain, stable in zip(WEAR_RANGE, self.stable_when_worn, strict=True):
             if not stable:
                 found.append(f'unstable with wear gain {wear_gain:g}')
         return tuple(found)
@@ -72,10 +98,31 @@ def verify(
     margins = loop_margins(loop)
     worn = tuple(
         closed_loop_stable(sampled_loop(sampled, parameters, wear_gain))
-        for wear_gain in WEAR_GAINS
+        for wear_gain in WEAR_RANGE
     )
     if not margins.stable:
         return Verification(specifications, margins, None, None, (), worn)
     reached_s, highest = step_figures(loop, _LOOK_AHEAD * specifications.rise_time_s)
     at_contours = contours(LoopCurve(loop), specifications)
     return Verification(specifications, margins, reached_s, highest, at_contours, worn)
+
+
+def contours(curve: LoopCurve, specifications: TimeSpecifications) -> tuple[Contour, Contour]:
+    """Return what L does at the S_p and the T_p curve of the specifications."""
+    return (
+        _contour(curve, 'S', specifications.sensitivity_peak, sensitivity),
+        _contour(curve, 'T', specifications.complementary_peak, complementary),
+    )
+
+
+def _contour(curve: LoopCurve, name: str, level: float, measure: Measure) -> Contour:
+    def excess(values: np.ndarray) -> np.ndarray:
+        return measure(values) - level
+
+    bounds = list(curve.crossings(excess))
+    if excess(curve.values[:1])[0] > 0.0:
+        bounds.insert(0, float(curve.omega[0]))
+    if len(bounds) % 2:
+        bounds.append(float(curve.omega[-1]))
+    stretches = tuple(zip(bounds[0::2], bounds[1::2], strict=True))
+    return Contour(name, level, *curve.peak(measure), stretches)
