@@ -15,16 +15,26 @@ from ddct_plant.files.output_file import STDOUT, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.table import Table, print_tables
 
+OptionTable = Mapping[str, Mapping[str, Any]]
+"""What `add_argument` takes, by the option's name."""
+_OPTIONS: OptionTable = {
+    '--rise-time': {'type': float, 'metavar': 'S', 'help': 'longest rise time'},
+    '--overshoot': {'type': float, 'metavar': 'PERCENT', 'help': 'largest overshoot'},
+    '--name': {'metavar': 'NAME', 'help': 'name of the controller (default: mine)'},
+    '--out': {'type': Path, 'metavar': 'DIR', 'help': 'write the controller and its charts'},
+    '--overwrite': {
+        'action': 'store_true',
+        'default': None,
+        'help': 'replace an earlier design',
+    },
+    '--json': {'metavar': 'FILE', 'help': 'write all figures; - is standard output'},
+}
 
-def add_design_options(parser: argparse.ArgumentParser) -> None:
-    """Add the specifications, and what is to be written; None is what was not given."""
-    add = parser.add_argument
-    add('--rise-time', type=float, metavar='S', help='longest rise time')
-    add('--overshoot', type=float, metavar='PERCENT', help='largest overshoot')
-    add('--name', metavar='NAME', help='name of the controller (default: mine)')
-    add('--out', type=Path, metavar='DIR', help='write the controller and its charts')
-    add('--overwrite', action='store_true', default=None, help='replace an earlier design')
-    add('--json', metavar='FILE', help='write all figures; - is standard output')
+
+def add_design_options(parser: argparse.ArgumentParser, own: OptionTable) -> None:
+    """Add a method's own options, specifications, and what to write; None is what is not given."""
+    for name, settings in {**own, **_OPTIONS}.items():
+        parser.add_argument(name, **settings)
 
 
 def free_name(options: argparse.Namespace) -> str:

@@ -21,6 +21,7 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.linear import BILINEAR, HOLD
 from ddct_controllers.workflows.design_output import (
+    OptionTable,
     add_design_options,
     free_name,
     show,
@@ -45,6 +46,24 @@ examples:
   ddct design h-infinity --weights fitted --rise-time 0.5 --overshoot 15 --name mine --out designs
   ddct compare --controllers hinf1,hinf_sampled,designs/mine.yaml --headless --out runs/mine"""
 
+_OPTIONS: OptionTable = {
+    '--weights': {'choices': tuple(RECIPES), 'default': 'thesis', 'help': '(default: thesis)'},
+    '--low-frequency-gain': {'type': float, 'metavar': 'K', 'help': '|S| near 0 over w^2'},
+    '--bandwidth': {'type': float, 'metavar': 'W_2', 'help': 'corner of W_t in rad/s'},
+    '--effort': {
+        'type': float,
+        'metavar': 'TORQUE',
+        'help': 'N m per rpm of torque that costs 1 (sampled)',
+    },
+    '--back-off': {
+        'type': float,
+        'metavar': 'FACTOR',
+        'help': 'level over the optimum, a factor (riccati)',
+    },
+    '--method': {'choices': METHODS, 'default': METHODS[0], 'help': '(default: riccati)'},
+    '--write-anyway': {'action': 'store_true', 'help': 'write a design that falls short too'},
+}
+
 
 def add_parser(subparsers: Any) -> None:
     """Add `h-infinity` to the subcommands of `design`."""
@@ -54,25 +73,7 @@ def add_parser(subparsers: Any) -> None:
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )
-    add = parser.add_argument
-    add('--weights', choices=tuple(RECIPES), default='thesis', help='(default: thesis)')
-    add('--low-frequency-gain', type=float, metavar='K', help='|S| near 0 over w^2')
-    add('--bandwidth', type=float, metavar='W_2', help='corner of W_t in rad/s')
-    add(
-        '--effort',
-        type=float,
-        metavar='TORQUE',
-        help='N m per rpm of torque that costs 1 (sampled)',
-    )
-    add(
-        '--back-off',
-        type=float,
-        metavar='FACTOR',
-        help='level over the optimum, a factor (riccati)',
-    )
-    add('--method', choices=METHODS, default=METHODS[0], help='(default: riccati)')
-    add('--write-anyway', action='store_true', help='write a design that falls short too')
-    add_design_options(parser)
+    add_design_options(parser, _OPTIONS)
     parser.set_defaults(run=run)
 
 

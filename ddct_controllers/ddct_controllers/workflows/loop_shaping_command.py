@@ -16,6 +16,7 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.design.loop_shaping.tables import design_tables, thesis_tables
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.workflows.design_output import (
+    OptionTable,
     add_design_options,
     free_name,
     show,
@@ -39,6 +40,13 @@ examples:
   ddct compare --controllers ls8,designs/quick.yaml --headless --out runs/quick"""
 _DISTURBANCES = {'none': None, 'step': 0, 'ramp': 1}
 """h_p of the engine torque that must leave no error; without one G_c gets no integrator."""
+_OPTIONS: OptionTable = {
+    '--disturbance': {
+        'choices': _DISTURBANCES,
+        'help': 'engine torque after which no error is left (default: step)',
+    },
+    '--structure': {'choices': STRUCTURES, 'help': 'as G_c1 or as G_c2 (default: either)'},
+}
 _NEEDS_SPECIFICATIONS = ('disturbance', 'structure', 'name', 'out', 'overwrite')
 
 
@@ -50,15 +58,7 @@ def add_parser(subparsers: Any) -> None:
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )
-    parser.add_argument(
-        '--disturbance',
-        choices=_DISTURBANCES,
-        help='engine torque after which no error is left (default: step)',
-    )
-    parser.add_argument(
-        '--structure', choices=STRUCTURES, help='as G_c1 or as G_c2 (default: either)'
-    )
-    add_design_options(parser)
+    add_design_options(parser, _OPTIONS)
     parser.set_defaults(run=run)
 
 
