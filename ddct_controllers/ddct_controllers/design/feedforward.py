@@ -114,8 +114,7 @@ def _relative_driveline(driveline: DrivelineParameters) -> StateSpace:
     """
     free = driveline_matrices(replace(driveline, engine_damping=0.0, shaft_damping=0.0))
     relative = np.vstack([free.c, [0.0, 0.0, 0.0, 1.0]])
-    with_shaft_at_rest = np.zeros((4, 3))
-    with_shaft_at_rest[0, 0], with_shaft_at_rest[2, 1], with_shaft_at_rest[3, 2] = 1.0, -1.0, 1.0
+    with_shaft_at_rest = np.array([[1.0, 0, 0], [0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]])
     a, b = relative @ free.a @ with_shaft_at_rest, relative @ free.b
     return StateSpace(a, b, np.eye(3), np.zeros((3, 3)))
 

@@ -6,7 +6,6 @@ takes a second to load, and its realisation of factors through polynomials is of
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import scipy
@@ -76,14 +75,6 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
     resolvent = variable.reshape(-1, 1, 1) * np.eye(len(system.a)) - system.a
     states = np.linalg.solve(resolvent, np.broadcast_to(system.b, (omega.size, *system.b.shape)))
     return ((system.c @ states)[:, 0, 0] + system.d[0, 0]).reshape(omega.shape)
-
-
-def to_control(system: StateSpace) -> Any:
-    """Return the system as python-control's StateSpace."""
-    # Only here: see above.
-    import control
-
-    return control.ss(system.a, system.b, system.c, system.d, dt=system.period_s or 0)
 
 
 def poles_rad_s(system: StateSpace) -> np.ndarray:

@@ -94,23 +94,25 @@ def factored_text(entry: Mapping[str, Any]) -> str:
 
 def as_matlab(paper: Mapping[str, Any]) -> str:
     """Return a script for MATLAB or Octave that builds the systems under their names."""
-    lines = [f'% The linear plant of scenario {paper["scenario"]}: SI units, torques in N m.']
-    lines += [
-        f'{symbol} = {each["value"]!r};  % {each["unit"]}, {each["name"]}'
-        for symbol, each in paper['parameters'].items()
-    ]
     space = paper['state_space']
-    lines += [f'{name} = [{"; ".join(map(_row, space[name]))}];' for name in MATRICES]
     names = (f"'{key}', {_cell(space[group])}" for key, group in _MATLAB_NAMES.items())
-    lines.append(f'driveline = ss(A, B, C, D, {", ".join(names)});')
-    lines += [
-        f'{name} = tf([{_row(each["num"])}], [{_row(each["den"])}]);  '
-        f'% {each["output"]} / {each["input"]}'
-        for name, each in paper['transfer_functions'].items()
-    ]
-    lines.append(f'actuator_delay_s = {paper["actuator_delay_s"]!r};')
     factors = [each['factor'] for each in paper['c_fol'].values()]
-    lines.append(f'c_fol = [{_row(factors)}];  % times [{"; ".join(paper["c_fol"])}]')
+    lines = [
+        f'% The linear plant of scenario {paper["scenario"]}: SI units, torques in N m.',
+        *(
+            f'{symbol} = {each["value"]!r};  % {each["unit"]}, {each["name"]}'
+            for symbol, each in paper['parameters'].items()
+        ),
+        *(f'{name} = [{"; ".join(map(_row, space[name]))}];' for name in MATRICES),
+        f'driveline = ss(A, B, C, D, {", ".join(names)});',
+        *(
+            f'{name} = tf([{_row(each["num"])}], [{_row(each["den"])}]);  '
+            f'% {each["output"]} / {each["input"]}'
+            for name, each in paper['transfer_functions'].items()
+        ),
+        f'actuator_delay_s = {paper["actuator_delay_s"]!r};',
+        f'c_fol = [{_row(factors)}];  % times [{"; ".join(paper["c_fol"])}]',
+    ]
     return '\n'.join(lines) + '\n'
 
 

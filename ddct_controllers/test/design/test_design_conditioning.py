@@ -6,7 +6,7 @@ import pytest
 
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.state_space import frequency_response, to_control
+from ddct_controllers.design.state_space import frequency_response
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
@@ -42,7 +42,7 @@ def test_the_crossover_by_python_control_of_a_sampled_loop_is_none(name, wrong_b
     """It is where |L| = 1; python-control's own |L| is 0.26, 0.67 and 7.9 at the one it gives."""
     controller = discretise_zoh(PRINTED_CONTROLLERS[name].to_state_space(), PERIOD_S)
     loop = sampled_loop(controller)
-    system = to_control(loop)
+    system = control.ss(loop.a, loop.b, loop.c, loop.d, dt=loop.period_s)
     theirs = control.stability_margins(system)[4]
     ours = loop_margins(loop).crossover_rad_s
     assert abs(system(np.exp(1j * ours * PERIOD_S))) == pytest.approx(1.0, abs=1e-9)

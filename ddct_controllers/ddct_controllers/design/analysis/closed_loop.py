@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, ContinuousLoop
-from ddct_controllers.design.state_space import close_loop, to_control, to_s_plane
+from ddct_controllers.design.state_space import close_loop, to_s_plane
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
@@ -128,7 +128,8 @@ def nyquist_count(loop: ContinuousLoop) -> NyquistCount:
         raise DdctError('Nyquist count: L(jw) passes through -1: change the gain a little')
     import control  # takes a second
 
-    curve = control.nyquist_response(to_control(system), indent_radius=_INDENTATION_RAD_S)
+    theirs = control.ss(system.a, system.b, system.c, system.d)
+    curve = control.nyquist_response(theirs, indent_radius=_INDENTATION_RAD_S)
     return NyquistCount(int(np.count_nonzero(factored.poles.real > 0.0)), int(curve.count))
 
 

@@ -69,15 +69,14 @@ def plant_in_rpm(
 def continuous_loop(
     controller: FactoredTransferFunction,
     parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
-    wear_gain: float = 1.0,
     delay_s: float = 0.0,
 ) -> ContinuousLoop:
     """
-    Return L(s) = G_c G_a P_2 30/pi K_usura for a controller in N m per rpm of error.
+    Return L(s) = G_c G_a P_2 30/pi, with a new clutch, for a controller in N m per rpm of error.
 
     The thesis designs and judges its loops without hold and delay (Sections 2.2 and 3.2).
     """
-    return ContinuousLoop(controller * plant_in_rpm(parameters, wear_gain), delay_s)
+    return ContinuousLoop(controller * plant_in_rpm(parameters), delay_s)
 
 
 def sampled_plant(

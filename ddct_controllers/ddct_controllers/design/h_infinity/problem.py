@@ -58,10 +58,9 @@ def sampled_sensitivity(
     """
     shifted = plant.a - AXIS_SHIFT_RAD_S * np.eye(len(plant.a))
     moved = StateSpace(shifted, plant.b, plant.c, plant.d)
-    weights = [stable_weight('W_1', w_1), stable_weight('W_2', w_2)]
-    if effort:
-        weights.append(stable_weight('W_c', effort))
-    return _stack(moved, (plant.c, plant.d), tuple(weights), disturbance_n_m)
+    named = {'W_1': w_1, 'W_2': w_2, 'W_c': effort}
+    weights = tuple(stable_weight(name, weight) for name, weight in named.items() if weight)
+    return _stack(moved, (plant.c, plant.d), weights, disturbance_n_m)
 
 
 def off_axis(plant: FactoredTransferFunction) -> FactoredTransferFunction:

@@ -81,10 +81,12 @@ def test_the_request_of_a_step_moves_nothing_for_a_whole_period():
 
 
 def test_the_continuous_loop_is_the_product_of_its_parts():
-    expected = 1.3 * LS2.frequency_response(OMEGA) * plant_in_rpm().frequency_response(OMEGA)
+    expected = LS2.frequency_response(OMEGA) * plant_in_rpm().frequency_response(OMEGA)
     expected *= np.exp(-0.01j * OMEGA)
-    loop = continuous_loop(LS2, wear_gain=1.3, delay_s=0.01)
+    loop = continuous_loop(LS2, delay_s=0.01)
     np.testing.assert_allclose(loop.response(OMEGA), expected, rtol=1e-12)
+    worn = plant_in_rpm(wear_gain=1.3).frequency_response(OMEGA)
+    np.testing.assert_allclose(worn, 1.3 * plant_in_rpm().frequency_response(OMEGA), rtol=1e-12)
 
 
 def test_the_rpm_factor_puts_the_crossover_of_g_c1_at_7_08_rad_s():

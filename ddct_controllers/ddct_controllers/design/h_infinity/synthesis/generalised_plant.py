@@ -92,11 +92,8 @@ class GeneralisedPlant:
         u_of_w = through @ k.d @ self.d21
         v_of_x = np.hstack([self.c2, np.zeros((1, len(k.a)))]) + self.d22 @ u_of_x
         v_of_w = self.d21 + self.d22 @ u_of_w
-        states = len(self.system.a)
-        a = np.zeros((states + len(k.a), states + len(k.a)))
-        a[:states, :states], a[states:, states:] = self.system.a, k.a
-        a[:states] += self.b2 @ u_of_x
-        a[states:] += k.b @ v_of_x
+        a = scipy.linalg.block_diag(self.system.a, k.a)
+        a += np.vstack([self.b2 @ u_of_x, k.b @ v_of_x])
         c = np.hstack([self.c1, np.zeros((len(self.c1), len(k.a)))]) + self.d12 @ u_of_x
         b = np.vstack([self.b1 + self.b2 @ u_of_w, k.b @ v_of_w])
         return StateSpace(a, b, c, self.d11 + self.d12 @ u_of_w)
