@@ -39,11 +39,9 @@ def design_feedforward(
     c = -np.append(state_gain, -engine_step)[np.newaxis]
     d = -np.array([[engine + engine_step, load]])
     states = len(problem.a)
-    a, b = np.zeros((states + 1, states + 1)), np.zeros((states + 1, 2))
-    a[:states, :states] = problem.a
+    a = np.pad(problem.a, (0, 1))
     a[:states] += problem.b @ c
-    b[:states] = problem.g[:, [0, 2]] + problem.b @ d
-    b[states, 0] = 1.0
+    b = np.vstack([problem.g[:, [0, 2]] + problem.b @ d, [1.0, 0.0]])
     model = StateSpace(a, b, c, d, PERIOD_S)
     largest = float(np.max(np.abs(np.linalg.eigvals(model.a))))
     if not largest < 1.0:
@@ -83,8 +81,9 @@ class _Problem:
 def _problem(driveline: DrivelineParameters, torque_rate_weight: float) -> _Problem:
     plant = discretise_zoh(series(_actuator_stage(), _relative_driveline(driveline)), PERIOD_S)
     states = len(plant.a)
-    a, b = np.zeros((states + 1, states + 1)), np.eye(states + 1)[:, [states]]
-    a[:states] = np.hstack([plant.a, plant.b[:, [_CLUTCH]]])  # the last state is u of k - 1
+    # The last state is u of k - 1.
+    a = np.vstack([np.hstack([plant.a, plant.b[:, [_CLUTCH]]]), np.zeros(states + 1)])
+    b = np.eye(states + 1)[:, [states]]
     g = np.zeros((states + 1, 3))
     g[:states, [0, 2]] = plant.b[:, [_ENGINE, _LOAD]]
     c, d, f = np.zeros((2, states + 1)), np.zeros((2, 1)), np.zeros((2, 3))

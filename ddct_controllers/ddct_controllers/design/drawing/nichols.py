@@ -10,6 +10,8 @@ from matplotlib.axes import Axes
 from ddct_plant.base.errors import require_number
 
 _CURVE_POINTS = 720
+_UNIT_CIRCLE = np.exp(2j * math.pi * (np.arange(_CURVE_POINTS) + 0.5) / _CURVE_POINTS)
+"""Points of it, symmetric, none of them at 1, where L is infinite or 0."""
 _SMALLEST_SIZE = 1e-4
 """Of |T| on a curve of constant phase."""
 TURN_DEG = 360.0
@@ -45,7 +47,7 @@ class NicholsCurve:
 
 def constant_m_curve(level: float) -> NicholsCurve:
     """Return where |T| = |L/(1 + L)| is `level` (an M-circle), from L = T/(1 - T)."""
-    closed = require_number('level of |T|', level, above=0.0) * _unit_circle()
+    closed = require_number('level of |T|', level, above=0.0) * _UNIT_CIRCLE
     return nichols_curve(closed / (1.0 - closed), unwrap=False)
 
 
@@ -58,7 +60,7 @@ def constant_n_curve(phase_deg: float) -> NicholsCurve:
 
 def constant_s_curve(level: float) -> NicholsCurve:
     """Return where |S| = 1/|1 + L| is `level`, from L = 1/S - 1."""
-    closed = require_number('level of |S|', level, above=0.0) * _unit_circle()
+    closed = require_number('level of |S|', level, above=0.0) * _UNIT_CIRCLE
     return nichols_curve(1.0 / closed - 1.0, unwrap=False)
 
 
@@ -76,11 +78,6 @@ def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
     else:
         phase = np.where(phase > 0.0, phase - math.tau, phase)
     return NicholsCurve(np.degrees(phase), 20.0 * np.log10(np.abs(values)))
-
-
-def _unit_circle() -> np.ndarray:
-    """Return points of it, symmetric, none of them at 1, where L is infinite or 0."""
-    return np.exp(2j * math.pi * (np.arange(_CURVE_POINTS) + 0.5) / _CURVE_POINTS)
 
 
 def draw_nichols_grid(

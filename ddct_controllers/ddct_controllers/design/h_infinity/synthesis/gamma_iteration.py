@@ -63,7 +63,7 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
 
     A level counts as reached when its controller's closed loop is stable and has at most that
     norm; what the Riccati solutions promise does not count. Raise DdctError for a
-    plant without a solution, DdctError when no level verifies.
+    plant without a solution, and when no level verifies.
     """
     require_number('back-off from the optimum', back_off, at_least=1.0, at_most=100.0)
     plant.require_solvable()

@@ -33,9 +33,15 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
     gamma is minimised over R, S with the two projected bounded-real inequalities and
     [R I; I S] >= 0; the controller is the central one for X = gamma R^-1, Y = gamma S^-1. In raw
     coordinates the solver finds no optimum, as R and S range over ten decades. Raise
-    DdctError when no closed loop verifies, DdctError without the package clarabel.
+    DdctError when no closed loop verifies, and without the package clarabel.
     """
-    clarabel = _solver()
+    try:
+        import clarabel
+    except ImportError as error:
+        raise DdctError(
+            'the LMI method needs a solver of semidefinite programs: pip install clarabel, '
+            'or use the Riccati method'
+        ) from error
     plant.require_solvable()
     for discount in _DISCOUNTS_RAD_S:
         coordinates = balanced(plant, discount)
@@ -55,17 +61,6 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
         'synthesis by LMI: no solution gave a closed loop that verifies: use the Riccati method, '
         'or scale the weights to about 1 near the crossover'
     )
-
-
-def _solver() -> Any:
-    try:
-        import clarabel
-    except ImportError as error:
-        raise DdctError(
-            'the LMI method needs a solver of semidefinite programs: pip install clarabel, '
-            'or use the Riccati method'
-        ) from error
-    return clarabel
 
 
 def _solved(clarabel: Any, plant: GeneralisedPlant) -> tuple[float, np.ndarray, np.ndarray] | None:
