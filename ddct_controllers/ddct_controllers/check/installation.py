@@ -40,12 +40,11 @@ def _advice(subject: Subject, error: DdctError) -> str:
     if is_controller_file(subject.name):
         return ''
     if not subject.points:
-        for folder, _, names in _installed_from_folders():
-            if subject.name in names:
-                return (
-                    f'; {folder}/pyproject.toml has it, but was not installed since: install it '
-                    f'again, {install_command(str(folder))}'
-                )
+        for folder, _ in _installed_from(subject.name):
+            return (
+                f'; {folder}/pyproject.toml has it, but was not installed since: install it '
+                f'again, {install_command(str(folder))}'
+            )
         return f'; if it is your own, install its package: {install_command("DIR")}'
     point, cause = subject.points[0], root_cause(error)
     module = sys.modules.get(point.module)
@@ -71,9 +70,7 @@ def installation(subject: Subject) -> str:
         raise CheckSkippedError('no package of its own')
     spec = inspect.getmodule(subject.points[0].load())
     file = Path(str(getattr(spec, '__file__', '')))
-    for folder, editable, names in _installed_from_folders():
-        if subject.name not in names:
-            continue
+    for folder, editable in _installed_from(subject.name):
         if editable:
             return f'linked to {folder}: an edited file runs at once'
         relative = Path(*file.parts[-subject.points[0].module.count('.') - 1 :])
@@ -87,8 +84,8 @@ def installation(subject: Subject) -> str:
     return f'{file}; not installed from a folder, so there is nothing to compare'
 
 
-def _installed_from_folders() -> Iterator[tuple[Path, bool, set[str]]]:
-    """Yield by distribution its folder, whether it is linked, and the controllers it has there."""
+def _installed_from(controller: str) -> Iterator[tuple[Path, bool]]:
+    """Yield the folders that have a controller and were installed, and whether they are linked."""
     for distribution in importlib.metadata.distributions():
         try:
             origin = parse_json(distribution.read_text('direct_url.json') or '{}')
@@ -97,7 +94,8 @@ def _installed_from_folders() -> Iterator[tuple[Path, bool, set[str]]]:
             points = tomllib.loads(text)['project']['entry-points'][ENTRY_POINT_GROUP]
         except (LookupError, OSError, ValueError, TypeError):
             continue  # from an index, gone, or not one of this kind
-        yield folder, bool(origin.get('dir_info', {}).get('editable')), set(points)
+        if controller in points:
+            yield folder, bool(origin.get('dir_info', {}).get('editable'))
 
 
 def constructor(subject: Subject) -> str:

@@ -74,9 +74,8 @@ class Subject:
         advice = 'mend it there'
         if isinstance(cause, IndexError):
             advice += ' (slip_reference has preview_steps + 1 entries)'
-        place = place_of_error(cause, self.package)
-        if not place:
-            place = self.points[0].value if self.points else self.name
+        elsewhere = self.points[0].value if self.points else self.name
+        place = place_of_error(cause, self.package) or elsewhere
         return CheckFailedError(f'it raised {type(cause).__name__}: {cause}, in {place}: {advice}')
 
     @cached_property

@@ -81,8 +81,7 @@ def _linear_model(name: str, controller: Controller) -> StateSpace | None:
     try:
         model: object = controller.linear_model()
     except FOREIGN_FAILURES as error:
-        reason = f'{type(error).__name__}: {error}'
-        raise _unusable(name, controller, reason) from error
+        raise _unusable(name, controller, f'{type(error).__name__}: {error}') from error
     if model is None:
         return None
     if not isinstance(model, StateSpace):

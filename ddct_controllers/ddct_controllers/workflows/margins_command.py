@@ -55,8 +55,7 @@ def run(options: argparse.Namespace) -> int:
     tell = partial(complain, 'ddct design')
     names = working_controllers(settings, tell) if every else [options.controller]
     evidence = frequency_evidence(names, settings)
-    linear = [entry for entry in evidence['controllers'] if entry['linear']]
-    if not linear:
+    if not any(entry['linear'] for entry in evidence['controllers']):
         raise DdctError(
             f'{options.controller} is not linear: it has no frequency response; '
             'choose a controller that has a linear_model, or all'

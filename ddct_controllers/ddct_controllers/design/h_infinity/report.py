@@ -87,10 +87,6 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
     """Return what a controller's file says of where it comes from."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
-    sampled = loop_record(sampled_loop(design.sampled), weights, specifications)
-    continuous = None
-    if not weights.sampled:
-        continuous = loop_record(continuous_loop(design.cleaned), weights, specifications)
     return {
         'method': f'h-infinity, {design.synthesis.method}',
         'specifications': {
@@ -115,8 +111,10 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
         },
         'gamma': design.synthesis.gamma,
         'cleaning': [dataclasses.asdict(step) for step in design.cleaning],
-        'continuous_loop': continuous,
-        'sampled_loop': sampled,
+        'continuous_loop': None
+        if weights.sampled
+        else loop_record(continuous_loop(design.cleaned), weights, specifications),
+        'sampled_loop': loop_record(sampled_loop(design.sampled), weights, specifications),
     }
 
 
