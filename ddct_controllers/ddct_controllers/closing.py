@@ -3,7 +3,7 @@
 from ddct_controllers.interface import Measurement, Status
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.closing import ClosingParameters
+from ddct_plant.scenario.control import ClosingParameters
 
 
 class ClosingStage:

@@ -10,7 +10,7 @@ from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.closing import ClosingParameters
+from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.scenario.references import SlipProfile
+from ddct_plant.scenario.control import SlipProfile
 
 TANH_STEEPNESS = 3.0
 """kappa of the tanh; its end slopes, kappa sech^2 kappa / tanh kappa, are 3 % of the mean."""

@@ -4,7 +4,7 @@ import math
 from collections import deque
 
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.scenario.references import EngineSpeedReference
+from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_reference.slip_reference import SlipReference
 
 SHAFT_RATE_STEPS = 10

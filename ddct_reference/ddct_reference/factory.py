@@ -3,8 +3,9 @@
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.plant import initial_state, make_load
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE, Scenario
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
 from ddct_reference.descent import (

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.references import EngineSpeedReference
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.factory import make_reference

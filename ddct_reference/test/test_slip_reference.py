@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from ddct_plant.scenario.control import REFERENCE_SHAPES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.scenario import REFERENCE_SHAPES
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 from ddct_reference.descent import CrfRamp
 from ddct_reference.factory import make_reference

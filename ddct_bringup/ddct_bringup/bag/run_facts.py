@@ -7,7 +7,7 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json
 from ddct_plant.graph.topics import (
     ENGINE_REQUEST,
     SAFE_STATE,

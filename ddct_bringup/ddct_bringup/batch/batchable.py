@@ -10,7 +10,7 @@ from ddct_controllers.pi import PiController
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET
+from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
 from ddct_plant.scenario.settings import RunSettings
 
 HEEDED = frozenset(

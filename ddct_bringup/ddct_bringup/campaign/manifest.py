@@ -14,8 +14,7 @@ from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.run.source_commit import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import read_text_file, require_schema_version
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.command_line import package_version
 

@@ -9,8 +9,7 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json, read_text_file
 
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""

@@ -57,7 +57,7 @@ class HeadlessRun:
             self.trajectory,
             self.start,
             scenario.score_window_s,
-            self.metrics.as_dict(),
+            self.metrics._asdict(),
             limits.rules.engagements_a_day,
         )
         known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_plant.base.errors import DdctError, printable
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json
 
 NOTE_FILE = 'failed_run.json'

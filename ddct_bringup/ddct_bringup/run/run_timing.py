@@ -5,8 +5,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_text
 
 TIMING_FILE = 'timing.json'

@@ -1,8 +1,7 @@
 """Figures of merit of one run, each undefined (None) rather than a stand-in number."""
 
-import dataclasses
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -15,8 +14,7 @@ from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 
 
-@dataclass(frozen=True)
-class Metrics:
+class Metrics(NamedTuple):
     """
     The metrics of one run.
 
@@ -61,10 +59,6 @@ class Metrics:
     """Ticks that the owner of time sent again, in lock-step."""
     worst_lateness_us: float | None
     """How much too late the driveline took a step at most, in real time; None in lock-step."""
-
-    def as_dict(self) -> dict[str, float | int | None]:
-        """Return the metrics by name."""
-        return dataclasses.asdict(self)
 
 
 _OF_WINDOW = (

@@ -1,6 +1,5 @@
 """Score bags: from a recording to its entry in `scores.json`."""
 
-import dataclasses
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -55,7 +54,7 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
 }
 """Metrics and criteria by the quantity without which they do not exist."""
 
-METRIC_NAMES = tuple(field.name for field in dataclasses.fields(Metrics))
+METRIC_NAMES = Metrics._fields
 _COUNT = re.compile('[0-9]{1,9}')
 _FACT_NAMES = (
     'controller',
@@ -90,7 +89,7 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
         score_window_s=facts.score_window_s,
         timing=timing,
     )
-    metrics = computed.as_dict()
+    metrics = computed._asdict()
     reason = why_invalid(recording)
     verdict = _verdict(recording, metrics, limits, valid=not reason)
     lacking = not_computed(recording, metrics, verdict)

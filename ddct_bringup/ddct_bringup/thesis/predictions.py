@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 

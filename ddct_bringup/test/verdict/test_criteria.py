@@ -17,7 +17,7 @@ WINDOW_S = (0.6, 2.0)
 
 def values(run, start=CONTROL_START, engagements=1000.0):
     metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=WINDOW_S)
-    return criterion_values(JudgedRun(run, start, WINDOW_S, metrics.as_dict(), engagements))
+    return criterion_values(JudgedRun(run, start, WINDOW_S, metrics._asdict(), engagements))
 
 
 def shaft(signal, index=3):

@@ -21,6 +21,8 @@ ASSUMED = 'assumed'
 """Source of a value that we chose because nobody prints it."""
 Options = Mapping[str, 'Option']
 """Described values by name."""
+_GIVE = {bool: 'true or false', str: 'text'}
+"""What must be given for an option that is no number, by its kind."""
 OPTION_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
 """Headers of the rows that `option_rows` returns."""
 
@@ -72,13 +74,11 @@ class Option:
         return tuple(values)
 
     def _checked_one(self, name: str, value: Any) -> Any:
-        if self.kind is bool and not isinstance(value, bool):
-            raise ParameterError(f'{name} is {value!r}: give true or false')
-        if self.kind is str and not isinstance(value, str):
-            raise ParameterError(f'{name} is {value!r}: give text')
+        if self.kind in _GIVE and not isinstance(value, self.kind):
+            raise ParameterError(f'{name} is {value!r}: give {_GIVE[self.kind]}')
         if self.choices:
             require_choice(name, value, self.choices)
-        if self.kind in (bool, str):
+        if self.kind in _GIVE:
             return value
         number = require_number(
             name,

@@ -13,6 +13,8 @@ START_NS = 1_000_000_000
 PERIOD_NS = 10_000_000
 PERIOD_S = 0.01
 STEPS_PER_S = 100
+LONGEST_S = 3600.0
+"""Longest time in a scenario."""
 SUBSTEPS = 10
 """Sub-intervals of one period over which the actuator torque is piecewise linear."""
 SUBSTEP_NS = PERIOD_NS // SUBSTEPS

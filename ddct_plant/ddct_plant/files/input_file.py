@@ -1,17 +1,19 @@
 """
-Read files that a user names, and say where in them something is wrong.
+Read files that a user names, and say what in them is wrong, and where.
 
-Only regular files are read, and no more than fits into memory.
+Only regular files are read, and no more than fits into memory. This is the one way in which JSON
+of files and bags is read; YAML has its own module.
 """
 
 import errno
+import json
 import os
 import re
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, ParameterError
 
@@ -26,6 +28,7 @@ _KINDS = {
 }
 SCHEMA_KEY = 'schema_version'
 """Key of the version of a file's keys."""
+_SURROGATE = re.compile(r'\\u[dD][89a-fA-F]')
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
@@ -67,6 +70,39 @@ def user_text(path: Path) -> str:
         return read_text_file(path)
     except OSError as error:
         raise DdctError(f'cannot be read ({error.strerror})') from error
+
+
+def parse_json(text: str) -> Any:
+    """
+    Return the values that JSON text holds; raise ParameterError that says what is wrong with it.
+
+    Refused beyond the grammar: keys given twice, NaN and infinity, halves of surrogate pairs,
+    integers and nesting that Python cannot take.
+    """
+    try:
+        value = json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
+        if _SURROGATE.search(text):
+            json.dumps(value, ensure_ascii=False).encode('utf-8')
+    except RecursionError as error:
+        raise ParameterError('not valid JSON: nested too deeply') from error
+    except ParameterError:
+        raise
+    except ValueError as error:
+        raise ParameterError(f'not valid JSON: {error}') from error
+    return value
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    value = dict(pairs)
+    if len(value) != len(pairs):
+        keys = [key for key, _ in pairs]
+        twice = next(key for key in keys if keys.count(key) > 1)
+        raise ParameterError(f'not valid JSON: the key {twice!r} is given twice')
+    return value
+
+
+def _refuse_constant(constant: str) -> NoReturn:
+    raise ParameterError(f'not valid JSON: {constant} is no number')
 
 
 @contextmanager

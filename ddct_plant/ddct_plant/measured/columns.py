@@ -115,8 +115,6 @@ def _column(name: str, content: Any) -> Column:
     found = Column(**content)
     if found.between not in BETWEEN:
         raise ParameterError(f'{key}.between is {found.between!r}: choose from linear, held')
-    try:
+    with located(key):
         si_values(_NOTHING, found.unit, QUANTITIES[name].unit)
-    except ParameterError as error:
-        raise ParameterError(f'{key}: {error}') from error
     return found

@@ -4,7 +4,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 from ddct_plant.base.options import Option
-from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
+from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.node import GraphNode, Output
 from ddct_plant.graph.reports import SafeStateReport
@@ -32,7 +32,6 @@ from ddct_plant.graph.topics import (
     Topic,
 )
 from ddct_plant.scenario.plant import driveline_sensors, end_cause, initial_state, make_driveline
-from ddct_plant.scenario.scenario import LONGEST_S
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 

@@ -21,7 +21,7 @@ from ddct_plant.files.input_file import MOST_TEXT_BYTES, located
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.holding import BrakeProfile
 from ddct_plant.models.load import SlopeProfile
-from ddct_plant.scenario.references import EngineSpeedReference, SlipProfile
+from ddct_plant.scenario.control import EngineSpeedReference, SlipProfile
 
 MOST_ROWS = 2000
 """Most rows of one file. A bag can hold a scenario with all profiles of this size."""

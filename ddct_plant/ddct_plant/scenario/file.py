@@ -129,10 +129,8 @@ def parsed_override(override: str) -> tuple[str, Any]:
     key, equals, text = override.partition('=')
     if not equals or not key:
         raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
-    try:
+    with located(f'--set {override}'):
         return key, parse_yaml(text)
-    except ParameterError as error:
-        raise ParameterError(f'--set {override}: {error}') from error
 
 
 def _packaged() -> Traversable:

@@ -7,7 +7,7 @@ from typing import Any
 
 from ddct_plant.base.errors import ParameterError, require_name
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option, section
-from ddct_plant.base.timebase import steps_in
+from ddct_plant.base.timebase import LONGEST_S, steps_in
 from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.driveline import LOCKED, PHASES, SLIPPING
@@ -18,18 +18,14 @@ from ddct_plant.models.holding import BrakeProfile
 from ddct_plant.models.load import LoadParameters, SlopeProfile
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
-from ddct_plant.scenario.closing import ClosingParameters
-from ddct_plant.scenario.references import EngineSpeedReference, SlipProfile
+from ddct_plant.scenario.control import (
+    ClosingParameters,
+    EngineSpeedReference,
+    ReferenceParameters,
+    SlipProfile,
+)
 from ddct_plant.sensors.parameters import SensorParameters
 
-LONGEST_S = 3600.0
-"""Longest time in a scenario."""
-REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
-"""How a slip reference can run to zero once control starts, as a function of time."""
-ENGINE_SPEED_TARGET = 'engine_speed_target'
-"""Shape of a slip reference that follows from a wanted engine speed."""
-PROFILE = 'profile'
-"""Shape of a slip reference that is given over scenario time."""
 GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
 """Ratios of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
@@ -74,39 +70,6 @@ class InitialSpeeds(OptionGroup, prefix='initial.'):
                 "initial.clutch_phase is 'slipping', but both plates have one speed: make "
                 'initial.engine_speed_rad_s and initial.shaft_speed_rad_s differ'
             )
-
-
-@dataclass(frozen=True)
-class ReferenceParameters(OptionGroup, prefix='reference.'):
-    """Shape of the slip-speed reference once control starts (Section 1.4.1)."""
-
-    slope_rad_s2: float = option(
-        90.0,
-        'slope of the CRF ramp; also how fast `engine_speed_target` leads the engine to the '
-        'wanted speed',
-        'rad/s²',
-        source=ASSUMED,
-        above=0.0,
-        at_most=1e4,
-    )
-    shape: str = option(
-        'ramp',
-        'how the reference runs to zero; the architecture `feedforward_tanh` makes the ramp a '
-        'tanh; `engine_speed_target`, in `detailed` only, is `engine_speed_reference` less the '
-        'measured shaft speed; `profile` is `slip_reference`',
-        source='Section 1.4.1',
-        choices=(*REFERENCE_SHAPES, ENGINE_SPEED_TARGET, PROFILE),
-    )
-    reference_end_s: float = option(
-        1.6,
-        'when `tanh` and `polynomial` reach zero: a multiple of 10 ms, after `control_start_s`; '
-        'the ramp ends by its slope',
-        's',
-        source=ASSUMED,
-        above=0.0,
-        at_most=LONGEST_S,
-        whole_periods=True,
-    )
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
-from ddct_plant.scenario.scenario import ENGINE_SPEED_TARGET, PROFILE, Scenario
+from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
+from ddct_plant.scenario.scenario import Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Control architectures: those of Section 1.6, and CRF's detailed model (Section 1.4)."""

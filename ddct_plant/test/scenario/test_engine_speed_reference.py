@@ -3,8 +3,8 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
-from ddct_plant.scenario.references import EngineSpeedReference
 
 
 def test_it_is_linear_between_its_points_and_constant_outside():

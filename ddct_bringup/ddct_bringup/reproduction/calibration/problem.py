@@ -32,7 +32,8 @@ from ddct_bringup.thesis.table_5_1 import FIGURES, TOLERANCES
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
-from ddct_plant.scenario.scenario import ReferenceParameters, Scenario
+from ddct_plant.scenario.control import ReferenceParameters
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 _STEP = 1e-4

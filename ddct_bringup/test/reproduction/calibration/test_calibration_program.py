@@ -8,8 +8,8 @@ import pytest
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.calibration import command
+from ddct_plant.scenario.control import ReferenceParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.scenario import ReferenceParameters
 
 pytestmark = pytest.mark.slow
 

@@ -29,7 +29,7 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.json_text import parse_json
+from ddct_plant.files.input_file import parse_json
 
 KIND = 'c_library'
 _SCALARS = attrgetter(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ddct_controllers.interface import Measurement
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.references import EngineSpeedReference
+from ddct_plant.scenario.control import EngineSpeedReference
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.references import EngineSpeedReference
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
