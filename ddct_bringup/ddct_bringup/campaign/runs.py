@@ -2,7 +2,6 @@
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -18,6 +17,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import located
 from ddct_plant.scenario.file import is_packaged
 from ddct_plant.scenario.settings import RunSettings
 
@@ -75,7 +75,7 @@ class Campaign:
         varied = self.varied(case)
         given = {'seed': run_seed(self.spec.root, case), **self.spec.common, **varied}
         base = self._bases[given.pop(SCENARIO)]
-        with _naming(index, varied):
+        with located(_name(index, varied)):
             settings = base.at({key: self._placed(key, value) for key, value in given.items()})
         return CampaignRun(index, self.controllers[number], varied, settings)
 
@@ -108,7 +108,7 @@ class Campaign:
             if kind not in known:
                 known.add(kind)
                 for number, controller in enumerate(self.controllers):
-                    with _naming(number * self.cases + case, run.varied):
+                    with located(_name(number * self.cases + case, run.varied)):
                         require_suitable(controller, run.settings)
             yield case + 1
 
@@ -149,11 +149,7 @@ class Campaign:
         return value
 
 
-@contextmanager
-def _naming(index: int, varied: Mapping[str, Any]) -> Iterator[None]:
-    """Let the refusal of a run say which it is."""
-    try:
-        yield
-    except ParameterError as error:
-        values = ', '.join(f'{key} {value}' for key, value in varied.items())
-        raise ParameterError(f'run {index} ({values}): {error}') from error
+def _name(index: int, varied: Mapping[str, Any]) -> str:
+    """Return how a refusal names a run."""
+    values = ', '.join(f'{key} {value}' for key, value in varied.items())
+    return f'run {index} ({values})'

@@ -108,7 +108,7 @@ def _refuse_constant(constant: str) -> NoReturn:
 @contextmanager
 def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]:
     """
-    Put the name of a file before each DdctError within, and the line of the key that it names.
+    Put a name, such as a file's, before each DdctError within, and the line of the key it names.
 
     `lines` are those of `parse_yaml_with_lines`; without them no line is looked for.
     """
