@@ -1,7 +1,7 @@
 """Heat of the clutch: three lumped masses that the friction work of each period warms."""
 
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
 
@@ -9,17 +9,9 @@ from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
 
-
-def _capacity(default: float, meaning: str, source: str = ASSUMED) -> Any:
-    return option(default, meaning, 'J/K', source=source, at_least=1.0, at_most=1e7)
-
-
-def _conductance(default: float, meaning: str) -> Any:
-    return option(default, meaning, 'W/K', source=ASSUMED, at_least=0.0, at_most=1e6)
-
-
-def _temperature(meaning: str) -> Any:
-    return option(20.0, meaning, '°C', source=ASSUMED, at_least=-60.0, at_most=1500.0)
+_capacity = partial(option, unit='J/K', source=ASSUMED, at_least=1.0, at_most=1e7)
+_conductance = partial(option, unit='W/K', source=ASSUMED, at_least=0.0, at_most=1e6)
+_temperature = partial(option, 20.0, unit='°C', source=ASSUMED, at_least=-60.0, at_most=1500.0)
 
 
 @dataclass(frozen=True)
@@ -39,7 +31,7 @@ class HeatParameters(OptionGroup, prefix='heat.'):
     facing_j_k: float = _capacity(
         163.0,
         'heat capacity of the facings: 542 J/(kg K) times 0.3 kg',
-        'Appl. Sci. 2019, 9, 4287, table A2; 0.3 kg assumed',
+        source='Appl. Sci. 2019, 9, 4287, table A2; 0.3 kg assumed',
     )
     housing_j_k: float = _capacity(10000.0, 'heat capacity of the bell housing')
     facing_share: float = option(
@@ -94,11 +86,6 @@ class ClutchHeat:
         """Plate, facing and housing in degrees Celsius."""
         plate, facing, housing = self._above_ambient
         return self._ambient_c + plate, self._ambient_c + facing, self._ambient_c + housing
-
-    @property
-    def facing_c(self) -> float:
-        """The facing's temperature in degrees Celsius, that friction depends on."""
-        return self._ambient_c + self._above_ambient[1]
 
     def advance(self, friction_work: float) -> None:
         """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""

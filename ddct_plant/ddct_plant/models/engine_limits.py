@@ -1,7 +1,7 @@
 """An engine with limits: torque over speed, idle control, rev limiter, stall and over-speed."""
 
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
 
@@ -14,16 +14,9 @@ STALLED, OVER_REVVED = 'stalled', 'over_revved'
 _RISING_SPEEDS = ('stall_rad_s', 'idle_rad_s', 'resume_rad_s', 'cut_rad_s', 'over_rev_rad_s')
 
 
-def _idle(default: float, meaning: str, unit: str) -> Any:
-    return option(default, meaning, unit, source=ASSUMED, at_least=0.0, at_most=1e4)
-
-
-def _speed(default: float, meaning: str) -> Any:
-    return option(default, meaning, 'rad/s', source=ASSUMED, above=0.0, at_most=2e3)
-
-
-def _torques(default: tuple[float, ...], meaning: str, source: str) -> Any:
-    return option(default, meaning, 'N m', source=source, many=True, at_least=0.0, at_most=1e4)
+_idle = partial(option, source=ASSUMED, at_least=0.0, at_most=1e4)
+_speed = partial(option, unit='rad/s', source=ASSUMED, above=0.0, at_most=2e3)
+_torques = partial(option, unit='N m', many=True, at_least=0.0, at_most=1e4)
 
 
 @dataclass(frozen=True)
@@ -50,12 +43,13 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
     full_load_n_m: tuple[float, ...] = _torques(
         (0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 0.0),
         'highest torque at the crankshaft',
-        '250 and 217 N m: Fiat 1.4 MultiAir 170 hp (types-cars.com, 2010); the others assumed',
+        source='250 and 217 N m: Fiat 1.4 MultiAir 170 hp (types-cars.com, 2010); the others '
+        'assumed',
     )
     friction_n_m: tuple[float, ...] = _torques(
         (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5),
         'torque that the engine takes with the fuel cut',
-        'Heywood 1988, chapter 13, times 1.368 l / 4 pi',
+        source='Heywood 1988, chapter 13, times 1.368 l / 4 pi',
     )
     idle_rad_s: float = _speed(94.25, 'speed that idle control keeps, 900 rpm')
     idle_gain_n_m_s: float = _idle(3.0, 'proportional gain of idle control', 'N m s/rad')

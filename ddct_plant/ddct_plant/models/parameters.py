@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 
-
-def _identified(default: float, meaning: str, unit: str, **limits: Any) -> Any:
-    return option(default, meaning, unit, source='`identify`', **(limits or {'above': 0.0}))
+_positive = partial(option, source='`identify`', above=0.0)
+_damping = partial(option, unit='N m s/rad', source='`identify`', at_least=0.0)
 
 
 @dataclass(frozen=True)
@@ -21,24 +20,18 @@ class DrivelineParameters(OptionGroup, prefix='driveline.'):
     the rounding of the print.
     """
 
-    engine_inertia: float = _identified(0.24997592, 'J_m', 'kg m²')
-    engine_damping: float = _identified(
-        0.0, 'c_m; 0 because P1 = 4/s is a pure integrator', 'N m s/rad', at_least=0.0
-    )
-    shaft_inertia: float = _identified(0.010057366, 'J_p, primary shaft', 'kg m²')
-    shaft_damping: float = _identified(
-        0.012002953, 'c_prim, primary shaft', 'N m s/rad', at_least=0.0
-    )
-    halfshaft_damping: float = _identified(
-        104.95672, 'c_sa, at the wheel side of the gears', 'N m s/rad', at_least=0.0
-    )
-    halfshaft_stiffness: float = _identified(
+    engine_inertia: float = _positive(0.24997592, 'J_m', 'kg m²')
+    engine_damping: float = _damping(0.0, 'c_m; 0 because P1 = 4/s is a pure integrator')
+    shaft_inertia: float = _positive(0.010057366, 'J_p, primary shaft', 'kg m²')
+    shaft_damping: float = _damping(0.012002953, 'c_prim, primary shaft')
+    halfshaft_damping: float = _damping(104.95672, 'c_sa, at the wheel side of the gears')
+    halfshaft_stiffness: float = _positive(
         6716.3112, 'k_sa, at the wheel side of the gears', 'N m/rad'
     )
-    total_ratio: float = _identified(
-        9.3416024, 'tau: second gear times final drive, not the gear number 2 of Section 1.4.5', ''
+    total_ratio: float = _positive(
+        9.3416024, 'tau: second gear times final drive, not the gear number 2 of Section 1.4.5'
     )
-    vehicle_inertia: float = _identified(154.69105, 'J_v, the vehicle seen at the wheels', 'kg m²')
+    vehicle_inertia: float = _positive(154.69105, 'J_v, the vehicle seen at the wheels', 'kg m²')
 
 
 _MASS_KG = 1500.0

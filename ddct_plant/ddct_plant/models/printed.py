@@ -61,9 +61,7 @@ class PrintedTransferFunction:
 
 
 def _number(factor: PrintedFactor) -> float | tuple[float, float]:
-    if isinstance(factor, tuple):
-        return float(factor[0]), float(factor[1])
-    return float(factor)
+    return float(factor) if isinstance(factor, str) else (float(factor[0]), float(factor[1]))
 
 
 ENGINE_TO_SLIP = PrintedTransferFunction('P1', '4', (), ('0',))

@@ -25,8 +25,6 @@ from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 CLUTCH, WHEEL = 0, 1
 """The friction elements by number."""
-_STATES = 7
-_PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 _HELD = (0, 1, 3)
 """Inputs that are held: C_m, C_load and holding torque, not the clutch capacity."""
 
@@ -78,11 +76,11 @@ class StickSlipDriveline:
             (engine_torque, clutch_torque, load_torque + wheel_torque),
             clutch_sticks=now.signs[CLUTCH] == 0,
             wheels_stick=now.signs[WHEEL] == 0,
-            friction={
-                'clutch_phase': _PHASE_NUMBERS[self._clutch_phase],
-                'friction_work': now.work[CLUTCH],
-                'phase_events': self._phase_events() if now.events else (),
-            },
+            friction=(
+                float(PHASES.index(self._clutch_phase)),
+                now.work[CLUTCH],
+                self._phase_events() if now.events else (),
+            ),
         )
 
     def _phase_events(self) -> tuple[PhaseEvent, ...]:
@@ -129,7 +127,7 @@ def friction_system(parameters: DrivelineParameters) -> FrictionSystem:
     """Return the driveline as a linear system with two friction elements, clutch and wheel."""
     a, b = matrices_with_angles(parameters)
     engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
-    h = np.zeros((2, _STATES))
+    h = np.zeros((2, len(a)))
     h[CLUTCH, :2] = 1.0, -1.0
     h[WHEEL, 2] = 1.0
     return FrictionSystem(a, np.hstack([engine, load]), np.hstack([clutch, load]), h)

@@ -19,8 +19,7 @@ from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
 from ddct_plant.files.input_file import MOST_TEXT_BYTES, located
 from ddct_plant.models.engine import TorqueProfile
-from ddct_plant.models.holding import BrakeProfile
-from ddct_plant.models.load import SlopeProfile
+from ddct_plant.models.load import BrakeProfile, SlopeProfile
 from ddct_plant.scenario.control import EngineSpeedReference, SlipProfile
 
 MOST_ROWS = 2000

@@ -10,16 +10,12 @@ from dataclasses import replace
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.clutch import STICK_SLIP, LinearClutch
-from ddct_plant.models.clutch_heat import ClutchHeat
+from ddct_plant.models.clutch import STICK_SLIP, FrictionClutch, LinearClutch
 from ddct_plant.models.driveline import OPEN, Driveline, InitialState
 from ddct_plant.models.engine import Engine
-from ddct_plant.models.friction_clutch import FrictionClutch
-from ddct_plant.models.holding import HoldingTorque, air_and_slope
-from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.models.stick_slip_clutch import StickSlipClutch
 from ddct_plant.models.stick_slip_driveline import (
     StickSlipDriveline,
     friction_integrator,
@@ -105,12 +101,10 @@ def linear_clutch(settings: RunSettings) -> LinearClutch:
     return LinearClutch(settings.wear_gain)
 
 
-def stick_slip_clutch(settings: RunSettings) -> StickSlipClutch:
+def stick_slip_clutch(settings: RunSettings) -> FrictionClutch:
     """Return the clutch that sticks, at its first temperatures."""
     scenario = settings.scenario
-    return StickSlipClutch(
-        FrictionClutch(scenario.friction, settings.wear_gain), ClutchHeat(scenario.heat)
-    )
+    return FrictionClutch(scenario.friction, settings.wear_gain, scenario.heat)
 
 
 def make_load(settings: RunSettings) -> RoadLoad:

@@ -9,13 +9,12 @@ from ddct_plant.base.errors import ParameterError, require_name
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option, section
 from ddct_plant.base.timebase import LONGEST_S, steps_in
 from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.driveline import LOCKED, PHASES, SLIPPING
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.engine_limits import EngineLimits
-from ddct_plant.models.friction_clutch import FrictionParameters
-from ddct_plant.models.holding import BrakeProfile
-from ddct_plant.models.load import LoadParameters, SlopeProfile
+from ddct_plant.models.load import BrakeProfile, LoadParameters, SlopeProfile
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
 from ddct_plant.scenario.control import (

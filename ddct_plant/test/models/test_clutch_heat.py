@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.clutch import FrictionClutch, FrictionParameters
 from ddct_plant.models.clutch_heat import ClutchHeat, HeatParameters
-from ddct_plant.models.friction_clutch import FrictionClutch, FrictionParameters
 
 P = HeatParameters()
 CAPACITIES = np.array([P.plate_j_k, P.facing_j_k, P.housing_j_k])
@@ -73,7 +73,7 @@ def test_a_hard_launch_of_40_kj_warms_the_facing_by_30_to_40_k():
         heat.advance(200.0)
     for _ in range(300):
         heat.advance(0.0)
-    assert 30.0 < heat.facing_c - 20.0 < 40.0
+    assert 30.0 < heat.temperatures_c[1] - 20.0 < 40.0
 
 
 ENGINE, VEHICLE = 0.25, 0.01 + 154.7 / 16.06**2
@@ -101,14 +101,14 @@ def launched(*, held: bool) -> tuple[float, float, float]:
             heat.advance(in_period)
             in_period = 0.0
         if not held or step % 100 == 0:
-            facing = heat.facing_c if held else fine[1]
+            facing = heat.temperatures_c[1] if held else fine[1]
             torque = clutch.capacity([250.0], facing, slip).kinetic[0]
         rate = ENGINE_TORQUE / ENGINE - torque * (1.0 / ENGINE + 1.0 / VEHICLE)
         power = torque * (slip + 0.5e-4 * rate)
         fine += 1e-4 * rates(HOT, fine, power)
         total, in_period = total + 1e-4 * power, in_period + 1e-4 * power
         slip, step = slip + 1e-4 * rate, step + 1
-    return step * 1e-4, total, heat.facing_c if held else fine[1]
+    return step * 1e-4, total, heat.temperatures_c[1] if held else fine[1]
 
 
 def test_holding_temperature_and_slip_over_10_ms_costs_a_hard_launch_a_quarter_percent():

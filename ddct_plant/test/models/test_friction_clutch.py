@@ -3,8 +3,7 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.friction_clutch import FrictionClutch, FrictionParameters
+from ddct_plant.models.clutch import FrictionClutch, FrictionParameters, LinearClutch
 
 RISING = [-20.0, -1e-9, 0.0, 1.0, 10.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0]
 """(11,) N m, from an undershoot of the actuator up."""

@@ -5,8 +5,14 @@ import math
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.holding import BrakeProfile, HoldingTorque, air_and_slope
-from ddct_plant.models.load import LoadParameters, RoadLoad, SlopeProfile
+from ddct_plant.models.load import (
+    BrakeProfile,
+    HoldingTorque,
+    LoadParameters,
+    RoadLoad,
+    SlopeProfile,
+    air_and_slope,
+)
 from ddct_plant.models.parameters import VehicleParameters
 
 VEHICLE = VehicleParameters()

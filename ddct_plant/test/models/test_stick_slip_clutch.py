@@ -2,9 +2,8 @@
 
 import pytest
 
+from ddct_plant.models.clutch import FrictionClutch, FrictionParameters
 from ddct_plant.models.clutch_heat import ClutchHeat, HeatParameters
-from ddct_plant.models.friction_clutch import FrictionClutch, FrictionParameters
-from ddct_plant.models.stick_slip_clutch import StickSlipClutch
 
 TORQUES = [100.0] * 11
 HOT = HeatParameters(facing_c=245.0, plate_c=245.0)
@@ -12,7 +11,7 @@ HOT = HeatParameters(facing_c=245.0, plate_c=245.0)
 
 def clutch(heat=HOT):
     parameters = FrictionParameters(static_over_kinetic=1.5)
-    return StickSlipClutch(FrictionClutch(parameters), ClutchHeat(heat))
+    return FrictionClutch(parameters, heat=heat)
 
 
 def test_no_time_has_passed_at_t0():
@@ -27,9 +26,10 @@ def test_the_work_of_a_period_counts_in_the_next_one():
     for step in range(1, 20):
         heat.advance(2000.0)
         reply = model.reply(step, TORQUES, 100.0, 2000.0)
-        assert reply.temperature_c == heat.facing_c
+        _, facing_c, _ = heat.temperatures_c
+        assert reply.temperature_c == facing_c
     assert reply.temperature_c > 255.0
-    assert reply.kinetic[0] == pytest.approx(100.0 * (1.0 - 0.2 * (heat.facing_c - 250.0) / 50.0))
+    assert reply.kinetic[0] == pytest.approx(100.0 * (1.0 - 0.2 * (facing_c - 250.0) / 50.0))
 
 
 def test_periods_that_were_not_heard_of_count_with_the_work_of_the_one_after_them():
