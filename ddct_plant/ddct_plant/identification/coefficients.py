@@ -1,14 +1,16 @@
 """The nine printed coefficients of P2 and P3 as functions of the driveline parameters."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import clutch_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.printed import PrintedNumber, PrintedTransferFunction
+from ddct_plant.models.printed import (
+    CLUTCH_TO_SLIP,
+    LOAD_TO_SLIP,
+    PrintedNumber,
+    PrintedTransferFunction,
+)
 
 FITTED = (
     'engine_inertia',
@@ -43,7 +45,9 @@ class PrintedCoefficients:
     Vectors of parameters are natural logarithms in the order of FITTED: all are positive.
     """
 
-    def __init__(self, p2: PrintedTransferFunction, p3: PrintedTransferFunction) -> None:
+    def __init__(
+        self, p2: PrintedTransferFunction, p3: PrintedTransferFunction = LOAD_TO_SLIP
+    ) -> None:
         """Take the printed P_2 and P_3; raise ParameterError when their poles differ."""
         if p2.denominator != ('0', *p3.denominator):
             raise ParameterError(f'{p2.name} and {p3.name} must share their poles, apart from s')
@@ -88,6 +92,10 @@ class PrintedCoefficients:
         return np.log([engine, shaft, damping, stiffness / corner, stiffness, tau, vehicle])
 
 
+PRINTED = PrintedCoefficients(CLUTCH_TO_SLIP)
+"""Those of the thesis, its erratum mended."""
+
+
 def with_fitted(logarithms: np.ndarray) -> DrivelineParameters:
     """Return the driveline with the fitted parameters exp(`logarithms`), (7,), and c_m = 0."""
     values = np.exp(logarithms).tolist()
@@ -97,14 +105,4 @@ def with_fitted(logarithms: np.ndarray) -> DrivelineParameters:
 def computed_coefficients(parameters: DrivelineParameters) -> np.ndarray:
     """Return the nine coefficients, (9,), of a driveline with c_m = 0."""
     p2, p3 = clutch_to_slip(parameters), load_to_slip(parameters)
-    shared_poles = FactoredTransferFunction(p2.gain, p2.numerator, p2.denominator[1:])
-    return np.array(_flat(shared_poles) + _flat(p3)[:2])
-
-
-def _flat(transfer_function: FactoredTransferFunction) -> list[float]:
-    numbers = [transfer_function.gain]
-    factors: Sequence[float | tuple[float, float]]
-    for factors in (transfer_function.numerator, transfer_function.denominator):
-        for factor in factors:
-            numbers += factor if isinstance(factor, tuple) else (factor,)
-    return numbers
+    return np.hstack([p2.gain, *p2.numerator, *p2.denominator[1:], p3.gain, *p3.numerator])

@@ -8,16 +8,12 @@ import scipy
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.coefficients import (
     FITTED,
+    PRINTED,
     PrintedCoefficients,
     computed_coefficients,
     with_fitted,
 )
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.printed import (
-    CLUTCH_TO_SLIP,
-    LOAD_TO_SLIP,
-    PrintedTransferFunction,
-)
 
 ROUNDING_VARIANCE = 1.0 / 3.0
 """Variance of a rounding error, uniform within one half-unit, in half-units squared."""
@@ -79,9 +75,7 @@ class Identification:
         return np.log([getattr(self.parameters, name) for name in FITTED])
 
 
-def identify_driveline(
-    p2: PrintedTransferFunction = CLUTCH_TO_SLIP, p3: PrintedTransferFunction = LOAD_TO_SLIP
-) -> Identification:
+def identify_driveline(coefficients: PrintedCoefficients = PRINTED) -> Identification:
     """
     Return the driveline of Section 1.5 whose P_2 and P_3 come closest to the printed ones.
 
@@ -89,13 +83,9 @@ def identify_driveline(
     (J^T J)^-1 times the variance of rounding: print rounding is taken as the only error, uniform
     and independent. Raise DdctError when the fit does not converge.
     """
-    coefficients = PrintedCoefficients(p2, p3)
-    kept = np.ones(len(coefficients.numbers), dtype=bool)
-    logarithms = _fit(coefficients, kept)
-    jacobian = coefficients.jacobian(logarithms)
-    covariance = np.linalg.inv(jacobian.T @ jacobian) * ROUNDING_VARIANCE
+    logarithms, covariance = _fit(coefficients, slice(None))
     std = np.sqrt(np.diag(covariance))
-    singular = np.linalg.svd(jacobian)
+    singular = np.linalg.svd(coefficients.jacobian(logarithms))
     parameters = with_fitted(logarithms)
     rows = zip(
         coefficients.numbers,
@@ -117,10 +107,7 @@ def identify_driveline(
 
 
 def predict_left_out(
-    p2: PrintedTransferFunction,
-    p3: PrintedTransferFunction,
-    name: str,
-    coefficient: str,
+    coefficients: PrintedCoefficients, name: str, coefficient: str
 ) -> tuple[float, float]:
     """
     Return one coefficient and its standard deviation, as the other eight predict it.
@@ -128,7 +115,6 @@ def predict_left_out(
     Raise DdctError for a coefficient that is not among the nine, or one that the others leave
     free: each of the two gains is the only measure of the size of its transfer function.
     """
-    coefficients = PrintedCoefficients(p2, p3)
     labels = [(function, number.label) for function, number in coefficients.numbers]
     if (name, coefficient) not in labels:
         raise DdctError(f'{name} has no coefficient {coefficient!r} to leave out')
@@ -136,16 +122,17 @@ def predict_left_out(
     kept = np.arange(len(labels)) != index
     if np.linalg.cond(coefficients.jacobian(coefficients.start())[kept]) > _SINGULAR:
         raise DdctError(f'the other coefficients do not determine {name} {coefficient}')
-    logarithms = _fit(coefficients, kept)
-    jacobian = coefficients.jacobian(logarithms)
-    covariance = np.linalg.inv(jacobian[kept].T @ jacobian[kept]) * ROUNDING_VARIANCE
+    logarithms, covariance = _fit(coefficients, kept)
+    gradient = coefficients.jacobian(logarithms)[index]
     half_unit = coefficients.numbers[index][1].half_unit
-    std = half_unit * np.sqrt(jacobian[index] @ covariance @ jacobian[index])
+    std = half_unit * np.sqrt(gradient @ covariance @ gradient)
     return float(computed_coefficients(with_fitted(logarithms))[index]), float(std)
 
 
-def _fit(coefficients: PrintedCoefficients, kept: np.ndarray) -> np.ndarray:
-    """Return the (7,) logarithms that fit the coefficients where `kept` is true."""
+def _fit(
+    coefficients: PrintedCoefficients, kept: np.ndarray | slice
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the (7,) logarithms that fit the coefficients `kept`, and their covariance."""
     answer = scipy.optimize.least_squares(
         lambda logarithms: coefficients.residuals(logarithms)[kept],
         coefficients.start(),
@@ -157,4 +144,5 @@ def _fit(coefficients: PrintedCoefficients, kept: np.ndarray) -> np.ndarray:
     )
     if not answer.success:
         raise DdctError(f'identification of the driveline does not converge: {answer.message}')
-    return answer.x
+    jacobian = coefficients.jacobian(answer.x)[kept]
+    return answer.x, np.linalg.inv(jacobian.T @ jacobian) * ROUNDING_VARIANCE

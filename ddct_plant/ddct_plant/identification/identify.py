@@ -5,12 +5,21 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.checks import IdentificationCheck, check_identification
-from ddct_plant.identification.coefficients import FITTED, SYMBOLS_AND_UNITS, PrintedCoefficients
+from ddct_plant.identification.checks import (
+    IdentificationCheck,
+    check_identification,
+    parameter_ranges,
+    smallest_worst_residual,
+)
+from ddct_plant.identification.coefficients import (
+    FITTED,
+    PRINTED,
+    SYMBOLS_AND_UNITS,
+    PrintedCoefficients,
+)
 from ddct_plant.identification.fit import Identification, identify_driveline
 from ddct_plant.identification.log_command import add_log_options, identify_log
-from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
-from ddct_plant.models.printed import CLUTCH_TO_SLIP, CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP
+from ddct_plant.models.printed import CLUTCH_TO_SLIP_AS_PRINTED
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 
@@ -57,22 +66,20 @@ def _run(argv: list[str]) -> int:
         return identify_log(options)
     if options.columns or options.check or options.fix or options.out or options.overrides:
         raise DdctError('--columns, --check, --fix, --set and --out need a log: give --from LOG')
-    p2 = CLUTCH_TO_SLIP_AS_PRINTED if options.as_printed else CLUTCH_TO_SLIP
-    identification = identify_driveline(p2)
-    checks = check_identification(identification, p2)
-    content = _content(identification, _ranges(identification, p2), checks)
+    coefficients = PRINTED
+    if options.as_printed:
+        coefficients = PrintedCoefficients(CLUTCH_TO_SLIP_AS_PRINTED)
+    identification = identify_driveline(coefficients)
+    worst, centre = smallest_worst_residual(coefficients, identification.logarithms)
+    checks = check_identification(identification, coefficients, worst)
+    ranges = parameter_ranges(coefficients, centre) if worst <= 1.0 else None
+    content = _content(identification, ranges, checks)
     show_and_write(options.json, content, lambda: _print_tables(content))
     failed = [check.name for check in checks if not check.passed]
     if failed:
         advice = '; leave out --as-printed' if options.as_printed else ''
         raise DdctError(f'no driveline fits: {"; ".join(failed)}{advice}')
     return 0
-
-
-def _ranges(identification: Identification, p2: Any) -> np.ndarray | None:
-    coefficients = PrintedCoefficients(p2, LOAD_TO_SLIP)
-    worst, centre = smallest_worst_residual(coefficients, identification.logarithms)
-    return parameter_ranges(coefficients, centre) if worst <= 1.0 else None
 
 
 def _content(

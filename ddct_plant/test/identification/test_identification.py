@@ -7,7 +7,11 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.identification.checks import check_identification
+from ddct_plant.identification.checks import (
+    check_identification,
+    parameter_ranges,
+    smallest_worst_residual,
+)
 from ddct_plant.identification.coefficients import (
     FITTED,
     PrintedCoefficients,
@@ -15,7 +19,6 @@ from ddct_plant.identification.coefficients import (
     with_fitted,
 )
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
-from ddct_plant.identification.rounding_set import parameter_ranges, smallest_worst_residual
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import (
     CLUTCH_TO_SLIP,
@@ -76,26 +79,27 @@ def test_parameters_lie_within_a_thousandth_of_the_rounded_values_known_for_this
 def test_fit_is_as_good_as_rounding_allows():
     assert FIT.degrees_of_freedom == 2
     assert FIT.chi_square == pytest.approx(3.556, abs=0.001)
-    assert all(check.passed for check in check_identification(FIT, CLUTCH_TO_SLIP))
+    worst, _ = smallest_worst_residual(COEFFICIENTS, FIT.logarithms)
+    assert all(check.passed for check in check_identification(FIT, COEFFICIENTS, worst))
 
 
 def test_334_4_fits_no_driveline_and_339_4_is_what_the_others_predict():
-    misprinted = identify_driveline(CLUTCH_TO_SLIP_AS_PRINTED)
+    coefficients = PrintedCoefficients(CLUTCH_TO_SLIP_AS_PRINTED)
+    misprinted = identify_driveline(coefficients)
+    worst, _ = smallest_worst_residual(coefficients, misprinted.logarithms)
     assert np.abs(misprinted.residuals).max() == pytest.approx(59.4, abs=0.1)
     assert misprinted.chi_square > 1e4
-    assert not any(
-        check.passed for check in check_identification(misprinted, CLUTCH_TO_SLIP_AS_PRINTED)
-    )
-    predicted, std = predict_left_out(CLUTCH_TO_SLIP, LOAD_TO_SLIP, 'P2', 'zero c')
+    assert not any(check.passed for check in check_identification(misprinted, coefficients, worst))
+    predicted, std = predict_left_out(COEFFICIENTS, 'P2', 'zero c')
     assert predicted == pytest.approx(339.392, abs=0.001)
     assert std == pytest.approx(0.024, abs=0.001)
 
 
 def test_leaving_out_a_gain_leaves_a_parameter_free_and_says_so():
     with pytest.raises(DdctError, match='do not determine P2 gain'):
-        predict_left_out(CLUTCH_TO_SLIP, LOAD_TO_SLIP, 'P2', 'gain')
+        predict_left_out(COEFFICIENTS, 'P2', 'gain')
     with pytest.raises(DdctError, match="P3 has no coefficient 'pole z'"):
-        predict_left_out(CLUTCH_TO_SLIP, LOAD_TO_SLIP, 'P3', 'pole z')
+        predict_left_out(COEFFICIENTS, 'P3', 'pole z')
 
 
 def test_optimum_does_not_depend_on_where_the_search_starts(monkeypatch):
@@ -113,7 +117,7 @@ def test_closed_form_start_is_within_a_thousandth_of_the_fit():
 def test_exact_coefficients_give_back_the_driveline_they_came_from():
     true = DrivelineParameters(0.18, 0.0, 0.02, 0.05, 80.0, 9000.0, 12.0, 200.0)
     p2, p3 = printed_as(computed_coefficients(true), 15, 15)
-    fit = identify_driveline(p2, p3)
+    fit = identify_driveline(PrintedCoefficients(p2, p3))
     for name in FITTED:
         assert getattr(fit.parameters, name) == pytest.approx(getattr(true, name), rel=1e-8)
 
@@ -147,7 +151,7 @@ def rounded_drivelines(
 def test_stated_deviations_are_the_spread_over_drivelines_rounded_like_the_print():
     errors = []
     for truth, p2, p3 in rounded_drivelines(60):
-        fit = identify_driveline(p2, p3)
+        fit = identify_driveline(PrintedCoefficients(p2, p3))
         errors.append((fit.logarithms - truth) / fit.relative_std)
     spread = np.sqrt(np.mean(np.square(errors), axis=0))
     assert np.all((spread > 0.7) & (spread < 1.35)), spread
@@ -184,4 +188,4 @@ def test_ends_of_the_ranges_are_in_the_set_and_further_out_is_not():
 def test_transfer_functions_with_different_poles_are_refused():
     other = replace(LOAD_TO_SLIP, denominator=('0.1', ('121.4', '7696')))
     with pytest.raises(ParameterError, match='P2 and P3 must share their poles'):
-        identify_driveline(CLUTCH_TO_SLIP, other)
+        PrintedCoefficients(CLUTCH_TO_SLIP, other)

@@ -9,6 +9,7 @@ import numpy as np
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.values.controller_values import numbers_of
+from ddct_plant.identification.coefficients import PrintedCoefficients
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
@@ -52,7 +53,7 @@ def plant_values() -> dict[str, Value | None]:
         },
         'p1.gain': engine_to_slip(driveline).gain,
         'p2.zero c from the others': predict_left_out(
-            CLUTCH_TO_SLIP_AS_PRINTED, LOAD_TO_SLIP, 'P2', 'zero c'
+            PrintedCoefficients(CLUTCH_TO_SLIP_AS_PRINTED), 'P2', 'zero c'
         )[0],
         **_shared_poles(driveline),
         # The gain that makes G_a(0) = 1 with these zeros and poles.
