@@ -9,8 +9,7 @@ from scipy.signal import lfilter
 from support.other_car import LASTS_S, NOISE_RAD_S, ROLLING_N_M, SPEEDS, TRUE, drive
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.log_check import predict
-from ddct_plant.identification.log_fit import LogFit, fit_log
+from ddct_plant.identification.log_fit import LogFit, fit_log, predict
 from ddct_plant.identification.log_stretches import stretches_of, white_noise
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters

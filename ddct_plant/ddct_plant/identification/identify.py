@@ -21,7 +21,7 @@ from ddct_plant.identification.fit import Identification, identify_driveline
 from ddct_plant.identification.log_command import add_log_options, identify_log
 from ddct_plant.models.printed import CLUTCH_TO_SLIP_AS_PRINTED
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
-from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.program.table import Table, print_tables, text_or_dash
 
 PROGRAM = 'ddct identify'
 _DESCRIPTION = """\
@@ -114,7 +114,7 @@ def _content(
 
 
 def _print_tables(content: dict[str, Any]) -> None:
-    print_table(
+    tables = [
         Table(
             'Driveline parameters',
             ('parameter', 'symbol', 'value', 'std', 'lowest', 'highest', 'unit'),
@@ -130,9 +130,7 @@ def _print_tables(content: dict[str, Any]) -> None:
                 )
                 for row in content['parameters']
             ],
-        )
-    )
-    print_table(
+        ),
         Table(
             'Printed coefficients',
             ('function', 'coefficient', 'printed', 'computed', 'residual, half-units'),
@@ -146,9 +144,7 @@ def _print_tables(content: dict[str, Any]) -> None:
                 )
                 for row in content['coefficients']
             ],
-        )
-    )
-    print_table(
+        ),
         Table(
             'Checks',
             ('check', 'value', 'lowest', 'highest', 'passed'),
@@ -160,8 +156,9 @@ def _print_tables(content: dict[str, Any]) -> None:
                 )
                 for row in content['checks']
             ],
-        )
-    )
+        ),
+    ]
+    print_tables(tables)
     weakest = ', '.join(
         f'{SYMBOLS_AND_UNITS[name][0]} {share:+.2f}'
         for name, share in content['fit']['weakest_direction'].items()

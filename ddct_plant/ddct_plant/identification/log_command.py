@@ -4,25 +4,21 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.console import Console
 
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
-from ddct_plant.identification.log_check import Prediction, predict
-from ddct_plant.identification.log_fit import PARAMETERS, KnownLoad, LogFit, fit_log
-from ddct_plant.identification.log_scenario import scenario_of
+from ddct_plant.identification.log_fit import PARAMETERS, LogFit, Prediction, fit_log, predict
+from ddct_plant.identification.log_scenario import load_of, scenario_of
 from ddct_plant.identification.log_stretches import LOAD, SPEEDS, TORQUES, stretches_of
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
 from ddct_plant.measured.log import MeasuredLog, read_log
-from ddct_plant.models.load import RoadLoad
 from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.options import add_scenario_options
 from ddct_plant.scenario.options import scenario_of as base_scenario
-from ddct_plant.scenario.scenario import Scenario
 
 NEEDED = (*SPEEDS, *TORQUES)
 HOLD_OUT = 0.3
@@ -77,7 +73,7 @@ def identify_log(options: argparse.Namespace) -> int:
     base = base_scenario(options, options.overrides)
     columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
     fitted, held_out = _logs(options, columns)
-    known_load = _known_load(base)
+    known_load = load_of(base)
     with Console(stderr=True).status('fitting the driveline'):
         fit = fit_log(fitted, base.driveline, known_load, options.fix)
     predictions = predict(fit, stretches_of(held_out, known_load))
@@ -97,18 +93,6 @@ def _logs(options: argparse.Namespace, columns: ColumnMap) -> tuple[MeasuredLog,
     first, last = float(log.time_s[0]), float(log.time_s[-1])
     parting = last - options.hold_out * (last - first)
     return log.part(first, parting), log.part(parting, last)
-
-
-def _known_load(base: Scenario) -> KnownLoad:
-    """Return the drag of the base scenario; all else of C_load is a constant that is fitted."""
-    road = RoadLoad(base.load, base.vehicle)
-    constant = road.torque(-base.load.wind_speed_m_s)
-
-    def drag(wheel_speed: np.ndarray) -> np.ndarray:
-        speeds = wheel_speed * base.vehicle.wheel_radius_m
-        return np.array([road.torque(each) for each in speeds.tolist()]) - constant
-
-    return drag
 
 
 def _content(

@@ -1,16 +1,17 @@
-"""The driveline of a measured car from its log, with intervals; what it does not show is named."""
+"""The driveline of a measured car from its log, with intervals, and what it then predicts."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.log_model import Stretch, residuals_of
-from ddct_plant.identification.log_noise import NoiseModel
-from ddct_plant.identification.log_problem import DAMPINGS, LogProblem
+from ddct_plant.identification.log_problem import DAMPINGS, LogProblem, NoiseModel, whiteness
 from ddct_plant.identification.log_stretches import (
+    SPEEDS,
+    KnownLoad,
     stretches_of,
     torques_are_noisy,
     with_more_torque_noise,
@@ -32,8 +33,8 @@ PULLED = 0.4
 """Share of these by which the noise of the torques may move a parameter."""
 _MORE_NOISE = 4
 """How often the noise of the torques is doubled to see what it does to the fit."""
-KnownLoad = Callable[[np.ndarray], np.ndarray]
-"""Returns what is known of C_load in N m, (n,), at wheel speeds in rad/s."""
+WHITE_FROM = 0.01
+"""Smallest p-value of residuals that count as white."""
 
 
 @dataclass(frozen=True)
@@ -147,3 +148,43 @@ def _load_torque(values: Mapping[str, float], stretches: Sequence[Stretch]) -> f
     loads = [residuals_of(values, each)[1][-1] for each in stretches if not each.load_known]
     lengths = [len(each.time_s) for each in stretches if not each.load_known]
     return float(np.average(loads, weights=lengths)) if loads else None
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """One speed of the data that were held out, beside what the fitted driveline makes of it."""
+
+    signal: str
+    rms_rad_s: float
+    """R.m.s. of measured less predicted."""
+    nrmse: float | None
+    """The same over the standard deviation of what was measured; None where it is constant."""
+    whiteness_p: float | None
+    """p of Ljung and Box for the residuals behind the fit's noise model; None for the slip."""
+
+    @property
+    def white(self) -> bool | None:
+        """Whether nothing but noise is left, as far as the test shows; None where not tested."""
+        return None if self.whiteness_p is None else self.whiteness_p >= WHITE_FROM
+
+
+def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
+    """
+    Return the prediction of w_m, w_p, w_r and of the slip w_m - w_p.
+
+    The speeds at the start of each stretch, and its C_load where it was not measured, are fitted
+    to it, the driveline is not.
+    """
+    left = [residuals_of(fit.values, each)[0] for each in stretches]
+    p_values = whiteness([fit.noise.white(each) for each in left])
+    measured, residual = (
+        np.column_stack([speeds, speeds[:, 0] - speeds[:, 1]])
+        for speeds in (np.vstack([each.speeds for each in stretches]), np.vstack(left))
+    )
+    rms = np.sqrt(np.mean(residual**2, axis=0)).tolist()
+    spreads = np.std(measured, axis=0).tolist()
+    rows = zip((*SPEEDS, 'slip_speed'), rms, spreads, (*p_values, None), strict=True)
+    return [
+        Prediction(name, size, size / spread if spread else None, p_value)
+        for name, size, spread, p_value in rows
+    ]

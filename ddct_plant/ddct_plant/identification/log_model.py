@@ -30,7 +30,7 @@ class Stretch:
     """(m,) equal steps from the first sample to the last or beyond."""
     torques: np.ndarray
     """(m, 3) C_m, C_f and what is known of C_load in N m on the grid."""
-    held: tuple[bool, bool, bool]
+    held: tuple[bool, ...]
     """Which of them keep their value until the next point; the others are linear between."""
     load_known: bool
     """Whether C_load was measured; otherwise a constant is fitted to each stretch."""

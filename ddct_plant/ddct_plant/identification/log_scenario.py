@@ -1,15 +1,31 @@
-"""A scenario of a measured car: the base scenario with what its log says."""
+"""What a base scenario tells of a measured car, and the scenario with what its log says."""
 
 import dataclasses
 import math
 
+import numpy as np
+
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.log_fit import LogFit
+from ddct_plant.identification.log_stretches import KnownLoad
 from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.models.load import RoadLoad
 from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6
 """Slope that a scenario may have."""
+
+
+def load_of(base: Scenario) -> KnownLoad:
+    """Return the drag of the base scenario; all else of C_load is a constant that is fitted."""
+    road = RoadLoad(base.load, base.vehicle)
+    constant = road.torque(-base.load.wind_speed_m_s)
+
+    def drag(wheel_speed: np.ndarray) -> np.ndarray:
+        speeds = wheel_speed * base.vehicle.wheel_radius_m
+        return np.array([road.torque(each) for each in speeds.tolist()]) - constant
+
+    return drag
 
 
 def scenario_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scenario:

@@ -24,11 +24,11 @@ _NOISY = 1e-3
 """White noise of a torque over its deviation, below which a fit does not feel it."""
 _FOR_UNEVEN = 4
 """Grid steps in the usual step of the speeds where their steps are not equal."""
+KnownLoad = Callable[[np.ndarray], np.ndarray]
+"""Returns what is known of C_load in N m, (n,), at wheel speeds in rad/s."""
 
 
-def stretches_of(
-    log: MeasuredLog, known_load: Callable[[np.ndarray], np.ndarray]
-) -> list[Stretch]:
+def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     """
     Return the stretches of a log; raise DdctError when none is long enough.
 
@@ -102,7 +102,7 @@ def _stretch(
     log: MeasuredLog,
     time_s: np.ndarray,
     speeds: np.ndarray,
-    known_load: Callable[[np.ndarray], np.ndarray],
+    known_load: KnownLoad,
 ) -> Stretch:
     usual = float(np.median(np.diff(time_s)))
     even = bool(np.all(np.abs(np.diff(time_s) - usual) <= _UNEVEN * usual))
@@ -120,6 +120,6 @@ def _stretch(
         speeds=speeds,
         grid_s=grid_s,
         torques=np.column_stack([*(log.at(name, grid_s) for name in TORQUES), load]),
-        held=(log.is_held(TORQUES[0]), log.is_held(TORQUES[1]), log.is_held(LOAD)),
+        held=tuple(name in log.held for name in (*TORQUES, LOAD)),
         load_known=known,
     )

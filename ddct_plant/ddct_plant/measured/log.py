@@ -38,14 +38,10 @@ class MeasuredLog:
         rows = np.isfinite(self.signals[name])
         return self.time_s[rows], self.signals[name][rows]
 
-    def is_held(self, name: str) -> bool:
-        """Whether a quantity keeps its value from a sample to the next."""
-        return name in self.held
-
     def at(self, name: str, time_s: np.ndarray) -> np.ndarray:
         """Return a quantity at any times, by what it does between its samples."""
         times, values = self.samples(name)
-        if not self.is_held(name):
+        if name not in self.held:
             return np.interp(time_s, times, values)
         # A time on a sample is not pushed before it by its last bit.
         before = np.searchsorted(times, time_s + 1e-9, side='right') - 1
