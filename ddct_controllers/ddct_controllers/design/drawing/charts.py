@@ -51,24 +51,23 @@ _STEP_RISE_TIMES = 8.0
 def draw_nichols(
     axes: Axes,
     curves: Mapping[str, NicholsCurve],
-    specifications: TimeSpecifications | None = None,
+    specifications: TimeSpecifications,
     *,
     styles: Iterable[dict[str, Any]] | None = None,
 ) -> None:
     """
     Draw loops by name in a Nichols chart.
 
-    With specifications it has their constant-|S| and constant-|T| curves, which L should not
-    enter. `styles` are the keywords of each line.
+    It has the specifications' constant-|S| and constant-|T| curves, which L should not enter.
+    `styles` are the keywords of each line.
     """
     draw_nichols_grid(axes, _PHASE_DEG, _MAGNITUDE_DB)
-    if specifications:
-        s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
-        for name, curve, colour in (
-            (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
-            (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
-        ):
-            draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle='--')
+    s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
+    for name, curve, colour in (
+        (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
+        (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
+    ):
+        draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle='--')
     for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
     critical = np.arange(-180.0, _PHASE_DEG[0] - 1.0, -TURN_DEG)

@@ -42,10 +42,11 @@ def design_record(
     recipe: str,
     specifications: TimeSpecifications,
     design: HinfDesign,
-    corners: PlantCorners | None = None,
+    corners: PlantCorners,
 ) -> Record:
-    """Return a design and what was verified of it, with `corners` over wear and parameters too."""
+    """Return a design and what was verified of it, at `corners` over wear and parameters too."""
     found = design.synthesis
+    worst = worst_corner(design.sampled, corners)
     return {
         'name': name,
         **provenance(recipe, specifications, design),
@@ -58,7 +59,13 @@ def design_record(
         'raw_controller': dataclasses.asdict(design.raw),
         'controller': dataclasses.asdict(design.cleaned),
         'pulse_transfer_function': dataclasses.asdict(factored_form(design.sampled)),
-        'corners': _corner_record(design.sampled, corners) if corners else None,
+        'corners': {
+            'corners': len(corners.plants),
+            'unstable': worst.unstable_corners,
+            'sensitivity_peak': worst.sensitivity_peak,
+            'wear_gain': worst.wear_gain,
+            'factors': dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
+        },
     }
 
 
@@ -148,15 +155,4 @@ def uncertainty_record() -> Record:
         'printed': dataclasses.asdict(PRINTED_W_U),
         'printed_falls_short_by': float((1.0 - printed / error).max()),
         'printed_falls_short_above_rad_s': shortfall_from_rad_s(PRINTED_W_U, largest),
-    }
-
-
-def _corner_record(controller: StateSpace, corners: PlantCorners) -> Record:
-    worst = worst_corner(controller, corners)
-    return {
-        'corners': len(corners.plants),
-        'unstable': worst.unstable_corners,
-        'sensitivity_peak': worst.sensitivity_peak,
-        'wear_gain': worst.wear_gain,
-        'factors': dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
     }

@@ -16,6 +16,7 @@ from ddct_controllers.design.drawing.chart_style import (
 )
 from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
 from ddct_controllers.design.drawing.nichols import nichols_curve
+from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 
 TIME = np.linspace(0.0, 1.0, 5)
 
@@ -70,7 +71,8 @@ def test_a_reference_across_the_panel_is_no_data():
 def grid_labels() -> dict[str, tuple[float, float]]:
     """Return phase and magnitude of the open loop where each label of the grid stands."""
     figure, (axes,) = new_chart('Nichols')
-    draw_nichols(axes, {'L': nichols_curve(1.0 / (1j * np.geomspace(0.1, 10.0, 50)))})
+    loop = nichols_curve(1.0 / (1j * np.geomspace(0.1, 10.0, 50)))
+    draw_nichols(axes, {'L': loop}, TimeSpecifications(rise_time_s=0.3, overshoot=0.08))
     texts = [each for each in axes.get_children() if isinstance(each, Text) and each.get_text()]
     return {each.get_text(): each.get_position() for each in texts}
 
