@@ -33,7 +33,8 @@ def scores_csv(runs: Sequence[Entry]) -> str:
 
 def score_row(run: Entry) -> dict[str, Any]:
     """Return what a table says of a run, by column."""
-    row = {**run, **run['metrics'], **_verdict(run)}
+    verdict = {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
+    row = {**run, **run['metrics'], **verdict}
     nested = ('metrics', 'verdict', NOT_COMPUTED)
     return {key: value for key, value in row.items() if key not in nested}
 
@@ -59,10 +60,6 @@ def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
             values = trajectory.signals[signal.name]
             columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
     return columns
-
-
-def _verdict(run: Entry) -> dict[str, str]:
-    return {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
 
 
 def _text(value: Any) -> Any:

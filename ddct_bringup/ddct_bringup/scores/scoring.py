@@ -93,6 +93,7 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
     reason = why_invalid(recording)
     verdict = _verdict(recording, metrics, limits, valid=not reason)
     lacking = not_computed(recording, metrics, verdict)
+    settings = recording.settings
     return {
         'bag': bag,
         **{name: getattr(facts, name) for name in _FACT_NAMES},
@@ -103,15 +104,9 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
         'fallbacks': fallbacks_in(recording.trajectory),
         'safe_state': None if facts.lockstep else safe_state(recording),
         'before_schema': recording.before_schema,
-        'scenario_changes': _scenario_changes(recording),
+        'scenario_changes': list(changed_values(settings.scenario)) if settings else None,
         **({NOT_COMPUTED: lacking} if recording.measured else {}),
     }
-
-
-def _scenario_changes(recording: Recording) -> list[str] | None:
-    """Return what the run changed of the packaged scenario; None where the bag does not tell."""
-    settings = recording.settings
-    return None if settings is None else list(changed_values(settings.scenario))
 
 
 def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None = None) -> Entry:

@@ -22,10 +22,6 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 SCHEMA_VERSION = 1
 """Of a limits file."""
-PACKAGED = 'packaged'
-"""What the limits that come with the package are called."""
-_RULE_KEYS = ('value', 'unit', 'reason')
-_LIMIT_KEYS = ('criterion', 'value', 'unit', 'applies_to')
 _CITATION = ('source', 'clause')
 _MOST = 1e9
 
@@ -99,9 +95,9 @@ class Limits:
 
 @cache
 def packaged_limits() -> Limits:
-    """Return the limits that come with the package."""
+    """Return the limits that come with the package, called `packaged`."""
     file = files('ddct_bringup.verdict') / 'limits.yaml'
-    return limits_of_text(file.read_text(encoding='utf-8'), PACKAGED)
+    return limits_of_text(file.read_text(encoding='utf-8'), 'packaged')
 
 
 def add_limits_option(parser: argparse.ArgumentParser) -> None:
@@ -156,7 +152,7 @@ def _rules(content: Any) -> Rules:
 
 
 def _rule_value(path: str, content: Any, unit: str, at_least: float | None) -> float:
-    rule = _mapping(path, content, _RULE_KEYS)
+    rule = _mapping(path, content, ('value', 'unit', 'reason'))
     _require_text(f'{path}.reason', rule['reason'])
     _require_unit(f'{path}.unit', rule['unit'], unit)
     return require_number(
@@ -165,7 +161,8 @@ def _rule_value(path: str, content: Any, unit: str, at_least: float | None) -> f
 
 
 def _limit(path: str, content: Any) -> Limit:
-    limit = _mapping(path, content, _LIMIT_KEYS, (*_CITATION, 'convention'))
+    required = ('criterion', 'value', 'unit', 'applies_to')
+    limit = _mapping(path, content, required, (*_CITATION, 'convention'))
     criterion = limit['criterion']
     if criterion not in CRITERION_UNITS:
         known = ', '.join(CRITERION_UNITS)

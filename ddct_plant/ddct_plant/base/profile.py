@@ -6,14 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from ddct_plant.base.options import OptionGroup, options_of
+from ddct_plant.base.options import OptionGroup, option, options_of
 
 TIME = 'time_s'
 
 
 @dataclass(frozen=True)
 class Profile(OptionGroup):
-    """Two fields: `time_s`, the scenario times, and the values there; the ends hold outside."""
+    """Scenario times, and in the field that a subclass adds the values; the ends hold outside."""
+
+    time_s: tuple[float, ...] = option(
+        (), 'scenario times of the points', 's', many=True, rising=True
+    )
 
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
@@ -23,15 +27,15 @@ class Profile(OptionGroup):
     @property
     def given(self) -> bool:
         """Whether it has points."""
-        return bool(getattr(self, TIME))
+        return bool(self.time_s)
 
     def at(self, time_s: float) -> float:
         """Return the value at a scenario time; there must be points."""
-        return float(np.interp(time_s, getattr(self, TIME), self._values))
+        return float(np.interp(time_s, self.time_s, self._values))
 
     def over(self, times_s: np.ndarray) -> np.ndarray:
         """Return the values at scenario times, (n,)."""
-        return np.interp(times_s, getattr(self, TIME), self._values)
+        return np.interp(times_s, self.time_s, self._values)
 
     @cached_property
     def _values(self) -> Any:

@@ -55,9 +55,6 @@ class EngineSpeedReference(Profile, prefix='engine_speed_reference.'):
     Without points the controllers follow what the driver's demand and the slip reference imply.
     """
 
-    time_s: tuple[float, ...] = option(
-        (), 'scenario times of the points', 's', many=True, rising=True
-    )
     speed_rad_s: tuple[float, ...] = option(
         (),
         'engine speed w_m that `decoupled_pid`, `torque_estimator` and the reference '
@@ -74,9 +71,6 @@ class EngineSpeedReference(Profile, prefix='engine_speed_reference.'):
 class SlipProfile(Profile, prefix='slip_reference.'):
     """Slip speed over scenario time, linear between its points; it counts from control start."""
 
-    time_s: tuple[float, ...] = option(
-        (), 'scenario times of the points', 's', many=True, rising=True
-    )
     slip_rad_s: tuple[float, ...] = option(
         (),
         'slip speed that the reference has then if `reference.shape` is `profile`, linear between '
