@@ -37,12 +37,42 @@ class CrfRamp(Descent):
         return math.copysign(size, start), -math.copysign(self._slope, start)
 
 
-class _TimedDescent(Descent):
-    """A descent that takes a given time whatever its start: start f(x), x = t / duration."""
+def tanh_shape(x: float) -> tuple[float, float]:
+    """
+    Return f(x) of the thesis's new reference, smoother than the ramp (Section 1.6.3), and f'(x).
 
-    def __init__(self, duration_s: float) -> None:
-        """Take the time from control start to zero."""
+    f(x) = [1 - tanh(kappa (2 x - 1)) / tanh(kappa)] / 2. The thesis prints a figure and no
+    formula; this one starts and ends exactly, nearly without a slope at both ends.
+    """
+    argument, scale = TANH_STEEPNESS * (2.0 * x - 1.0), math.tanh(TANH_STEEPNESS)
+    return (
+        0.5 * (1.0 - math.tanh(argument) / scale),
+        -TANH_STEEPNESS / (scale * math.cosh(argument) ** 2),
+    )
+
+
+def polynomial_shape(x: float) -> tuple[float, float]:
+    """
+    Return the cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends, and f'(x).
+
+    It is not of the thesis, but the polynomial of least degree with f(0) = 1, f(1) = 0,
+    f'(0) = f'(1) = 0. The end without slope is the no-lurch condition of Glielmo and Vasca: with
+    dw_d/dt = 0 where w_d becomes 0 both plates accelerate alike when the clutch locks.
+    """
+    return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)
+
+
+SHAPES = {'tanh': tanh_shape, 'polynomial': polynomial_shape}
+"""Functions f of 0 <= x < 1 with f(0) = 1 and f(1) = 0, by the name of the reference's shape."""
+
+
+class TimedDescent(Descent):
+    """A descent of selectable end: it takes a given time whatever its start, start f(x)."""
+
+    def __init__(self, duration_s: float, shape: str) -> None:
+        """Take the time from control start to zero, x = t / duration, and one of SHAPES."""
         self._duration_s = duration_s
+        self._shape = SHAPES[shape]
 
     def at(self, start: float, time_s: float) -> tuple[float, float]:
         """Return start f(x) and its rate, and 0 from x = 1 on."""
@@ -50,39 +80,6 @@ class _TimedDescent(Descent):
             return 0.0, 0.0
         value, slope = self._shape(time_s / self._duration_s)
         return start * value, start * slope / self._duration_s
-
-    @abstractmethod
-    def _shape(self, x: float) -> tuple[float, float]:
-        """Return f(x) and f'(x) for 0 <= x < 1; f(0) = 1, f(1) = 0."""
-
-
-class TanhDescent(_TimedDescent):
-    """
-    The thesis's new reference, smoother than the ramp and of selectable end (Section 1.6.3).
-
-    f(x) = [1 - tanh(kappa (2 x - 1)) / tanh(kappa)] / 2. The thesis prints a figure and no
-    formula; this one starts and ends exactly, nearly without a slope at both ends.
-    """
-
-    def _shape(self, x: float) -> tuple[float, float]:
-        argument, scale = TANH_STEEPNESS * (2.0 * x - 1.0), math.tanh(TANH_STEEPNESS)
-        return (
-            0.5 * (1.0 - math.tanh(argument) / scale),
-            -TANH_STEEPNESS / (scale * math.cosh(argument) ** 2),
-        )
-
-
-class PolynomialDescent(_TimedDescent):
-    """
-    The cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends; not of the thesis.
-
-    It is the polynomial of least degree with f(0) = 1, f(1) = 0, f'(0) = f'(1) = 0. The end
-    without slope is the no-lurch condition of Glielmo and Vasca: with dw_d/dt = 0 where w_d
-    becomes 0 both plates accelerate alike when the clutch locks.
-    """
-
-    def _shape(self, x: float) -> tuple[float, float]:
-        return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)
 
 
 class ProfileDescent(Descent):

@@ -8,13 +8,7 @@ from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
-from ddct_reference.descent import (
-    CrfRamp,
-    Descent,
-    PolynomialDescent,
-    ProfileDescent,
-    TanhDescent,
-)
+from ddct_reference.descent import CrfRamp, Descent, ProfileDescent, TimedDescent
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.slip_reference import DescendingReference, SlipReference
 
@@ -48,11 +42,9 @@ def make_descent(settings: RunSettings) -> Descent:
     if settings.reference_shape == PROFILE:
         scenario = settings.scenario
         return ProfileDescent(scenario.slip_reference, scenario.control_start_s)
-    shapes = {'tanh': TanhDescent, 'polynomial': PolynomialDescent}
     end_step = steps_in('reference.reference_end_s', reference.reference_end_s)
-    return shapes[settings.reference_shape](
-        (end_step - settings.scenario.control_start_step) * PERIOD_S
-    )
+    duration_s = (end_step - settings.scenario.control_start_step) * PERIOD_S
+    return TimedDescent(duration_s, settings.reference_shape)
 
 
 def nominal_slip(scenario: Scenario) -> list[float]:

@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from ddct_reference.descent import CrfRamp, PolynomialDescent, TanhDescent
+from ddct_reference.descent import CrfRamp, TimedDescent
 
 DESCENTS = {
     'ramp': CrfRamp(50.0),
-    'tanh': TanhDescent(0.8),
-    'polynomial': PolynomialDescent(0.8),
+    'tanh': TimedDescent(0.8, 'tanh'),
+    'polynomial': TimedDescent(0.8, 'polynomial'),
 }
 """Each takes 0.8 s from 40 rad/s."""
 INSIDE = [0.8 * share for share in (0.01, 0.2, 0.5, 0.77, 0.99)]

@@ -27,10 +27,6 @@ _STOP_S = 10.0
 class LiveView(Child):
     """A running `live`; what it prints tells how far it is."""
 
-    def __init__(self, port: int) -> None:
-        """Start it on a port, 0 for a free one, in the present ROS domain."""
-        super().__init__('ddct_bringup.programs.live', '--port', str(port))
-
     def wait_for_viewer(self) -> None:
         """Wait, however long, until a viewer shows a topic; raise DdctError when none can."""
         while 'ws://' not in self.words():
@@ -69,12 +65,13 @@ class LiveView(Child):
 @contextmanager
 def live_view(port: int) -> Iterator[LiveView]:
     """
-    Reserve a domain for one run, serve it, and yield once a viewer shows a topic.
+    Reserve a domain for one run, serve it on a port, and yield once a viewer shows a topic.
 
-    A run is over in seconds: it waits for its viewer. Raise DdctError if it cannot be served.
+    Port 0 takes a free one. A run is over in seconds: it waits for its viewer. Raise DdctError if
+    it cannot be served.
     """
     with own_domain():
-        view = LiveView(port)
+        view = LiveView('ddct_bringup.programs.live', '--port', str(port))
         try:
             view.wait_for_viewer()
             yield view

@@ -10,12 +10,12 @@ from rclpy.task import Future
 from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS, RECORDER_LATCHED_QOS
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
-from ddct_plant.graph.topics import RUN_INFO, Topic
+from ddct_plant.graph.topics import DIAGNOSTICS, RUN_INFO, SAFE_STATE, SINCE, Topic
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
@@ -42,6 +42,27 @@ class Output:
     def publish(self) -> None:
         """Send the message as it was filled last."""
         self._publisher.publish(self._message)
+
+
+class SafeStateReport:
+    """Say once why, and from then on every second since when: who comes late hears it too."""
+
+    def __init__(self, node: Node) -> None:
+        """Publish on `/diagnostics` for `node`; real time only, so lock-step bags hold none."""
+        self._node = node
+        self._output = Output(node, DIAGNOSTICS)
+        self._since: int | None = None
+
+    def tell(self, step: int, stamp: int, why: str) -> None:
+        """Tell at the tick of a step in the safe state, which the first call begins."""
+        if self._since is None:
+            self._since = stamp
+            self._node.get_logger().error(f'safe state from stamp {stamp} ns on: {why}')
+        elif step % STEPS_PER_S:
+            return
+        pairs = ((SINCE, str(self._since)), ('why', why))
+        name = f'{self._node.get_name()}{SAFE_STATE}'
+        self._output.fill(stamp, pairs, name=name, error=why).publish()
 
 
 class GraphNode(Node):

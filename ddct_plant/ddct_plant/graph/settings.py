@@ -26,25 +26,18 @@ def declare_settings(node: Node) -> RunSettings:
     return RunSettings(scenario, **settings)
 
 
-def declare_request_timeout(node: Node, afterwards: str) -> float:
-    """Declare how long requests may stop in real time, and what happens `afterwards`; in s."""
-    return declare_timeout(
-        node,
-        'request_timeout_s',
-        FailSafeSettings.request_timeout_s,
-        f'Real time: when requests stop for longer, {afterwards}',
-    )
-
-
 def declare_timeout(node: Node, name: str, default: float, description: str) -> float:
     """Declare how long something may stay away in real time, in s."""
     described = replace(_FAIL_SAFE['request_timeout_s'], default=default, meaning=description)
     return declare(node, name, described)
 
 
-def declare_fail_safe_ramp(node: Node) -> float:
-    """Declare how fast the clutch then opens, in N m/s."""
-    return declare(node, 'fail_safe_ramp_n_m_s', _FAIL_SAFE['fail_safe_ramp_n_m_s'])
+def declare_fail_safe(node: Node, name: str, default: float, description: str) -> FailSafeSettings:
+    """Declare the same, and how fast the clutch opens then."""
+    return FailSafeSettings(
+        declare_timeout(node, name, default, description),
+        declare(node, 'fail_safe_ramp_n_m_s', _FAIL_SAFE['fail_safe_ramp_n_m_s']),
+    )
 
 
 def declare(node: Node, name: str, described: Option, *, read_only: bool = True) -> Any:

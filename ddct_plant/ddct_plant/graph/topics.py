@@ -117,10 +117,6 @@ class Topic:
         """Return those of its signals that a run has, which must have the topic."""
         return tuple(each for each in self.signals if each.when is None or each.when(run))
 
-    def recorded_in(self, run: RunKind) -> bool:
-        """Say whether the recording of a run has it."""
-        return self.in_run(run) and not (run.lockstep and self.wall_clock)
-
     def writer(self, class_of: ClassOf = ros_class) -> Write:
         """Return what fills one message again and again: `write(stamp_ns, *values)`."""
         return self.kind.writer(class_of)
@@ -345,7 +341,9 @@ def all_topics() -> tuple[Topic, ...]:
 
 def recorded_topics(run: RunKind) -> tuple[Topic, ...]:
     """Return the topics that the recording of a run has, in writing order."""
-    return tuple(topic for topic in TOPICS if topic.recorded_in(run))
+    return tuple(
+        topic for topic in TOPICS if topic.in_run(run) and not (run.lockstep and topic.wall_clock)
+    )
 
 
 def tick_names() -> frozenset[str]:

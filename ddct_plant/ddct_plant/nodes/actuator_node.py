@@ -4,11 +4,10 @@ from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.fail_safe.guarded import GuardedActuator
-from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
-from ddct_plant.graph.reports import SafeStateReport
-from ddct_plant.graph.settings import declare_fail_safe_ramp, declare_request_timeout
+from ddct_plant.graph.node import Output, SafeStateReport
+from ddct_plant.graph.settings import declare_fail_safe
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.scenario.plant import initial_state, make_actuator
@@ -31,8 +30,11 @@ class ActuatorNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the actuator at rest on the run's first request."""
         super().__init__('actuator', **kwargs)
-        fail_safe = FailSafeSettings(
-            declare_request_timeout(self, 'the clutch opens'), declare_fail_safe_ramp(self)
+        fail_safe = declare_fail_safe(
+            self,
+            'request_timeout_s',
+            REQUEST_TIMEOUT_S,
+            'Real time: when requests stop for longer, the clutch opens',
         )
         initial = initial_state(self.settings)
         actuator = make_actuator(self.settings, initial)

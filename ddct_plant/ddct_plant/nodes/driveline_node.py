@@ -5,10 +5,9 @@ from typing import Any, ClassVar
 
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
-from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.node import GraphNode, Output
-from ddct_plant.graph.reports import SafeStateReport
-from ddct_plant.graph.settings import declare, declare_fail_safe_ramp, declare_timeout
+from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S
+from ddct_plant.graph.node import GraphNode, Output, SafeStateReport
+from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import (
@@ -112,15 +111,12 @@ class DrivelineNode(GraphNode):
                     60.0, 'wall time to wait for a reply', 's', at_least=0.1, at_most=LONGEST_S
                 ),
             ),
-            fail_safe=FailSafeSettings(
-                declare_timeout(
-                    self,
-                    'clutch_timeout_s',
-                    CLUTCH_TIMEOUT_S,
-                    'Real time: when clutch/torque stays away for longer, the clutch opens; '
-                    'give more than request_timeout_s of actuator',
-                ),
-                declare_fail_safe_ramp(self),
+            fail_safe=declare_fail_safe(
+                self,
+                'clutch_timeout_s',
+                CLUTCH_TIMEOUT_S,
+                'Real time: when clutch/torque stays away for longer, the clutch opens; '
+                'give more than request_timeout_s of actuator',
             ),
         )
 

@@ -6,10 +6,10 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.fail_safe.guarded import GuardedEngine, engine_info
+from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
-from ddct_plant.graph.reports import SafeStateReport
-from ddct_plant.graph.settings import declare, declare_request_timeout
+from ddct_plant.graph.node import Output, SafeStateReport
+from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import (
     ENGINE_REQUEST,
@@ -46,7 +46,12 @@ class EngineNode(FollowerNode):
             Option(False, 'wait for engine/torque_request of a two-input controller'),
         )
         self._engine = make_engine(self.settings)
-        timeout_s = declare_request_timeout(self, "the driver's demand takes over")
+        timeout_s = declare_timeout(
+            self,
+            'request_timeout_s',
+            REQUEST_TIMEOUT_S,
+            "Real time: when requests stop for longer, the driver's demand takes over",
+        )
         self._commanded = GuardedEngine(self._engine, timeout_s)
         self._demand = Output(self, TORQUE_DEMAND)
         self._torque = Output(self, ENGINE_TORQUE)
