@@ -153,9 +153,7 @@ class Architecture:
 
 def _is_status(status: object) -> bool:
     """Say whether the graph and a terminal can take it as `controller/status`."""
-    if type(status) is not tuple:
-        return False
-    return all(
+    return type(status) is tuple and all(
         type(pair) is tuple
         and len(pair) == 2
         and all(type(text) is str and text.isprintable() for text in pair)

@@ -78,7 +78,9 @@ class ControllerNode(FollowerNode):
         measurement = self._measure(step, inputs)
         started = time.perf_counter()
         request = self._architecture.update(measurement)
-        self._note_update_time(step, 1e6 * (time.perf_counter() - started))
+        self._update_times_us.append(1e6 * (time.perf_counter() - started))
+        if len(self._update_times_us) == TIMING_BATCH:
+            self._publish_timing(step)
         reply = (
             self._request.fill(stamp_ns, request.torque),
             self._status.fill(stamp_ns, request.status, name=self.get_name()),
@@ -108,11 +110,6 @@ class ControllerNode(FollowerNode):
             slip_reference=speeds,
             slip_reference_rate=rates,
         )
-
-    def _note_update_time(self, step: int, update_time_us: float) -> None:
-        self._update_times_us.append(update_time_us)
-        if len(self._update_times_us) == TIMING_BATCH:
-            self._publish_timing(step)
 
     def _publish_timing(self, step: int) -> None:
         times = ' '.join(f'{value:.3f}' for value in self._update_times_us)

@@ -16,9 +16,8 @@ from ddct_controllers.interface import (
     ControllerContext,
     ControllerSpec,
 )
-from ddct_controllers.linear import LinearController, linear_spec
+from ddct_controllers.linear import PI, LinearController, linear_spec
 from ddct_controllers.mpc.variants import PREDICTIVE
-from ddct_controllers.pi import PI
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design

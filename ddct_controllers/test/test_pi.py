@@ -3,7 +3,7 @@
 import pytest
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.pi import PiController
+from ddct_controllers.linear import PiController
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm

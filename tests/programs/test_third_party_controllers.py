@@ -14,7 +14,7 @@ from support.third_party import EXAMPLE, example_entry_points, install
 
 from ddct_bringup.programs import bringup, compare, ddct, score
 from ddct_controllers import registry
-from ddct_controllers.pi import PI
+from ddct_controllers.linear import PI
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario

@@ -5,8 +5,7 @@ import dataclasses
 import numpy as np
 
 from ddct_controllers.interface import Controller, Measurement
-from ddct_controllers.linear import DiscreteFilter, LinearController
-from ddct_controllers.pi import PiController
+from ddct_controllers.linear import DiscreteFilter, LinearController, PiController
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace

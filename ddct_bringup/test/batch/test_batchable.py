@@ -11,8 +11,7 @@ from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.interface import Command, Controller
-from ddct_controllers.linear import LinearController
-from ddct_controllers.pi import PiController
+from ddct_controllers.linear import LinearController, PiController
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace

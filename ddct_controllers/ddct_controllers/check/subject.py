@@ -17,7 +17,7 @@ from ddct_controllers.check.trial import (
 )
 from ddct_controllers.check.watch import Printed
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
-from ddct_controllers.pi import PiController
+from ddct_controllers.linear import PiController
 from ddct_controllers.places import place_of_error
 from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ForeignError

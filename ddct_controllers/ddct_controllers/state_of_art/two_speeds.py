@@ -8,9 +8,8 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_controllers.measured import measured_speeds
-from ddct_controllers.state_of_art.parts.engine_share import EngineShare
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
-from ddct_controllers.state_of_art.parts.torque_estimator import ClutchTorqueEstimator
+from ddct_controllers.state_of_art.parts.speed_loops import ClutchTorqueEstimator, EngineShare
 from ddct_plant.base.options import Option
 
 

@@ -39,7 +39,7 @@ def model_without_actuator(
     a[:4, 4:], c[:, 4:] = 0.0, 0.0
     b[:, REQUEST] += wear_gain * model.clutch
     d[SLIP_ACCELERATION, REQUEST] = wear_gain * plant.c[0] @ plant.b[:, 1]
-    return TransmissionModel(a, b, c, d, model.clutch)
+    return TransmissionModel(a, b, c, d, clutch=model.clutch)
 
 
 class LoopWithoutActuator(ClosedLoop):

@@ -4,7 +4,7 @@ The sampled model that the predictive controllers and their observers share.
 Also with more states: disturbances, or an engine that is commanded.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -27,22 +27,17 @@ DELAYED_REQUEST = STATES - 1
 
 
 @dataclass(frozen=True, eq=False)
-class TransmissionModel:
+class TransmissionModel(StateSpace):
     """
     x_(k+1) = a x_k + b u_k, y_k = c x_k + d u_k at 10 ms, exact for the clutch while it slips.
 
-    Disturbances that are estimated follow the nine states as constants.
+    Disturbances that are estimated follow the nine states as constants, so n = 9 plus these.
+    Columns of b (n, 3) and d (3, 3) are REQUEST, ENGINE_TORQUE, LOAD_TORQUE; rows of c (3, n) and
+    d are SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED.
     """
 
-    a: np.ndarray
-    """(n, n), n = 9 plus the disturbances."""
-    b: np.ndarray
-    """(n, 3), columns REQUEST, ENGINE_TORQUE, LOAD_TORQUE."""
-    c: np.ndarray
-    """(3, n), rows SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED."""
-    d: np.ndarray
-    """(3, 3)."""
-    clutch: np.ndarray
+    period_s: float | None = PERIOD_S
+    clutch: np.ndarray = field(kw_only=True)
     """(n,) per N m of C_f, held over a period, on top of what the actuator's model gives."""
 
     @property
@@ -104,7 +99,7 @@ def _with_last_request(
         b[:, REQUEST], d[:, REQUEST] = 0.0, 0.0
     b = np.vstack([b, [1.0, 0.0, 0.0]])
     c = np.hstack([sampled.c, through])
-    return TransmissionModel(a, b, c, d, np.concatenate([clutch, np.zeros(STATES - 4)]))
+    return TransmissionModel(a, b, c, d, clutch=np.concatenate([clutch, np.zeros(STATES - 4)]))
 
 
 def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel:
@@ -126,7 +121,7 @@ def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel
     d = model.d.copy()
     d[:, ENGINE_TORQUE] = lag_share * through
     c = np.column_stack([model.c, through, kept * through])
-    return TransmissionModel(a, b, c, d, np.concatenate([model.clutch, np.zeros(2)]))
+    return TransmissionModel(a, b, c, d, clutch=np.concatenate([model.clutch, np.zeros(2)]))
 
 
 def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> TransmissionModel:
@@ -138,7 +133,7 @@ def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> Transmis
         np.vstack([model.b, np.zeros((count, 3))]),
         np.hstack([model.c, np.zeros((len(model.c), count))]),
         model.d,
-        np.concatenate([model.clutch, np.zeros(count)]),
+        clutch=np.concatenate([model.clutch, np.zeros(count)]),
     )
 
 

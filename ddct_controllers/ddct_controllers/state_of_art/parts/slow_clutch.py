@@ -4,8 +4,8 @@ import numpy as np
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.linear import DiscreteFilter
-from ddct_controllers.state_of_art.parts.pid import Pid
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
+from ddct_controllers.state_of_art.parts.speed_loops import Pid
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace, discretise_zoh

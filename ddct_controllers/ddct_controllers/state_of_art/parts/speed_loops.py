@@ -1,7 +1,8 @@
-"""The engine's share of two-input control, and what the clutch takes over beyond it."""
+"""What loops of two speeds are built of: a PID, the engine's share, an estimator of the clutch."""
+
+import math
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.state_of_art.parts.pid import Pid
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority, EngineResponse
@@ -9,6 +10,48 @@ from ddct_plant.models.engine import EngineAuthority, EngineResponse
 TAKEOVER_BANDWIDTH_RAD_S = 5.0
 """Crossover of the slip loop through the clutch, whose 43 ms then cost it 12 degrees."""
 NEGLIGIBLE_RAD_S2 = 1e-6
+
+
+class Pid:
+    """
+    u_k = K_p e_k + K_d (e_k - e_(k-1))/T + i_k, i_(k+1) = i_k + K_i T e_k.
+
+    The gains are those for a speed that follows its acceleration command after a lag. Without lag
+    the plant is 1/s, and K_p = 2 w, K_i = w^2 put both closed-loop poles at -w. The series form
+    (K_p + K_i/s)(1 + lag s) cancels a first-order lag in front of it.
+    """
+
+    def __init__(self, bandwidth_rad_s: float, lag_s: float = 0.0) -> None:
+        """Start without memory."""
+        proportional = 2.0 * bandwidth_rad_s
+        self.integral = bandwidth_rad_s**2
+        """K_i in 1/s^2."""
+        self.proportional = proportional + self.integral * lag_s
+        """K_p in 1/s."""
+        self.derivative = proportional * lag_s
+        """K_d without unit."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Empty the integral; the next error has no derivative."""
+        self._integrated = 0.0
+        self._last_error: float | None = None
+
+    def update(self, error: float) -> float:
+        """Return the acceleration in rad/s^2 for an error in rad/s."""
+        change = 0.0 if self._last_error is None else error - self._last_error
+        self._last_error = error
+        action = self.proportional * error + self.derivative * change / PERIOD_S + self._integrated
+        self._integrated += self.integral * PERIOD_S * error
+        return action
+
+    def unwind(self, excess: float) -> None:
+        """
+        Take back what could not be carried out, `excess` in rad/s^2 of the last action.
+
+        Back-calculation (Astrom and Hagglund) with the tracking time K_p/K_i.
+        """
+        self._integrated -= PERIOD_S * self.integral / self.proportional * excess
 
 
 class EngineShare:
@@ -79,3 +122,41 @@ class EngineShare:
         self._lacking += self._share * (lacking - self._lacking)
         self._taken_over += self._integral_gain * PERIOD_S * self._lacking
         return request, delivered
+
+
+class ClutchTorqueEstimator:
+    """
+    A Luenberger observer of J_m dw_m/dt = C_m - C_n - d, with d constant.
+
+    C_n is the clutch torque that the actuator's model gives, d what the clutch transmits beyond
+    it, which wear or another fault makes. Both poles of the sampled observer are at
+    exp(-bandwidth T). Damping of the engine counts as part of d.
+    """
+
+    def __init__(self, engine_inertia: float, bandwidth_rad_s: float) -> None:
+        """Take J_m in kg m^2 and the bandwidth."""
+        pole = math.exp(-bandwidth_rad_s * PERIOD_S)
+        self._speed_gain = 1.0 - pole**2
+        self._torque_gain = -engine_inertia * (1.0 - pole) ** 2 / PERIOD_S
+        self._engine_inertia = engine_inertia
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything; the next speed starts an estimate with d = 0."""
+        self._speed: float | None = None
+        self._deviation = 0.0
+
+    def correct(self, engine_speed: float) -> float:
+        """Return d in N m for w_m in rad/s."""
+        if self._speed is None:
+            self._speed = engine_speed
+        innovation = engine_speed - self._speed
+        self._speed += self._speed_gain * innovation
+        self._deviation += self._torque_gain * innovation
+        return self._deviation
+
+    def predict(self, engine_torque: float, nominal_clutch_torque: float) -> None:
+        """Advance by one period over which C_m and C_n have these means in N m."""
+        assert self._speed is not None, 'correct comes first'
+        torque = engine_torque - nominal_clutch_torque - self._deviation
+        self._speed += PERIOD_S * torque / self._engine_inertia
