@@ -34,9 +34,26 @@ Chosen = str | ControllerSpec[Controller]
 """A controller by its name or file, or how one is made that has neither."""
 
 
+def _synthesised(name: str, context: ControllerContext) -> Controller:
+    return LinearController(synthesised_design(name, context.settings.scenario.driveline).sampled)
+
+
+_OWN: Mapping[str, ControllerSpec[Controller]] = {
+    'pi': PI,
+    **{
+        name: linear_spec(name, g_c, computed_from=THESIS)
+        for name, g_c in PRINTED_CONTROLLERS.items()
+    },
+    **{name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED},
+    **PREDICTIVE,
+    **STATE_OF_ART,
+}
+"""The controllers that come with this package, by their names."""
+
+
 def own_controller_names() -> list[str]:
     """Return the names of the controllers that come with this package."""
-    return list(_own_controllers())
+    return list(_OWN)
 
 
 def controller_names() -> list[str]:
@@ -54,8 +71,7 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
     """
     if not scenario.controllers:
         return
-    own = _own_controllers()
-    foreign = scenario.controllers.keys() - {*own, *labels}
+    foreign = scenario.controllers.keys() - {*_OWN, *labels}
     unknown = sorted(foreign - {*controller_names()}) if foreign else []
     if unknown:
         raise ParameterError(
@@ -63,8 +79,8 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
             f'{", ".join(controller_names())}'
         )
     for name, given in scenario.controllers.items():
-        if name in own:
-            own[name].values(given)
+        if name in _OWN:
+            _OWN[name].values(given)
 
 
 def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> list[str]:
@@ -117,7 +133,7 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
                 'controller; change it in the file'
             )
         return spec
-    return _own_controllers().get(chosen) or _third_party(chosen)
+    return _OWN.get(chosen) or _third_party(chosen)
 
 
 def controller_label(chosen: Chosen) -> str:
@@ -125,21 +141,6 @@ def controller_label(chosen: Chosen) -> str:
     if isinstance(chosen, str) and not is_controller_file(chosen):
         return chosen
     return controller_spec(chosen).name
-
-
-def _own_controllers() -> Mapping[str, ControllerSpec[Controller]]:
-    printed = {
-        name: linear_spec(name, g_c, computed_from=THESIS)
-        for name, g_c in PRINTED_CONTROLLERS.items()
-    }
-    synthesised = {
-        name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED
-    }
-    return {'pi': PI, **printed, **synthesised, **PREDICTIVE, **STATE_OF_ART}
-
-
-def _synthesised(name: str, context: ControllerContext) -> Controller:
-    return LinearController(synthesised_design(name, context.settings.scenario.driveline).sampled)
 
 
 def _third_party(name: str) -> ControllerSpec[Controller]:

@@ -130,8 +130,7 @@ def _fed(variable: Any, ours: object) -> Fed:
         return Fed(variable, attrgetter(SCALARS[name]))
 
     def read(measurement: Measurement) -> float:
-        value: float = getattr(measurement, AHEAD[name])[ahead]
-        return value
+        return getattr(measurement, AHEAD[name])[ahead]
 
     return Fed(variable, read, ahead)
 

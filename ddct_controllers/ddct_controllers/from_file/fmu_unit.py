@@ -132,7 +132,11 @@ class FmuController(Controller):
         time_s = time_of_step(self._steps)
         with self._named(f'at its own time {time_s:g} s'):
             if not self._steps:
-                self._initialise(inputs)
+                if self._fmu.is_fmi2:
+                    self._instance.setupExperiment(startTime=0.0)
+                self._instance.enterInitializationMode()
+                self._set(inputs)
+                self._instance.exitInitializationMode()
             self._set(inputs)
             ended = self._instance.doStep(time_s, PERIOD_S)
             if ended and ended[1]:  # FMI 3.0 tells so; FMI 2.0 fails
@@ -164,13 +168,6 @@ class FmuController(Controller):
             if kind == 'Enumeration':
                 kind = 'Integer' if self._fmu.is_fmi2 else 'Int64'
             getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
-
-    def _initialise(self, inputs: Sequence[tuple[Any, float]]) -> None:
-        if self._fmu.is_fmi2:
-            self._instance.setupExperiment(startTime=0.0)
-        self._instance.enterInitializationMode()
-        self._set(inputs)
-        self._instance.exitInitializationMode()
 
     @contextlib.contextmanager
     def _named(self, when: str) -> Iterator[None]:

@@ -137,8 +137,7 @@ def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarra
     error = (math.sqrt(2.0) * NOISE.speed_rad_s) ** 2
     covariance = riccati(plant.a.T, plant.c.T, driven @ driven.T, np.array([[error]]), NO_GAIN)
     innovation = plant.c @ covariance @ plant.c.T + error
-    gain: np.ndarray = covariance @ plant.c.T / innovation
-    return gain
+    return covariance @ plant.c.T / innovation
 
 
 def _make(context: ControllerContext) -> LinearController:

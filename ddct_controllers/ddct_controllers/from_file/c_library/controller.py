@@ -11,14 +11,6 @@ from operator import attrgetter
 from pathlib import Path
 
 from ddct_controllers.from_file.c_library import host
-from ddct_controllers.from_file.c_library.host import (
-    ANSWER,
-    HOLD,
-    MOST_BYTES,
-    MOST_SECONDS,
-    RESET,
-    UPDATE,
-)
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import (
     UNSTATED,
@@ -37,7 +29,7 @@ _SCALARS = attrgetter(
     *('engine_torque', 'load_torque', 'open_loop_torque'),
 )
 """What a ddct_measurement begins with."""
-_CALLS = {RESET: 'reset', UPDATE: 'update', HOLD: 'hold'}
+_CALLS = {host.RESET: 'reset', host.UPDATE: 'update', host.HOLD: 'hold'}
 
 
 def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
@@ -76,15 +68,15 @@ class CLibraryController(Controller):
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
-        self._ask(RESET)
+        self._ask(host.RESET)
 
     def hold(self, measurement: Measurement) -> None:
         """Call ddct_controller_hold, or reset where there is none."""
-        self._ask(HOLD, measurement)
+        self._ask(host.HOLD, measurement)
 
     def update(self, measurement: Measurement) -> Command:
         """Call ddct_controller_update; raise DdctError when it fails, or says so."""
-        clutch, engine, status = self._ask(UPDATE, measurement)
+        clutch, engine, status = self._ask(host.UPDATE, measurement)
         said = (('c_status', str(status)),)
         return Command(clutch, said, engine if self.commands_engine else None)
 
@@ -96,7 +88,7 @@ class CLibraryController(Controller):
             request += self._layout.pack(*_SCALARS(measurement), *references)
         with contextlib.suppress(OSError):  # it ended before; what follows says how
             self._channel.send(request)
-        clutch, engine, status = ANSWER.unpack(self._received(at))
+        clutch, engine, status = host.ANSWER.unpack(self._received(at))
         if status < 0:
             self._end()
             raise DdctError(f'{self._where}: it returned {status} when {at}: mend the C')
@@ -105,7 +97,7 @@ class CLibraryController(Controller):
     def _received(self, at: str) -> bytes:
         """Return an answer; raise DdctError when the process ended instead."""
         try:
-            answer = self._channel.recv(MOST_BYTES)
+            answer = self._channel.recv(host.MOST_BYTES)
         except OSError:
             answer = b''
         if answer:
@@ -114,7 +106,7 @@ class CLibraryController(Controller):
         self._end()
         how = f'it ended with exit code {code}'
         if code == -signal.SIGALRM:
-            how = f'it gave no answer within {MOST_SECONDS} s'
+            how = f'it gave no answer within {host.MOST_SECONDS} s'
         elif code < 0:
             how = f'it crashed ({signal.Signals(-code).name})'
         raise DdctError(f'{self._where}: {how} when {at}: mend the C')

@@ -50,8 +50,7 @@ def torque_noise(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
             noise.clutch_torque_n_m * model.clutch,
         ]
     )
-    covariance: np.ndarray = torques @ torques.T
-    return covariance
+    return torques @ torques.T
 
 
 def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
@@ -73,8 +72,7 @@ def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
     complaint = f'observer: no stationary Kalman gain for {noise} (%s): give positive levels'
     covariance = riccati(model.a.T, measured.T, process, error, complaint)
     innovation = measured @ covariance @ measured.T + error
-    gain: np.ndarray = np.linalg.solve(innovation, measured @ covariance).T
-    return gain
+    return np.linalg.solve(innovation, measured @ covariance).T
 
 
 def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndarray:
@@ -105,8 +103,7 @@ def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndar
     )
     covariance = riccati(model.a.T, output.T, model.b @ model.b.T, noise, complaint)
     gain = covariance @ output.T / (output @ covariance @ output.T + noise)
-    effective: np.ndarray = gain @ output[:, :MEASURED]
-    return effective
+    return gain @ output[:, :MEASURED]
 
 
 def riccati(
@@ -121,10 +118,9 @@ def riccati(
     from scipy.linalg import solve_discrete_are
 
     try:
-        solution: np.ndarray = solve_discrete_are(a, b, q, r)
+        return solve_discrete_are(a, b, q, r)
     except (np.linalg.LinAlgError, ValueError) as failure:
         raise ParameterError(complaint % failure) from failure
-    return solution
 
 
 @dataclass(frozen=True)

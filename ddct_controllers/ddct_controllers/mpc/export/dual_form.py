@@ -102,11 +102,9 @@ def _known(matrix: np.ndarray, states: int, inputs: int, *, jump: bool = False) 
     own, rest = np.split(matrix, [states], axis=1)
     deviation = np.zeros((len(matrix), 0))
     if inputs == 1:
-        before, engine, load = np.split(rest[:, :3], 3, axis=1)
-        after = rest[:, 3:]
+        before, engine, load, after = np.split(rest, [1, 2, 3], axis=1)
     else:
-        engine, deviation, before, load = np.split(rest[:, :5], [1, 2, 4], axis=1)
-        after = rest[:, 5:]
+        engine, deviation, before, load, after = np.split(rest, [1, 2, 4, 5], axis=1)
     target, change = after[:, :1], np.zeros((len(matrix), 1))
     if jump:
         target, change = change, target
