@@ -29,18 +29,13 @@ def mixed_sensitivity(
     """
     Return M with w = r, z = [W_1 e, W_2 y] and v = e = r - y, y = plant u (Section 3.1).
 
-    `w_2` is a polynomial in s, or proper. A polynomial is exact, without the thesis's `sderiv`:
-    y' = C A x and so on, up to the order at which u appears, which is the plant's relative
-    degree. Raise ParameterError for a weight that cannot be used.
+    `w_2` is a polynomial in s. It is exact, without the thesis's `sderiv`: y' = C A x and so on,
+    up to the order at which u appears, which is the plant's relative degree. Raise ParameterError
+    for a weight that cannot be used.
     """
     realised = off_axis(plant).to_state_space()
-    first = stable_weight('W_1', w_1)
-    if w_2.poles.size:
-        second, weighted = stable_weight('W_2', w_2), (realised.c, realised.d)
-    else:
-        degree = plant.poles.size - plant.zeros.size
-        second, weighted = _UNIT, _derivatives(realised, degree, w_2)
-    return _stack(realised, weighted, (first, second))
+    weighted = _derivatives(realised, plant.poles.size - plant.zeros.size, w_2)
+    return _stack(realised, weighted, (stable_weight('W_1', w_1), _UNIT))
 
 
 def sampled_sensitivity(
