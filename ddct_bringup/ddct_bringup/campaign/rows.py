@@ -32,6 +32,7 @@ METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
 CRITERION = 'criterion.'
 """Before the name of a criterion's column."""
 CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
+_SETTINGS = options_of(RunSettings)
 
 
 @dataclass(frozen=True)
@@ -53,10 +54,9 @@ class RunBase:
         What belongs together is moved with them, as `--set` does. Raise DdctError for what cannot
         be used.
         """
-        own = options_of(RunSettings)
-        settings = {**self.settings, **{key: varied[key] for key in varied if key in own}}
+        settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
         ours = {key: value for key, value in self.changes.items() if key not in varied}
-        changes = ours | {key: varied[key] for key in varied if key not in own}
+        changes = ours | {key: varied[key] for key in varied if key not in _SETTINGS}
         scenario = self.file.scenario(changes, settings.get('clutch', LINEAR))
         return run_settings(scenario, self.labels, settings)
 
@@ -66,7 +66,7 @@ def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
     changes = dict(map(parsed_override, options.overrides))
     if options.duration is not None:
         changes['duration_s'] = options.duration
-    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
+    settings = {name: getattr(options, name) for name in _SETTINGS}
     return RunBase(ScenarioFile.read(options.scenario), changes, settings, labels)
 
 

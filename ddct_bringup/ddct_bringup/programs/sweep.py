@@ -24,7 +24,8 @@ from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable
-from ddct_plant.base.options import close_name
+from ddct_plant.base.options import require_known
+from ddct_plant.files.input_file import located
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
@@ -104,9 +105,8 @@ def _carried_out(sweep: Sweep) -> list[Entry]:
 
 def _metrics(text: str) -> list[Figure]:
     names = [name.strip() for name in text.split(',') if name.strip()]
-    for name in names:
-        if name not in METRICS:
-            raise ParameterError(f'--metrics: unknown metric {name}: {close_name(name, METRICS)}')
+    with located('--metrics'):
+        require_known(names, METRICS, 'metric')
     if not names:
         raise ParameterError('--metrics is empty: name at least one')
     return [METRICS[name] for name in dict.fromkeys(names)]

@@ -9,6 +9,7 @@ import numpy as np
 
 from ddct_bringup.campaign.keys import SCENARIO, option_of
 from ddct_plant.base.errors import ParameterError, printable
+from ddct_plant.files.input_file import located
 from ddct_plant.files.yaml_text import parse_yaml
 
 MOST = 10_000
@@ -105,10 +106,8 @@ def _value(text: str, key: str) -> Any:
     try:
         number = float(text)
     except ValueError:
-        try:
+        with located(f'--over {printable(key)}'):
             return parse_yaml(text)
-        except ParameterError as error:
-            raise ParameterError(f'--over {printable(key)}: {error}') from error
     if not math.isfinite(number):
         raise ParameterError(f'--over {printable(key)}: {text} is not finite: give a number')
     return number
