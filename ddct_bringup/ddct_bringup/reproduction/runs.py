@@ -7,18 +7,16 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_bringup.scores.validity import not_finite
+from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.thesis.table_5_1 import FIGURES
-from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.state import INVALID
-from ddct_bringup.verdict.verdict import Verdict, judge
+from ddct_bringup.verdict.verdict import Verdict
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import cut_speed, end_cause
 from ddct_plant.scenario.settings import RunSettings
 
 THESIS_SCENARIO = load_scenario('thesis')
@@ -52,18 +50,9 @@ class HeadlessRun:
     @cached_property
     def verdict(self) -> Verdict:
         """What the packaged limits say of it."""
-        limits, scenario = packaged_limits(), self.settings.scenario
-        run = JudgedRun(
-            self.trajectory,
-            self.start,
-            scenario.score_window_s,
-            self.metrics._asdict(),
-            limits.rules.engagements_a_day,
-        )
-        known = end_cause(scenario, float(self.trajectory.joint_speed[-1, 0]))
-        if not_finite(self.trajectory):
-            known = INVALID
-        return judge(run, limits, scenario.name, known, cut_speed(scenario))
+        name = str(self.controller)
+        recording = in_memory(self.settings, name, self.trajectory)
+        return score_run(recording, name, packaged_limits(), timing=None)['verdict']
 
     @property
     def slip_rpm(self) -> np.ndarray:

@@ -23,7 +23,6 @@ from ddct_plant.scenario.scenario import Scenario
 
 FITTED_NUMBERS = len(PARAMETERS) + 1
 """p: the parameters and the end of the score window."""
-_SCENARIO_ONLY = tuple(index for index in range(len(PARAMETERS)) if index not in PI_ONLY)
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,9 @@ def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
         problem = dataclasses.replace(
             optimum.problem, rows=tuple(kept for kept in ROWS if kept != row)
         )
-        free = _SCENARIO_ONLY if row == 'pi' else tuple(range(len(PARAMETERS)))
+        free = tuple(
+            index for index in range(len(PARAMETERS)) if row != 'pi' or index not in PI_ONLY
+        )
         best = _best_fit(problem, optimum.values, free)
         if row == 'pi':
             alone = dataclasses.replace(problem, rows=('pi',))
@@ -130,10 +131,8 @@ def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
 
 def _best_fit(problem: Problem, values: Values, free: tuple[int, ...]) -> Fit:
     """Return the best of the fits from the optimum and from two other starts."""
-    starts = [np.array(values), np.array(STARTS[0]), np.array(STARTS[2])]
-    for start in starts:
-        held = [index for index in range(len(PARAMETERS)) if index not in free]
-        start[held] = np.array(values)[held]
+    is_free = np.isin(range(len(PARAMETERS)), free)
+    starts = [np.where(is_free, start, values) for start in (values, STARTS[0], STARTS[2])]
     return min((fit(problem, start, free) for start in starts), key=lambda one: one.objective)
 
 

@@ -41,7 +41,7 @@ from ddct_bringup.reproduction.runs import headless_run
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_text
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -107,12 +107,14 @@ def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:
 
     Raise DdctError for one that the search found and the rule does not admit.
     """
-    found: dict[tuple[float, ...], Scenario] = {}
+    found: dict[str, Scenario] = {}
     for scenario in _search(frozen, progress):
         against = why_not_admissible(scenario)
         if against:
             raise DdctError(f'{scenario.name} is not admissible: {", ".join(against)}')
-        found.setdefault(_content(scenario), scenario)
+        # What tells two members apart, whatever their names.
+        content = scenario_digest(dataclasses.replace(scenario, name=frozen.name, description=''))
+        found.setdefault(content, scenario)
     return list(found.values())
 
 
@@ -175,14 +177,3 @@ def _centres(frozen: Scenario, progress: Progress) -> dict[float, tuple[float, .
 def _member(problem: Problem, at: Values, name: str, what: str) -> Scenario:
     values = [round(value, decimals) for value, decimals in zip(at, _DECIMALS, strict=True)]
     return dataclasses.replace(problem.scenario(values), name=name, description=what)
-
-
-def _content(scenario: Scenario) -> tuple[float, ...]:
-    """Return what tells two members apart, whatever their names."""
-    initial, load = scenario.initial, scenario.load
-    return (
-        *values_of(scenario),
-        scenario.score_window_s[1],
-        initial.shaft_speed_rad_s,
-        load.rolling_coefficient,
-    )

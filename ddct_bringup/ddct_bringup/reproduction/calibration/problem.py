@@ -22,13 +22,13 @@ from ddct_bringup.reproduction.calibration.parameters import (
     PI_ONLY,
     RANGE,
     ROWS,
-    TARGETS,
     Record,
     Values,
     pi_growth_rate,
+    residual_rows,
 )
 from ddct_bringup.reproduction.runs import headless_run
-from ddct_bringup.thesis.table_5_1 import FIGURES, TOLERANCES
+from ddct_bringup.thesis.table_5_1 import FIGURES
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
@@ -69,13 +69,8 @@ class Problem:
 
     def residuals(self, values: Values) -> np.ndarray:
         """Return (computed / printed - 1) / tolerance, (3 rows,), three figures a row."""
-        return np.array(
-            [
-                (computed[name] / TARGETS[row][name] - 1.0) / TOLERANCES[name]
-                for row, computed in self.figures(values).items()
-                for name in FIGURES
-            ]
-        )
+        rows = residual_rows(self.figures(values))
+        return np.array([row['deviation'] / row['tolerance'] for row in rows])
 
     def objective(self, values: Values) -> float:
         """Return half the sum of the squared scaled residuals."""

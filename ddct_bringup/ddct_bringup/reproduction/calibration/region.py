@@ -22,14 +22,15 @@ def centre(problem: Problem, start: Values) -> tuple[float, ...]:
 
     Sequential quadratic programming: least t with |residuals| <= t.
     """
-    figures = _Figures(problem)
-    ones = np.ones((2 * figures.count, 1))
+    both_signs, jacobian = _both_signs(problem)
     shares = _shares(start)
+    first = both_signs(shares)
+    ones = np.ones((len(first), 1))
     least = _least(
         np.append(np.zeros(len(PARAMETERS)), 1.0),
-        np.append(shares, np.max(np.abs(figures.residuals(shares)))),
-        lambda at: at[-1] + figures.both_signs(at[:-1]),
-        lambda at: np.hstack([figures.both_signs_jacobian(at[:-1]), ones]),
+        np.append(shares, np.max(first)),
+        lambda at: at[-1] + both_signs(at[:-1]),
+        lambda at: np.hstack([jacobian(at[:-1]), ones]),
     )
     return _values(least[:-1])
 
@@ -40,43 +41,33 @@ def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[fl
 
     `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
     """
-    figures = _Figures(problem)
-    return _values(
-        _least(
-            -np.array(direction, dtype=float),
-            _shares(start),
-            lambda at: RIM + figures.both_signs(at),
-            figures.both_signs_jacobian,
-        )
-    )
+    both_signs, jacobian = _both_signs(problem)
+    gain = -np.array(direction, dtype=float)
+    return _values(_least(gain, _shares(start), lambda at: RIM + both_signs(at), jacobian))
 
 
 _Function = Callable[[np.ndarray], np.ndarray]
 
 
-class _Figures:
-    """The residuals of a problem as functions of the parameters' (6,) shares of their ranges."""
+def _both_signs(problem: Problem) -> tuple[_Function, _Function]:
+    """
+    Return (-r, r), (18,), of the scaled residuals r and its derivatives, (18, 6).
 
-    def __init__(self, problem: Problem) -> None:
-        """Keep what was computed last: each is asked for twice at a point."""
-        self.count = 3 * len(problem.rows)
-        self._residuals = lru_cache(lambda *values: problem.residuals(values))
-        self._jacobian = lru_cache(lambda *values: problem.jacobian(values))
+    They are functions of the parameters' (6,) shares of their ranges, and keep what they computed:
+    each is asked for twice at a point.
+    """
 
-    def residuals(self, shares: np.ndarray) -> np.ndarray:
-        """Return the (9,) scaled residuals r."""
-        found: np.ndarray = self._residuals(*_values(shares))
-        return found
+    @lru_cache
+    def values(*at: float) -> np.ndarray:
+        residuals = problem.residuals(at)
+        return np.concatenate([-residuals, residuals])
 
-    def both_signs(self, shares: np.ndarray) -> np.ndarray:
-        """Return (-r, r), (18,)."""
-        found = self.residuals(shares)
-        return np.concatenate([-found, found])
+    @lru_cache
+    def derivatives(*at: float) -> np.ndarray:
+        jacobian = problem.jacobian(at)
+        return np.vstack([-jacobian, jacobian])
 
-    def both_signs_jacobian(self, shares: np.ndarray) -> np.ndarray:
-        """Return the derivatives of (-r, r), (18, 6)."""
-        found = self._jacobian(*_values(shares))
-        return np.vstack([-found, found])
+    return lambda at: values(*_values(at)), lambda at: derivatives(*_values(at))
 
 
 def _shares(values: Values) -> np.ndarray:

@@ -69,10 +69,9 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Draw into the folder and return the exit code."""
     figures = collect_figures(_own(options.controllers))
-    numbers = {figure.number for figure in figures}
     not_drawn = NOT_DRAWN
     if options.only:
-        wanted = _wanted(options.only, numbers)
+        wanted = _wanted(options.only, {figure.number for figure in figures})
         figures = [figure for figure in figures if figure.number in wanted]
         not_drawn = {}
     folder = Path(options.out)

@@ -6,7 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.runs import (
+    THESIS_SCENARIO,
+    HeadlessRun,
+    headless_run,
+    thesis_run,
+)
 from ddct_bringup.reproduction.values.plant_values import (
     SIMPLIFIED_PLANTS,
     deviation_bound_percent,
@@ -14,36 +19,34 @@ from ddct_bringup.reproduction.values.plant_values import (
     plant_slips,
 )
 from ddct_controllers.design.drawing.chart_style import GREY, REFERENCE_LINE
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.models.engine import Engine
-from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.simplified.plants import printed_lti_slip
-from ddct_reference.factory import make_reference
 
 _LAST_S = 2.2
+_SHOWN = steps_in('time shown', _LAST_S) + 1
+"""Steps of a run until then."""
 _END_TIMES_S = (1.2, 1.6, 2.0)
 _PRINTED_PLANT = 'LTI, coefficients as printed'
 
 
-def reference_rpm(scenario: Scenario, architecture: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return time in s and the stored slip reference in rpm of an architecture without C_fOL."""
-    reference = make_reference(RunSettings(scenario, architecture))
-    steps = np.arange(round(_LAST_S / PERIOD_S) + 1)
-    speeds = [reference.update(int(step), 0.0)[0][0] for step in steps]
-    return steps * PERIOD_S, rpm_from_rad_s(np.array(speeds))
+def _reference_rpm(run: HeadlessRun) -> tuple[np.ndarray, np.ndarray]:
+    """Return time in s, until _LAST_S, and the slip reference of a run in rpm."""
+    reference = rpm_from_rad_s(run.trajectory.slip_reference[:, 0])
+    return run.trajectory.time_s[:_SHOWN], reference[:_SHOWN]
 
 
-def tanh_scenario(end_s: float) -> Scenario:
-    """Return the thesis's scenario with a tanh reference that ends at `end_s` seconds."""
+def _tanh_run(end_s: float) -> HeadlessRun:
+    """Return a run after the tanh reference that ends at `end_s` seconds."""
     reference = dataclasses.replace(THESIS_SCENARIO.reference, reference_end_s=end_s)
-    return dataclasses.replace(THESIS_SCENARIO, reference=reference)
+    scenario = dataclasses.replace(THESIS_SCENARIO, reference=reference)
+    return headless_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')
 
 
 def _draw_reference(axes: Axes) -> str:
     start_s = THESIS_SCENARIO.control_start_s
-    reference = reference_rpm(THESIS_SCENARIO, 'feedforward')
+    reference = _reference_rpm(thesis_run('pi', 'detailed', 1.0))
     start = np.array([start_s, start_s]), np.array([0.0, 1.0])
     across = {'color': GREY, 'linewidth': 1.0, 'transform': axes.get_xaxis_transform()}
     draw_over_time(
@@ -60,11 +63,10 @@ def _draw_reference(axes: Axes) -> str:
 
 
 def _draw_engine_torque(axes: Axes) -> str:
-    engine = Engine(THESIS_SCENARIO.engine)
-    steps = np.arange(round(_LAST_S / PERIOD_S) + 1)
-    torque = np.array([engine.torque(int(step)) for step in steps])
-    quantity, lines = 'Engine torque C_m, N m', {'C_m': (steps * PERIOD_S, torque)}
-    draw_over_time(axes, quantity, (0.0, _LAST_S), lines, {})
+    run = thesis_run('pi', 'detailed', 1.0).trajectory
+    torque = run.engine_torque[:_SHOWN]
+    lines = {'C_m': (run.time_s[:_SHOWN], torque)}
+    draw_over_time(axes, 'Engine torque C_m, N m', (0.0, _LAST_S), lines, {})
     return (
         'The "sudden growth" in "the first 0.5 seconds" (Chapter 6) is here. The thesis prints no '
         f'values: the rise to {np.max(torque):.0f} N m is calibrated on Table 5.1.'
@@ -93,10 +95,9 @@ def _draw_plants(axes: Axes) -> str:
 
 def _draw_tanh(axes: Axes) -> str:
     lines = {
-        f'tanh, zero at {end_s:.1f} s': reference_rpm(tanh_scenario(end_s), 'feedforward_tanh')
-        for end_s in _END_TIMES_S
+        f'tanh, zero at {end_s:.1f} s': _reference_rpm(_tanh_run(end_s)) for end_s in _END_TIMES_S
     }
-    lines["CRF's"] = reference_rpm(THESIS_SCENARIO, 'feedforward')
+    lines["CRF's"] = _reference_rpm(thesis_run('pi', 'detailed', 1.0))
     quantity = 'Slip speed reference, rpm'
     draw_over_time(axes, quantity, (0.0, _LAST_S), lines, {"CRF's": REFERENCE_LINE})
     return (

@@ -28,8 +28,8 @@ OSCILLATION_WORDS = {
 }
 """Table 5.2: w_sr and A_x by K_usura."""
 
-WORDS = (('good', 'low'), ('average',), ('bad', 'high'))
-"""From the best to the worst."""
+_RANKS = {'good': 0, 'low': 0, 'average': 1, 'bad': 2, 'high': 2}
+"""Of the words, from the best to the worst."""
 _ALIKE = 2.0
 """Largest ratio of two figures that have the same word."""
 
@@ -167,14 +167,10 @@ def words_of(row: Row) -> dict[str, str]:
 
 def _stands(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
     """Return whether the figures of two controllers are as their words say."""
-    order = _rank(words[name]) - _rank(words[other])
+    order = _RANKS[words[name]] - _RANKS[words[other]]
     if order == 0:
         return max(row[name], row[other]) <= _ALIKE * min(row[name], row[other])
     return row[name] > row[other] if order > 0 else row[name] < row[other]
-
-
-def _rank(word: str) -> int:
-    return next(rank for rank, same in enumerate(WORDS) if word in same)
 
 
 def _text(figure: float, unit: str) -> str:
