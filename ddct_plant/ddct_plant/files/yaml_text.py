@@ -173,5 +173,4 @@ def _refused(event: yaml.Event, what: str) -> ParameterError:
 
 
 def _line(event: yaml.Event) -> int:
-    line: int = event.start_mark.line
-    return line + 1
+    return int(event.start_mark.line) + 1

@@ -12,8 +12,7 @@ to rounding, so a scenario that gives none of these is left as it is.
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import reduce
-from typing import Any
+from operator import attrgetter
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in, time_of_step
@@ -70,8 +69,7 @@ def _with_control_in(scenario: Scenario) -> Scenario:
 
 def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
     """Hold J_v = m_v r_w^2: move J_v or the mass, whichever is given less; never the radius."""
-    inertia, mass = _value(scenario, INERTIA), _value(scenario, MASS)
-    radius = _value(scenario, RADIUS)
+    inertia, mass, radius = attrgetter(INERTIA, MASS, RADIUS)(scenario)
     square = radius * radius
     if not 0.0 < square < math.inf:
         raise ParameterError(f'{RADIUS} is {radius:g} m: no vehicle has that')
@@ -121,7 +119,7 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
 def _moved(scenario: Scenario, key: str, value: float, why: str) -> Scenario:
     group, _, leaf = key.partition('.')
     changed = replace(getattr(scenario, group), **{leaf: value})
-    about = f'{key} moved from {_value(scenario, key):g} to {value:g}: {why}'
+    about = f'{key} moved from {attrgetter(key)(scenario):g} to {value:g}: {why}'
     return _saying(replace(scenario, **{group: changed}), about)
 
 
@@ -147,10 +145,6 @@ def _saying(scenario: Scenario, line: str) -> Scenario:
     if line in scenario.adjusted:
         return scenario
     return replace(scenario, adjusted=(*scenario.adjusted, line))
-
-
-def _value(scenario: Scenario, key: str) -> Any:
-    return reduce(getattr, key.split('.'), scenario)
 
 
 def _origin(origins: Origins, key: str) -> int:
