@@ -39,14 +39,6 @@ class FrictionSystem:
     def __post_init__(self) -> None:
         """Check shapes, values and minors; raise ParameterError otherwise."""
         own_matrices(self, 'friction system', g='nN', a='nn', b='nm', h='Nn')
-        self._require_positive_minors()
-
-    @property
-    def elements(self) -> int:
-        """N, the number of friction elements."""
-        return len(self.h)
-
-    def _require_positive_minors(self) -> None:
         mobility = -self.h @ self.g
         for i, own in enumerate(np.diag(mobility)):
             if own <= 0.0:
@@ -62,6 +54,11 @@ class FrictionSystem:
                         f'friction system: h g of the elements {stuck} is singular: they cannot '
                         'stick together, as their slips or torques depend on each other'
                     )
+
+    @property
+    def elements(self) -> int:
+        """N, the number of friction elements."""
+        return len(self.h)
 
 
 def require_capacities(element: int, kinetic: Values, static: Values) -> None:

@@ -1,7 +1,7 @@
 """The driveline of a measured car from its log, with intervals, and what it then predicts."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -134,20 +134,16 @@ def _result(
 ) -> LogFit:
     """Return the fit with deviations in the units of the parameters."""
     values = problem.values(x)
+    loads = [residuals_of(values, each)[1][-1] for each in stretches if not each.load_known]
+    lengths = [len(each.time_s) for each in stretches if not each.load_known]
     scales = {name: problem.damping if name in DAMPINGS else 1.0 for name in problem.free}
     return LogFit(
         values=values,
         std={n: scales[n] * each for n, each in zip(problem.free, std.tolist(), strict=True)},
         undetermined=tuple(weak),
         noise=problem.noise,
-        load_torque=_load_torque(values, stretches),
+        load_torque=float(np.average(loads, weights=lengths)) if loads else None,
     )
-
-
-def _load_torque(values: Mapping[str, float], stretches: Sequence[Stretch]) -> float | None:
-    loads = [residuals_of(values, each)[1][-1] for each in stretches if not each.load_known]
-    lengths = [len(each.time_s) for each in stretches if not each.load_known]
-    return float(np.average(loads, weights=lengths)) if loads else None
 
 
 @dataclass(frozen=True)

@@ -65,24 +65,12 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
         super().__post_init__()
         self.require_pairs('speed_rad_s', 'full_load_n_m')
         self.require_pairs('speed_rad_s', 'friction_n_m')
-        self._require_order()
-        self._require_cover()
-
-    def end_cause(self, speed: float) -> str | None:
-        """Return why a run ends with the engine at w_m in rad/s, None where it goes on."""
-        if speed <= self.stall_rad_s:
-            return STALLED
-        return OVER_REVVED if speed >= self.over_rev_rad_s else None
-
-    def _require_order(self) -> None:
         for lower, higher in zip(_RISING_SPEEDS, _RISING_SPEEDS[1:], strict=False):
             if getattr(self, lower) >= getattr(self, higher):
                 raise ParameterError(
                     f'engine_limits.{lower} is {getattr(self, lower):g} rad/s: it must be below '
                     f'{higher}, {getattr(self, higher):g} rad/s'
                 )
-
-    def _require_cover(self) -> None:
         speeds = self.speed_rad_s
         if not speeds or speeds[0] > self.stall_rad_s or speeds[-1] < self.over_rev_rad_s:
             given = f'goes from {speeds[0]:g} to {speeds[-1]:g} rad/s' if speeds else 'is empty'
@@ -90,6 +78,12 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
                 f'engine_limits.speed_rad_s {given}: the torque curves must cover the speeds from '
                 f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}'
             )
+
+    def end_cause(self, speed: float) -> str | None:
+        """Return why a run ends with the engine at w_m in rad/s, None where it goes on."""
+        if speed <= self.stall_rad_s:
+            return STALLED
+        return OVER_REVVED if speed >= self.over_rev_rad_s else None
 
 
 class LimitedEngine:
