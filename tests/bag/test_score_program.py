@@ -15,7 +15,7 @@ import pytest
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
-from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -117,7 +117,7 @@ def test_a_folder_is_searched_and_bags_are_named_from_it(bags, trajectory, tmp_p
 
 def test_timing_beside_the_bag_is_scored(bags, trajectory, capsys):
     bag = bags.write(trajectory)
-    RunTiming([10.0, 20.0, 30.0], missed_steps=1, resends=2).write(bag)
+    RunTiming(update_times_us=[10.0, 20.0, 30.0], missed_steps=1, resends=2).write(bag)
     assert main([str(bag), '--json', '-']) == 0
     metrics = runs_in(capsys.readouterr().out)[0]['metrics']
     assert metrics['update_time_median_us'] == 20.0

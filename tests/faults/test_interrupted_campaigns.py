@@ -17,7 +17,7 @@ from support.waiting import wait_until
 from ddct_bringup.campaign import conduct, executors
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.programs import campaign
-from ddct_bringup.run.folder_lock import SUFFIX
+from ddct_bringup.run.output_folder import SUFFIX
 from ddct_plant.base.errors import DdctError
 
 RUNS = 10

@@ -11,7 +11,7 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs import bringup, compare, report, score
-from ddct_bringup.run.folder_lock import SUFFIX, held
+from ddct_bringup.run.output_folder import SUFFIX, held
 from ddct_plant.base.errors import DdctError
 
 SHORT = ['--headless', '--duration', '0.7']

@@ -11,7 +11,7 @@ from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.programs import report, score
-from ddct_bringup.run.failed_run import NOTE_FILE
+from ddct_bringup.run.beside_bag import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import NEEDS, score_recording

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ddct_bringup.api.runs import Run, as_runs
 from ddct_bringup.report.quantities import Quantity, quantities_of
-from ddct_bringup.report.run_marks import run_labels
+from ddct_bringup.report.runs import run_labels
 from ddct_controllers.design.drawing.chart_style import chart_style, look_style
 from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.drawing.line_looks import looks_of

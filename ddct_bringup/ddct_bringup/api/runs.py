@@ -15,10 +15,10 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.campaign.rows import RunBase
+from ddct_bringup.run.beside_bag import RunTiming, read_timing
 from ddct_bringup.run.execution import execute, simulate
-from ddct_bringup.run.folder_lock import run_folder
+from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.run_timing import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.scoring import Entry, score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits

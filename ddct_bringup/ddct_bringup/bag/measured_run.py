@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.reader import Recording, read_bag
-from ddct_bringup.bag.run_facts import MEASURED, RealtimeFacts, RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import OptionGroup, option, require_known
@@ -128,10 +128,6 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
         trajectory=_trajectory(values, steps),
         facts=_facts(run, steps),
         custom_data={'scenario_yaml': f'{SCHEMA_KEY}: 1\n', 'version': MEASURED},
-        run_info={},
-        counts={},
-        missed={},
-        realtime=RealtimeFacts(),
         absent=absent,
     )
 

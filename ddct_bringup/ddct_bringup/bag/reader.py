@@ -44,14 +44,14 @@ class Recording:
     """The MCAP file."""
     trajectory: Trajectory
     facts: RunFacts
-    custom_data: dict[str, str]
-    run_info: RunInfoOfNodes
+    custom_data: dict[str, str] = field(default_factory=dict)
+    run_info: RunInfoOfNodes = field(default_factory=dict)
     """Per node name its parameters and version."""
-    counts: dict[str, int]
+    counts: dict[str, int] = field(default_factory=dict)
     """Messages per resolved topic name."""
-    missed: dict[str, int]
+    missed: dict[str, int] = field(default_factory=dict)
     """Per reply topic, at how many stamps the last reply had to be held; real time only."""
-    realtime: RealtimeFacts
+    realtime: RealtimeFacts = field(default_factory=RealtimeFacts)
     """What `/diagnostics` says; empty in lock-step."""
     absent: Mapping[str, str] = field(default_factory=dict)
     """Of a log of another tool: quantities that it does not have, NaN here, and why."""

@@ -115,18 +115,27 @@ def _parsed(name: str, text: str) -> Any:
 
 
 @dataclass
-class RealtimeFacts:
-    """What a real-time run says on `/diagnostics`: the driveline's last counts, safe states."""
+class RealtimeCounts:
+    """What the driveline counts in a real-time run, and who went to its safe state."""
 
-    steps: int = 0
-    """Step at which the driveline counted."""
     missed_steps: int = 0
+    """Steps that had to hold a torque."""
     resends: int = 0
+    """Ticks that were sent again."""
     late_messages: int = 0
+    """Replies to a tick that was over."""
     worst_lateness_us: float | None = None
     """How much too late the driveline took a step at most; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
-    """Per node the stamp in ns since when it is in its safe state."""
+    """Per node that went to its safe state the stamp in ns since when."""
+
+
+@dataclass
+class RealtimeFacts(RealtimeCounts):
+    """The last that a real-time run says on `/diagnostics`, live and in its bag."""
+
+    steps: int = 0
+    """Step at which the driveline counted."""
 
     def hear(self, name: str, pairs: Mapping[str, str]) -> bool:
         """Take one status; say whether it was one of ours."""

@@ -11,8 +11,7 @@ from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import ShardJob, compute_shard
-from ddct_bringup.run.folder_lock import held
-from ddct_bringup.run.output_folder import MARKER, mark_folder, require_ours_or_empty
+from ddct_bringup.run.output_folder import MARKER, held, mark_folder, require_ours_or_empty
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes

@@ -18,11 +18,15 @@ from ddct_bringup.campaign_report import words
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import Summary, summary_of
-from ddct_bringup.report.output import MARKER
-from ddct_bringup.report.page_parts import json_data, page_part, page_template
-from ddct_bringup.report.tables.verdict_table import value_text
-from ddct_bringup.report.typeset import number_text
-from ddct_bringup.run.folder_lock import held
+from ddct_bringup.report.page_parts import (
+    MARKER,
+    json_data,
+    number_text,
+    page_part,
+    page_template,
+    value_text,
+)
+from ddct_bringup.run.output_folder import held
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version

@@ -8,7 +8,7 @@ import numpy as np
 
 from ddct_bringup.campaign_report.outcome import FAILED, failed_share
 from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED_SHARE = 'failed_share'

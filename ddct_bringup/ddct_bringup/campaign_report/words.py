@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
 from ddct_bringup.campaign_report.summary import Summary
-from ddct_bringup.report.tables.verdict_table import value_text
+from ddct_bringup.report.page_parts import value_text
 from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
 

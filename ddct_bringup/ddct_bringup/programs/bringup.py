@@ -8,9 +8,8 @@ from pathlib import Path
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.execution import run_with_progress, tell_of_logs
-from ddct_bringup.run.folder_lock import run_folder
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
-from ddct_bringup.run.output_folder import StagedFolder
+from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.tables import slow_notes

@@ -23,9 +23,8 @@ from ddct_bringup.campaign.rows import SERIAL, result_row
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write_campaign_page
 from ddct_bringup.campaign_report.words import RULES, replay_command, summary_tables
 from ddct_bringup.run.execution import run_with_progress
-from ddct_bringup.run.folder_lock import run_folder
 from ddct_bringup.run.options import add_layout_options
-from ddct_bringup.run.output_folder import StagedFolder
+from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scoring import Entry, score_recording
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits

@@ -5,14 +5,12 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from ddct_bringup.programs.report import REPORT_FILE, write_report
+from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
-from ddct_bringup.report.output import require_chart_library
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
+from ddct_bringup.run.beside_bag import note_failure
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.execution import run_with_progress, tell_of_logs
-from ddct_bringup.run.failed_run import note_failure
-from ddct_bringup.run.folder_lock import held
 from ddct_bringup.run.options import (
     ALL,
     add_controllers_option,
@@ -22,7 +20,7 @@ from ddct_bringup.run.options import (
     print_computed_from,
     settings_of,
 )
-from ddct_bringup.run.output_folder import StagedFolder, mark_folder
+from ddct_bringup.run.output_folder import StagedFolder, held, mark_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document

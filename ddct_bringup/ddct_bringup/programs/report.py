@@ -1,6 +1,7 @@
 """Program `report`: one page that shows recorded runs side by side."""
 
 import argparse
+import importlib.util
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,24 +10,26 @@ from rich.console import Console
 
 from ddct_bringup.bag.measured_run import add_columns_option
 from ddct_bringup.report.evidence import evidence_of
-from ddct_bringup.report.output import require_chart_library, require_writable
+from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.runs import (
     ReportRun,
     in_order,
     read_run,
     require_one_scenario,
 )
-from ddct_bringup.run.folder_lock import held, is_ours
+from ddct_bringup.run.output_folder import held, is_ours
 from ddct_bringup.scores.bags import bags_in
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, write_text
+from ddct_plant.files.output_file import STDOUT, require_place, write_text
 from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
 
 PROGRAM = 'ddct report'
 REPORT_FILE = 'report.html'
+_HEAD_BYTES = 1000
+"""The marker of a page stands within these."""
 
 _EPILOG = """\
 examples:
@@ -49,7 +52,7 @@ def main(argv: list[str] | None = None) -> int:
 def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
-    require_writable(options.out)
+    _require_writable(options.out)
     limits = load_limits(options.limits)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with held(*filter(is_ours, places)):
@@ -63,6 +66,28 @@ def _report(argv: list[str]) -> int:
         if not run.entry['valid']:
             complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')
     return 0 if all(run.entry['valid'] for run in runs) else 1
+
+
+def require_chart_library() -> None:
+    """Raise DdctError where the package that draws the charts is not installed."""
+    if importlib.util.find_spec('bokeh') is None:
+        raise DdctError('the report needs the Python package bokeh: pip install bokeh')
+
+
+def _require_writable(out: str) -> None:
+    """Raise DdctError where the page cannot go, or would replace what is no page of ours."""
+    if out == STDOUT:
+        return
+    require_place('--out', out)
+    path = Path(out)
+    try:
+        if path.is_file() and path.stat().st_size:
+            with path.open('rb') as file:
+                ours = MARKER.encode() in file.read(_HEAD_BYTES)
+            if not ours:
+                raise DdctError(f'--out {out} is a file that is not ours: choose another name')
+    except OSError as error:
+        raise DdctError(f'--out {out}: cannot be read ({error.strerror})') from error
 
 
 def write_report(runs: Sequence[ReportRun], out: str, limits: Limits) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.repair import repair_bag
-from ddct_bringup.run.folder_lock import held, is_ours
+from ddct_bringup.run.output_folder import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv, signals_csv
 from ddct_bringup.scores.scoring import (

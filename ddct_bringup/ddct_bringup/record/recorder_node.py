@@ -8,16 +8,15 @@ from typing import Any, ClassVar
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from ddct_bringup.bag.file.cdr import CdrNormaliser
+from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RealtimeFacts
-from ddct_bringup.bag.wire import stamp_of_cdr
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_bringup.record.heard_nodes import HeardNodes
 from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import custom_data
-from ddct_bringup.run.run_timing import RunTiming
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step

@@ -1,10 +1,15 @@
-"""Frequency-domain evidence of the runs: what `compare` left beside the bags, or computed now."""
+"""
+Frequency-domain evidence of the runs, and its table.
 
-from collections.abc import Iterable, Mapping
+It is what `compare` left beside the bags, or computed now.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.report.runs import ReportRun
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
@@ -14,6 +19,7 @@ from ddct_plant.files.input_file import parse_json, read_text_file
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""
 COMPUTED = 'computed for this page'
+NOT_LINEAR = 'not linear, so without a frequency response'
 
 
 @dataclass(frozen=True)
@@ -113,3 +119,58 @@ def _computed(runs: Mapping[str, ReportRun], wear_gain: float) -> list[LoopEvide
         LoopEvidence(name, wear_gain, entry, COMPUTED)
         for name, entry in zip(runs, entries, strict=True)
     ]
+
+
+@dataclass(frozen=True)
+class LoopRow:
+    """One row of the table."""
+
+    controller: str
+    wear_gain: str
+    stable: bool
+    cells: tuple[tuple[float | None, str], ...]
+    """(value, text) for each of `LOOP_FIGURES`."""
+    stable_wear: str
+    """Between which wear gains the loop is stable."""
+    corner_peak: str
+    """Highest M_s over all corners."""
+    corners_unstable: str
+    remark: str
+
+
+def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
+    """Return one row for each loop that has evidence."""
+    rows = []
+    for each in evidence:
+        if each.entry is not None and each.point is not None:
+            rows.append(_row(each, each.entry, each.point))
+    return rows
+
+
+def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
+    """Return the controllers that have none, by the reason."""
+    reasons: dict[str, list[str]] = {}
+    for each in evidence:
+        if each.point is None:
+            linear = each.entry is None or each.entry['linear']
+            names = reasons.setdefault(each.remark if linear else NOT_LINEAR, [])
+            if each.controller not in names:
+                names.append(each.controller)
+    return reasons
+
+
+def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
+    interval = entry['stable_wear_gain'] or {}
+    return LoopRow(
+        controller=evidence.controller,
+        wear_gain=f'{evidence.wear_gain:g}',
+        stable=point['stable'],
+        cells=tuple(
+            (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_FIGURES
+        ),
+        stable_wear=f'{number_text(interval.get("lowest"), ".2f")} to '
+        f'{number_text(interval.get("highest"), ".2f")}',
+        corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),
+        corners_unstable=str(entry['corners']['unstable']),
+        remark=evidence.remark,
+    )

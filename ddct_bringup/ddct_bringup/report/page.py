@@ -10,19 +10,20 @@ from bokeh.resources import Resources
 from markupsafe import Markup
 
 from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
-from ddct_bringup.report.evidence import COMPUTED, LoopEvidence
-from ddct_bringup.report.output import MARKER
-from ddct_bringup.report.page_parts import json_data, page_part, page_template
+from ddct_bringup.report.definitions import definitions
+from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
+from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
-from ddct_bringup.report.run_marks import common_conditions, run_labels
-from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.tables.definitions import definitions
-from ddct_bringup.report.tables.loop_table import loop_rows, without_evidence
-from ddct_bringup.report.tables.origin import run_origin, scenario_text
-from ddct_bringup.report.tables.summary import comparable_rows, metric_cells
-from ddct_bringup.report.tables.update_times import TICKS, update_times
-from ddct_bringup.report.tables.verdict_table import NOT_JUDGED, verdict_rows
+from ddct_bringup.report.run_tables import TICKS, run_origin, time_place, update_times
+from ddct_bringup.report.runs import ReportRun, common_conditions, run_labels
+from ddct_bringup.report.score_tables import (
+    NOT_JUDGED,
+    comparable_rows,
+    metric_cells,
+    verdict_rows,
+)
+from ddct_bringup.run.source_commit import short_commit
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
@@ -87,11 +88,13 @@ def report_page(
         no_loops=without_evidence(evidence),
         computed=COMPUTED,
         ticks=TICKS,
+        time_place=time_place,
+        short_commit=short_commit,
         facts=recordings[0].facts,
         scenario_title=_scenario_title(runs),
         conditions=common_conditions([run.entry for run in runs]),
         sensors=_sensors(runs),
-        scenario_text=scenario_text(recordings[0]),
+        scenario_text=recordings[0].custom_data.get('scenario_yaml', ''),
         digest=next((run.digest for run in runs if run.digest), None),
         commits=sorted({run['origin'].commit for run in shown if run['charted']}),
         versions=sorted({run['origin'].version for run in shown if run['charted']}),

@@ -1,14 +1,20 @@
-"""What a page is put together with: one HTML file that needs nothing else."""
+"""What a page is put together with: templates, styles and scripts, and typeset text."""
 
 import json
+import re
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
-from ddct_bringup.report.typeset import symbols, unit_text
+from ddct_plant.program.table import PURE
+
+MARKER = '<meta name="generator" content="ddct_bringup report">'
+"""Tells a page that this program wrote, and may replace, from other files."""
+_SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
+_RAISED = str.maketrans('0123456789.', '⁰¹²³⁴⁵⁶⁷⁸⁹·')
 
 
 @cache
@@ -34,3 +40,27 @@ def json_data(content: Any) -> Markup:
     """Return JSON that may stand in a script element."""
     text = json.dumps(content, separators=(',', ':'), allow_nan=False)
     return Markup(text.replace('<', '\\u003c'))
+
+
+def symbols(text: str) -> Markup:
+    """Return text with w_sr and its like as letters with an index, and a deviation as σ."""
+    return Markup(_SYMBOL.sub(r'\1<sub>\2</sub>', str(escape(text.replace('std ', 'σ ')))))
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit as it is printed, empty for a pure number."""
+    if unit == PURE:
+        return ''
+    raised = re.sub(r'\^([\d.]+)', lambda match: match[1].translate(_RAISED), unit)
+    return re.sub('^deg', '°', raised)
+
+
+def number_text(value: float | None, form: str) -> str:
+    """Return a number in a format, or a dash for what does not exist or has no limit."""
+    return '–' if value is None else format(value, form)
+
+
+def value_text(value: float | None) -> str:
+    """Return four digits, and of values up to a million every digit before the point."""
+    large = value is not None and 1e4 <= abs(value) < 1e6
+    return number_text(value, '.0f' if large else '.4g')

@@ -10,9 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
+from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.tables.verdict_table import value_text
-from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.state import ENGAGED
 

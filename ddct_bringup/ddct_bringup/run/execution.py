@@ -10,16 +10,15 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.bag.reader import Recording
-from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.run_timing import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
@@ -176,10 +175,5 @@ def in_memory(settings: RunSettings, controller: str, trajectory: Trajectory) ->
         path=Path(),
         trajectory=trajectory,
         facts=facts_of(settings, controller, settings.scenario.steps),
-        custom_data={},
-        run_info={},
-        counts={},
-        missed={},
-        realtime=RealtimeFacts(),
         simulated=settings,
     )

@@ -11,7 +11,7 @@ import time
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import Chosen, make_controller

@@ -1,7 +1,12 @@
-"""Output folders: never half a result, never somebody else's files overwritten."""
+"""Output folders: held by one program, never half a result, never others' files overwritten."""
 
+import errno
+import fcntl
+import os
 import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
@@ -10,7 +15,10 @@ MARKER = '.ddct-output'
 """Marks a folder as written by these programs, so that `--overwrite` may replace it."""
 PARTIAL = '.partial'
 """Ends the name of a folder that is not complete yet."""
+SUFFIX = '.ddct-lock'
+"""The lock of DIR is the file .DIR.ddct-lock beside it, which is there only while it is held."""
 _MARKER_TEXT = 'Written by ddct_bringup; --overwrite may replace this folder.\n'
+_NO_PLACE = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 class StagedFolder:
@@ -19,7 +27,7 @@ class StagedFolder:
 
     Work goes to `<final>.partial` beside it. `commit` puts it in place of an earlier result, which
     stays untouched until then; after a failure the partial folder is left for inspection.
-    Whoever uses it holds the final folder (`folder_lock.held`).
+    Whoever uses it holds the final folder (`held`).
     """
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
@@ -34,17 +42,15 @@ class StagedFolder:
                 f'{self.path} holds what an interrupted run left: rescue it with '
                 '`ddct score --repair`, then remove it or add --overwrite'
             )
-        try:
+        with _refused(self.path, 'written'):
             if self.path.exists():
                 shutil.rmtree(self.path)
-        except OSError as error:
-            raise DdctError(f'{self.path}: cannot be written ({error.strerror})') from error
         mark_folder(self.path)
 
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""
         self._require_free(self.final, 'it came while this run took place')
-        try:
+        with _refused(self.final, 'replaced'):
             aside = Path(tempfile.mkdtemp(prefix=f'.{self.final.name}-', dir=self.final.parent))
             replaced = aside / self.final.name
             if self.final.exists():
@@ -57,8 +63,6 @@ class StagedFolder:
                 aside.rmdir()
                 raise
             shutil.rmtree(aside)
-        except OSError as error:
-            raise DdctError(f'{self.final}: cannot be replaced ({error.strerror})') from error
 
     def _require_free(self, folder: Path, advice: str) -> None:
         require_ours_or_empty(folder)
@@ -80,17 +84,115 @@ def require_ours_or_empty(folder: Path) -> None:
 
 def is_empty(folder: Path) -> bool:
     """Say whether the folder is absent or has nothing in it."""
-    try:
+    with _refused(folder, 'read'):
         return not folder.exists() or not any(folder.iterdir())
-    except OSError as error:
-        raise DdctError(f'{folder}: cannot be read ({error.strerror})') from error
 
 
 def mark_folder(folder: Path) -> None:
     """Create `folder` as ours when it is absent or empty; raise DdctError otherwise."""
     require_ours_or_empty(folder)
-    try:
+    with _refused(folder, 'written'):
         folder.mkdir(parents=True, exist_ok=True)
         (folder / MARKER).write_text(_MARKER_TEXT, encoding='utf-8')
+
+
+@contextmanager
+def _refused(folder: Path, what: str) -> Iterator[None]:
+    """Raise DdctError for what the operating system refuses to do with a folder."""
+    try:
+        yield
     except OSError as error:
-        raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
+        raise DdctError(f'{folder}: cannot be {what} ({error.strerror})') from error
+
+
+@contextmanager
+def held(*folders: Path, shared: bool = False) -> Iterator[None]:
+    """
+    Hold `folders`, and what is in them, while this program writes there.
+
+    `shared` lets others hold them that way too, to write into folders of their own below. The
+    folders of ours around them are held so in any case. A folder and its partial one are the same.
+    The locks are the operating system's: they end with the process, however it ends.
+    Raise DdctError that names the folder and the process that holds it.
+    """
+    own = {_final(folder) for folder in folders}
+    around = {parent for folder in own for parent in folder.parents if is_ours(parent)} - own
+    with ExitStack() as locks:
+        for folder in sorted(own | around):
+            locks.enter_context(_lock(folder, shared or folder in around))
+        yield
+
+
+@contextmanager
+def run_folder(out: Path, name: str, *, overwrite: bool) -> Iterator[StagedFolder]:
+    """Hold the folder `name` in `out`, which is made if absent, and yield it staged."""
+    with held(out, shared=True):
+        mark_folder(out)
+        with held(out / name):
+            yield StagedFolder(out / name, overwrite=overwrite)
+
+
+def is_ours(folder: Path) -> bool:
+    """Say whether these programs wrote the folder."""
+    with suppress(OSError):
+        return (folder / MARKER).is_file()
+    return False
+
+
+def _final(folder: Path) -> Path:
+    path = Path(os.path.realpath(folder))
+    return path.parent / (path.name.removesuffix(PARTIAL) or path.name)
+
+
+@contextmanager
+def _lock(folder: Path, shared: bool) -> Iterator[None]:
+    file = folder.parent / f'.{folder.name}{SUFFIX}'
+    try:
+        descriptor = _locked(file, shared)
+    except BlockingIOError:
+        raise DdctError(
+            f'{folder}: {_holder(file)} is writing there: wait for its end or give another folder'
+        ) from None
+    except OSError as error:
+        if error.errno not in _NO_PLACE:
+            raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
+        yield  # nobody can make or replace the folder either
+        return
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            # Of those who share a lock the last one removes it.
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            file.unlink()
+        os.close(descriptor)
+
+
+def _locked(file: Path, shared: bool) -> int:
+    """Return the open lock file; raise BlockingIOError when another holds it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
+    while True:
+        descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW, 0o666)
+        try:
+            fcntl.flock(descriptor, kind | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(descriptor), file.stat()):
+                with suppress(OSError):  # a full disk; the number is only for the message
+                    os.write(descriptor, f'{os.getpid()}\n'.encode())
+                return descriptor
+        except FileNotFoundError:
+            pass  # removed by whoever held it, between our two steps
+        except OSError:
+            os.close(descriptor)
+            raise
+        os.close(descriptor)
+
+
+def _holder(file: Path) -> str:
+    """Return the name of the living processes that have written their number into the file."""
+    with suppress(OSError, ValueError):
+        numbers = dict.fromkeys(int(line) for line in file.read_text().split())
+        alive = [str(number) for number in numbers if Path('/proc', str(number)).exists()]
+        if alive:
+            return f'process {" and ".join(alive)}'
+    return 'another process'

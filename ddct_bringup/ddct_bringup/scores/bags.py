@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from ddct_bringup.run.failed_run import NOTE_FILE
+from ddct_bringup.run.beside_bag import NOTE_FILE
 from ddct_plant.base.errors import DdctError
 
 

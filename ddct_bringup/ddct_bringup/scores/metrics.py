@@ -7,7 +7,7 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.verdict.criteria import finite
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
 from ddct_plant.base.timebase import PERIOD_S, steps_in

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
-from ddct_bringup.report.typeset import unit_text
+from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.sweep.state_map import (
     draw_states,

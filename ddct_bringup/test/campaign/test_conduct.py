@@ -19,7 +19,7 @@ from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.run.folder_lock import held
+from ddct_bringup.run.output_folder import held
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files import output_file

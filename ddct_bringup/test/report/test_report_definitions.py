@@ -2,16 +2,16 @@
 
 import pytest
 
+from ddct_bringup.report.definitions import definitions
+from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.report.quantities import CLUTCH_QUANTITIES, QUANTITIES, SENSOR_QUANTITIES
-from ddct_bringup.report.tables.definitions import definitions
-from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 
 SIGNALS = (*QUANTITIES, *CLUTCH_QUANTITIES, *SENSOR_QUANTITIES)
-GROUPS = {group.title: group.entries for group in definitions(SIGNALS, thesis=True)}
+GROUPS = definitions(SIGNALS, thesis=True)
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,6 @@ def test_a_dash_sigma_and_a_slip_below_zero_are_explained():
 
 
 def test_a_page_without_the_thesis_says_nothing_of_it():
-    (reading, *_) = definitions(SIGNALS, thesis=False)
-    assert 'thesis' not in ' '.join(entry.term for entry in reading.entries)
-    assert not any('Table 5.1' in entry.meaning for entry in reading.entries)
+    reading = definitions(SIGNALS, thesis=False)['Reading the tables']
+    assert 'thesis' not in ' '.join(entry.term for entry in reading)
+    assert not any('Table 5.1' in entry.meaning for entry in reading)

@@ -13,8 +13,8 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.page import report_page
+from ddct_bringup.report.page_parts import symbols
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.typeset import symbols
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording, unreadable_entry
 from ddct_bringup.verdict.limits import packaged_limits

@@ -8,9 +8,8 @@ import pytest
 from test_report_escaping import SETTINGS, recording
 
 from ddct_bringup.report import evidence
-from ddct_bringup.report.evidence import COMPUTED, FREQUENCY_FILE, LoopEvidence
+from ddct_bringup.report.evidence import COMPUTED, FREQUENCY_FILE, LoopEvidence, loop_rows
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.tables.loop_table import loop_rows
 from ddct_controllers.workflows.evidence import frequency_evidence
 
 

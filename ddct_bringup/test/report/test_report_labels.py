@@ -1,6 +1,6 @@
 """Labels of the report tell runs apart and say no more than needed."""
 
-from ddct_bringup.report.run_marks import common_conditions, run_labels
+from ddct_bringup.report.runs import common_conditions, run_labels
 
 
 def entry(controller='pi', bag=None, **changes):

@@ -6,13 +6,13 @@ from dataclasses import asdict
 
 import pytest
 
-from ddct_bringup.run.run_timing import RunTiming, read_timing
+from ddct_bringup.run.beside_bag import RunTiming, read_timing
 from ddct_plant.base.errors import DdctError
 
 
 def test_what_the_recorder_wrote_is_read_back(tmp_path):
     timing = RunTiming(
-        [1.5, 2.5],
+        update_times_us=[1.5, 2.5],
         missed_steps=1,
         resends=2,
         late_messages=3,
@@ -38,7 +38,7 @@ def test_a_folder_without_timing_gives_none(tmp_path):
 
 
 def changed(**values):
-    return json.dumps({**asdict(RunTiming([1.5], steps=1)), **values})
+    return json.dumps({**asdict(RunTiming(update_times_us=[1.5], steps=1)), **values})
 
 
 @pytest.mark.parametrize(

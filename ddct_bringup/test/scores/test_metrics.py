@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.run_timing import RunTiming
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_plant.graph.topics import all_signals
 
@@ -144,7 +144,9 @@ def test_total_variation_adds_ups_and_downs():
 
 
 def test_wall_clock_metrics_come_from_timing():
-    timing = RunTiming([float(i) for i in range(1, 102)], missed_steps=3, resends=4)
+    timing = RunTiming(
+        update_times_us=[float(i) for i in range(1, 102)], missed_steps=3, resends=4
+    )
     metrics = score(trajectory(), timing)
     assert metrics.update_time_median_us == 51.0
     assert metrics.update_time_p99_us == pytest.approx(100.0)

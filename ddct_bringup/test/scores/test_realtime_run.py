@@ -8,8 +8,8 @@ from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
+from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.run.run_timing import RunTiming
 from ddct_bringup.scores.scoring import score_recording, why_invalid
 from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import packaged_limits
@@ -116,7 +116,7 @@ def test_what_nodes_say_on_diagnostics_is_understood():
     counts = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
     assert heard.hear('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
     assert heard.hear('actuator: safe state', {'since_ns': '1870000000'})
-    assert heard == RealtimeFacts(300, 4, 5, 6, 700.0, {'actuator': 1870000000})
+    assert heard == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,5 @@
 """
-Make serialised messages reproducible to the byte.
+Read the stamp of serialised messages, and make them reproducible to the byte.
 
 CDR aligns numbers with bytes that the ROS serialiser leaves as it finds them in memory, and
 `rclpy.serialization` may also leave such bytes behind the end. Both would differ from run to run.
@@ -11,13 +11,22 @@ from dataclasses import dataclass
 
 from ddct_bringup.bag.file.message_definitions import PRIMITIVES, STRING, MessageDefinition
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.message_kinds import NS_PER_S
 
 _HEADER = b'\x00\x01'
 """First bytes of plain little-endian CDR; two option bytes follow, then the body."""
 _BODY = 4
+_STAMP = struct.Struct('<iI')
+"""With it every recorded type begins, right behind the header."""
 
 _LAYOUTS_KEPT = 32
 """Layouts remembered per message size; numbers written as text have a few lengths each."""
+
+
+def stamp_of_cdr(cdr: bytes) -> int:
+    """Return the stamp in ns of a serialised message."""
+    seconds, nanoseconds = _STAMP.unpack_from(cdr, _BODY)
+    return seconds * NS_PER_S + nanoseconds
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.report.quantities import Quantity
-from ddct_bringup.report.typeset import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
@@ -19,14 +19,6 @@ class Definition:
     meaning: str
     unit: str = ''
     """As it is printed, empty for a word or a pure number."""
-
-
-@dataclass(frozen=True)
-class DefinitionGroup:
-    """The entries of one subject."""
-
-    title: str
-    entries: tuple[Definition, ...]
 
 
 _READING = (
@@ -102,9 +94,11 @@ _ORIGIN = (
 )
 
 
-def definitions(quantities: Iterable[Quantity], *, thesis: bool) -> list[DefinitionGroup]:
+def definitions(
+    quantities: Iterable[Quantity], *, thesis: bool
+) -> dict[str, tuple[Definition, ...]]:
     """
-    Return the groups of a page that draws these quantities.
+    Return the entries of a page that draws these quantities, by subject.
 
     `thesis` tells whether runs stand beside Table 5.1.
     """
@@ -112,16 +106,16 @@ def definitions(quantities: Iterable[Quantity], *, thesis: bool) -> list[Definit
     signals = tuple(
         Definition(each.symbol, f'{each.title}: {each.meaning}', each.unit) for each in quantities
     )
-    return [
-        DefinitionGroup('Reading the tables', reading),
-        DefinitionGroup('Signals', signals),
-        DefinitionGroup('Metrics', _figures((*TABLE_5_1, *FURTHER))),
-        DefinitionGroup('Criteria', _criteria()),
-        DefinitionGroup('States and limits', _STATES),
-        DefinitionGroup('Frequency', _LOOPS + _figures(LOOP_FIGURES)),
-        DefinitionGroup('Update times', _TIMES),
-        DefinitionGroup('Origin', _ORIGIN),
-    ]
+    return {
+        'Reading the tables': reading,
+        'Signals': signals,
+        'Metrics': _figures((*TABLE_5_1, *FURTHER)),
+        'Criteria': _criteria(),
+        'States and limits': _STATES,
+        'Frequency': _LOOPS + _figures(LOOP_FIGURES),
+        'Update times': _TIMES,
+        'Origin': _ORIGIN,
+    }
 
 
 _METRIC_SYMBOLS = {metric.meaning: metric.symbol for metric in METRICS.values()}

@@ -1,13 +1,19 @@
-"""The tables of scores on the page: Table 5.1 beside ours, and every metric."""
+"""The tables of scores on the page: Table 5.1 beside ours, every metric, and the verdicts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
+from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.report.typeset import number_text
+from ddct_bringup.scores.scoring import NOT_COMPUTED
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
+from ddct_bringup.verdict.criteria import CRITERIA, Criterion
+from ddct_bringup.verdict.verdict import NO_LIMIT
 from ddct_plant.program.table import Figure
+
+NOT_JUDGED = 'the run failed or cannot be read'
 
 
 @dataclass(frozen=True)
@@ -79,3 +85,66 @@ def _cell(
         predicted_range(row.controller, column.key) if predicted else '',
         row.verdict(column.key, value) if predicted and valid else '',
     )
+
+
+@dataclass(frozen=True)
+class VerdictCell:
+    """A criterion of one run."""
+
+    value: float | None
+    text: str
+    state: str
+    """`within`, `beyond` or `no_limit`."""
+    why_dash: str
+    """Why there is no value, empty where there is one."""
+
+
+@dataclass(frozen=True)
+class VerdictRow:
+    """A criterion over all runs."""
+
+    criterion: Criterion
+    limit: str
+    """Empty where no limit applies."""
+    source: str
+    cells: tuple[VerdictCell, ...]
+
+    @property
+    def undefined(self) -> bool:
+        """Whether a run that was judged has no value."""
+        return any(cell.why_dash == self.criterion.undefined for cell in self.cells)
+
+
+def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
+    """Return one row per criterion; a run that was not judged has a value in none."""
+    judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
+    reasons = [run.entry.get(NOT_COMPUTED, {}) for run in runs]
+    return [
+        _verdict_row(
+            criterion,
+            [each.get(criterion.key) for each in judged],
+            [each.get(criterion.key, criterion.undefined) for each in reasons],
+        )
+        for criterion in CRITERIA
+    ]
+
+
+def _verdict_row(
+    criterion: Criterion, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
+) -> VerdictRow:
+    # All runs of a page are of one scenario, so one limit applies to all.
+    limited = next((each for each in found if each and each['limit'] is not None), None)
+    return VerdictRow(
+        criterion=criterion,
+        limit=value_text(limited['limit']) if limited else '',
+        source=limited['source'] if limited else '',
+        cells=tuple(_verdict_cell(*each) for each in zip(found, reasons, strict=True)),
+    )
+
+
+def _verdict_cell(found: dict[str, Any] | None, undefined: str) -> VerdictCell:
+    if found is None:
+        return VerdictCell(None, value_text(None), NO_LIMIT, NOT_JUDGED)
+    value = found['value']
+    why_dash = undefined if value is None else ''
+    return VerdictCell(value, value_text(value), found['state'], why_dash)

@@ -1,14 +1,19 @@
-"""Where the runs come from and with which parameters, as the bags tell."""
+"""What the page tells of each run beside its scores: its origin, and its update times."""
 
+import math
 from dataclasses import dataclass
 
-from ddct_bringup.bag.reader import Recording
+import numpy as np
+
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.run.source_commit import UNKNOWN, short_commit
+from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.source_commit import UNKNOWN
+from ddct_plant.base.timebase import PERIOD_S
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
 _REPEATED = ('version', 'scenario', 'scenario_digest', 'computed_from', *_CONDITIONS[1:])
 """What every node says and the page has elsewhere."""
+_FIRST_US, _LAST_US = 1.0, 1e5
 
 
 @dataclass(frozen=True)
@@ -19,16 +24,6 @@ class RunOrigin:
     nodes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
     commit: str
     version: str
-
-    @property
-    def short_commit(self) -> str:
-        """The commit for a narrow column."""
-        return short_commit(self.commit)
-
-
-def scenario_text(recording: Recording) -> str:
-    """Return the whole scenario as YAML, empty where the bag does not hold it."""
-    return recording.custom_data.get('scenario_yaml', '')
 
 
 def run_origin(run: ReportRun) -> RunOrigin:
@@ -51,3 +46,36 @@ def run_origin(run: ReportRun) -> RunOrigin:
         custom.get('commit', UNKNOWN),
         custom.get('version', UNKNOWN),
     )
+
+
+@dataclass(frozen=True)
+class UpdateTimes:
+    """What `timing.json` tells of one run."""
+
+    median_us: float
+    p99_us: float
+    largest_us: float
+    timing: RunTiming
+    """What else it holds."""
+    over_period: int
+    """Updates that took longer than the period."""
+
+
+def update_times(run: ReportRun) -> UpdateTimes | None:
+    """Return the update times of a run, None where none were recorded."""
+    timing = run.timing
+    median, p99 = (run.entry['metrics'][f'update_time_{name}_us'] for name in ('median', 'p99'))
+    if timing is None or median is None:
+        return None
+    over_period = int(np.sum(np.array(timing.update_times_us) > 1e6 * PERIOD_S))
+    return UpdateTimes(median, p99, max(timing.update_times_us), timing, over_period)
+
+
+def time_place(time_us: float) -> float:
+    """Return the place of a wall time along the logarithmic scale of the table, 0 to 1."""
+    place = math.log10(max(time_us, _FIRST_US) / _FIRST_US) / math.log10(_LAST_US / _FIRST_US)
+    return min(place, 1.0)
+
+
+TICKS = {'1 µs': 1.0, '10 µs': 1e1, '100 µs': 1e2, '1 ms': 1e3, '10 ms': 1e4}
+"""Marks on the scale, text and time in us; the last is the period."""

@@ -1,36 +1,30 @@
-"""Wall-clock figures of a run: `timing.json` beside the bag, which is deterministic without."""
+"""What lies beside a bag: `timing.json`, and `failed_run.json` of a run that failed."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from ddct_plant.base.errors import DdctError, require_number
+from ddct_bringup.bag.run_facts import RealtimeCounts, RunFacts
+from ddct_plant.base.errors import DdctError, printable, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
-from ddct_plant.files.output_file import write_text
+from ddct_plant.files.output_file import write_json, write_text
 
 TIMING_FILE = 'timing.json'
+NOTE_FILE = 'failed_run.json'
+_ADVICE = 'choose another output folder'
 MOST_BYTES = 50_000_000
-"""An hour's run has an eighth of that."""
+"""Of `timing.json`; an hour's run has an eighth of that."""
 
 
 @dataclass
-class RunTiming:
-    """What `timing.json` holds."""
+class RunTiming(RealtimeCounts):
+    """What `timing.json` holds: wall-clock figures, without which the bag is deterministic."""
 
     update_times_us: list[float] = field(default_factory=list)
     """Wall time of each controller update, in order."""
-    missed_steps: int = 0
-    """Real-time steps that had to hold a torque."""
-    resends: int = 0
-    """Ticks that were sent again."""
-    late_messages: int = 0
-    """Replies to a tick that was over."""
     refused_messages: int = 0
     """Messages with a stamp that could not be true, real time only."""
-    worst_lateness_us: float | None = None
-    """How much too late the driveline took a step at most; None in lock-step."""
-    safe_states: dict[str, int] = field(default_factory=dict)
-    """Per node that went to its safe state the stamp in ns, real time only."""
     wall_time_s: float = 0.0
     """From the first tick to the last."""
     steps: int = 0
@@ -38,7 +32,7 @@ class RunTiming:
     def write(self, folder: Path) -> None:
         """Write `timing.json` into a bag's folder; raise DdctError when that fails."""
         text = json.dumps(asdict(self)) + '\n'
-        write_text(str(folder / TIMING_FILE), text, 'choose another output folder')
+        write_text(str(folder / TIMING_FILE), text, _ADVICE)
 
 
 def read_timing(folder: Path) -> RunTiming | None:
@@ -52,13 +46,16 @@ def read_timing(folder: Path) -> RunTiming | None:
         raise DdctError(f'{path}: cannot read the timing: {error.strerror}') from error
     try:
         values = parse_json(text)
+        lateness = values.get('worst_lateness_us')
+        if lateness is not None:
+            lateness = _positive('worst_lateness_us', lateness)
         return RunTiming(
             update_times_us=[_positive('update_times_us', x) for x in values['update_times_us']],
             missed_steps=_count('missed_steps', values['missed_steps']),
             resends=_count('resends', values['resends']),
             late_messages=_count('late_messages', values['late_messages']),
             refused_messages=_count('refused_messages', values.get('refused_messages', 0)),
-            worst_lateness_us=_optional(values.get('worst_lateness_us')),
+            worst_lateness_us=lateness,
             safe_states={
                 str(node): _count('safe_states', stamp)
                 for node, stamp in values.get('safe_states', {}).items()
@@ -80,5 +77,36 @@ def _count(name: str, value: object) -> int:
     return int(_positive(name, value))
 
 
-def _optional(value: object) -> float | None:
-    return None if value is None else _positive('worst_lateness_us', value)
+@dataclass(frozen=True)
+class FailedRun:
+    """What is known of a run that failed."""
+
+    reason: str
+    facts: RunFacts | None = None
+    """What the run was to be; None where the note cannot be read."""
+
+
+def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> None:
+    """
+    Say in a run's folder why it failed; `custom_data` is what its bag should have held.
+
+    Raise DdctError when that fails.
+    """
+    note = {'reason': reason, 'run': dict(custom_data)}
+    write_json(str(folder / NOTE_FILE), note, _ADVICE)
+
+
+def failed_run(folder: Path) -> FailedRun | None:
+    """
+    Return what the note in a run's folder says, None without one.
+
+    A note that cannot be read still says that the run failed.
+    """
+    path = folder / NOTE_FILE
+    try:
+        note = parse_json(read_text_file(path))
+        return FailedRun(printable(note['reason']), RunFacts.from_custom_data(note['run']))
+    except FileNotFoundError:
+        return None
+    except (OSError, DdctError, LookupError, TypeError, AttributeError) as error:
+        return FailedRun(printable(f'the run failed, and its {path} cannot be read ({error!r})'))
