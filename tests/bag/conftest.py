@@ -10,7 +10,7 @@ from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.bag.writer import new_bag
 from ddct_plant.graph.topics import RunKind, all_topics, recorded_topics
 
 RUN_INFO = {'load': {'version': '1.0'}, 'engine': {'version': '1.0', 'seed': '0'}}
@@ -95,7 +95,7 @@ class Bags:
         bag = self.folder / name
         known = {topic.resolved_name: topic for topic in all_topics()}
         topics = [known[channel.topic] for channel in records.channels.values()]
-        with BagWriter(bag, name, topics, {**records.custom_data, **changes}) as writer:
+        with new_bag(bag, name, topics, {**records.custom_data, **changes}) as writer:
             for message in edit(records.messages):
                 writer.write(*message)
         return bag

@@ -23,7 +23,7 @@ COPY_BAG = """
     import resource, sys
     from pathlib import Path
     from ddct_bringup.bag.file.records import read_records
-    from ddct_bringup.bag.writer import BagWriter
+    from ddct_bringup.bag.writer import new_bag
     from ddct_plant.base.errors import DdctError
     from ddct_plant.graph.topics import TOPICS
 
@@ -35,7 +35,7 @@ COPY_BAG = """
     if limit:
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     try:
-        writer = BagWriter(folder, 'copy', topics, records.custom_data)
+        writer = new_bag(folder, 'copy', topics, records.custom_data)
         for topic, stamp, data in records.messages:
             if stamp > 1_000_000_000 + last_step * 10_000_000:
                 break

@@ -5,12 +5,12 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.bag.file.mcap_file import METADATA_FILE, McapFile, write_metadata
 from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY, Channel
 from ddct_bringup.bag.file.records import BagRecords, read_records, salvage_records
 from ddct_bringup.bag.reader import recording_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.ticks import complete_ticks, tick_topics
+from ddct_bringup.bag.writer import METADATA_FILE, BagWriter, write_metadata
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.files.input_file import mcap_of
@@ -90,11 +90,10 @@ def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes
         ]
     except (LookupError, UnicodeDecodeError) as error:
         raise DdctError(f'what it says of its channels is unusable ({error!r})') from error
-    index = {channel.topic: i for i, channel in enumerate(channels)}
-    file = McapFile(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'})
-    for topic, stamp, data in messages:
-        file.write(index[topic], stamp, data)
-    file.finish()
+    bag = BagWriter(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'})
+    for message in messages:
+        bag.write(*message)
+    bag.close()
 
 
 def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int]:

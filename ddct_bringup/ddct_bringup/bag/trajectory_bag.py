@@ -14,7 +14,7 @@ from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RunFacts, run_info_order
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.bag.writer import new_bag
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.topics import RUN_INFO, recorded_topics
 
@@ -38,7 +38,7 @@ def write_trajectory(
         two_input=trajectory.two_input, sensed=trajectory.sensed
     )
     topics = recorded_topics(run)
-    with BagWriter(folder, name, topics, custom_data) as bag:
+    with new_bag(folder, name, topics, custom_data) as bag:
         write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)
         for node in run_info_order(run_info):
             message = write_info(START_NS, run_info[node].items(), name=node)

@@ -1,15 +1,34 @@
-"""Write a run's messages into a rosbag2 bag: one MCAP file and its `metadata.yaml`."""
+"""Write a run as a rosbag2 bag: one MCAP file and its `metadata.yaml`, byte for byte the same."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
+from typing import Any
+
+from mcap.writer import Writer
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser
-from ddct_bringup.bag.file.mcap_file import McapFile
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.file.metadata import Channel, offered_qos
+from ddct_bringup.bag.file.metadata import (
+    HASH_KEY,
+    QOS_KEY,
+    RECORD_NAME,
+    SERIALIZATION,
+    Channel,
+    bag_information,
+    metadata_record,
+    metadata_yaml,
+    offered_qos,
+)
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_text
 from ddct_plant.graph.topics import Topic
+
+METADATA_FILE = 'metadata.yaml'
+_ADVICE = 'free some space or choose another output folder'
+
+_CHUNK_BYTES = 64 * 1024
+"""About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
 
 
 def bag_file(folder: Path, name: str) -> Path:
@@ -17,75 +36,154 @@ def bag_file(folder: Path, name: str) -> Path:
     return folder / f'{name}_0.mcap'
 
 
-class BagWriter:
+def new_bag(
+    folder: Path, name: str, topics: Sequence[Topic], custom_data: Mapping[str, str]
+) -> 'BagWriter':
     """
-    A bag `<folder>/<name>_0.mcap` in the making.
+    Begin the bag `<folder>/<name>_0.mcap` of topics of the graph.
 
-    The same messages in the same order give the same bytes: times are the given stamps, and bytes
-    that carry no value are set to zero. As a context manager it closes the bag, or leaves it
-    unfinished when an exception passes.
+    Raise DdctError where that is impossible or it is already there.
     """
-
-    def __init__(
-        self,
-        folder: Path,
-        name: str,
-        topics: Sequence[Topic],
-        custom_data: Mapping[str, str],
-    ) -> None:
-        """Create the bag; raise DdctError where that is impossible or it is already there."""
-        definitions = [load_definition(topic.type) for topic in topics]
-        channels = [
+    channels = []
+    for topic in topics:
+        definition = load_definition(topic.type)
+        channels.append(
             Channel(
                 topic.resolved_name,
                 definition.type_name,
                 definition.schema_text,
                 definition.type_hash,
                 offered_qos(latched=topic.latched),
+                CdrNormaliser(definition).normalise,
             )
-            for topic, definition in zip(topics, definitions, strict=True)
-        ]
-        self._topics = {
-            name: (index, normaliser)
-            for index, topic in enumerate(topics)
-            for normaliser in [CdrNormaliser(definitions[index])]
-            for name in (topic.name, topic.resolved_name)
-        }
-        self.path = bag_file(folder, name)
-        self._file = McapFile(self.path, channels, custom_data)
+        )
+    return BagWriter(bag_file(folder, name), channels, custom_data)
+
+
+class BagWriter:
+    """
+    A bag in the making: an MCAP file and, once closed, the `metadata.yaml` beside it.
+
+    The same messages in the same order give the same bytes: times are the given stamps, and bytes
+    that carry no value are set to zero. After an error the file stays unfinished: readers refuse
+    it, repairing can rescue it. As a context manager it closes the bag, or leaves it unfinished
+    when an exception passes.
+    """
+
+    def __init__(
+        self, path: Path, channels: Sequence[Channel], custom_data: Mapping[str, str]
+    ) -> None:
+        """Create the file; raise DdctError where that is impossible or it is already there."""
+        self.path = path
+        self._channels = tuple(channels)
+        self._custom_data = dict(custom_data)
+        index = {channel.topic: place for place, channel in enumerate(channels)}
+        self._index = {topic.removeprefix('/'): index[topic] for topic in index} | index
+        self._counts = [0] * len(channels)
+        self._first_ns = self._last_ns = 0
+        self._schemas: dict[str, int] = {}
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = path.open('xb')
+        except FileExistsError as error:
+            raise DdctError(
+                f'{path}: already there: choose another output folder, or delete it'
+            ) from error
+        except OSError as error:
+            raise self._cannot_write(error) from error
+        self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, enable_data_crcs=True)
+        try:
+            # The library would name itself with its version here, and the bytes change with it.
+            self._writer.start('ros2', 'ddct_bringup')
+            self._ids = [self._register(channel) for channel in channels]
+            self._add_metadata()
+            self._file.flush()
+        except OSError as error:
+            raise self._gave_up(error) from error
 
     def write(self, topic: str, stamp_ns: int, cdr: bytes) -> None:
         """
         Append a serialised message, stamped `stamp_ns` in the bag.
 
-        Raise DdctError for a topic the bag does not have, a message that is not of its type, and
-        a write that fails.
+        The topic may lack its leading slash. Raise DdctError for a topic the bag does not have, a
+        message that is not of its type, and a write that fails.
         """
         try:
-            index, normaliser = self._topics[topic]
+            index = self._index[topic]
         except KeyError:
             raise DdctError(f'{self.path}: the bag was opened without a topic {topic}') from None
         try:
-            data = normaliser.normalise(cdr)
+            data = self._channels[index].normalise(cdr)
         except DdctError as error:
             raise DdctError(f'{topic} at stamp {stamp_ns} ns: {error}') from error
-        self._file.write(index, stamp_ns, data)
+        if self._file.closed:
+            raise DdctError(f'{self.path}: the recording is already closed')
+        self._first_ns = min(self._first_ns or stamp_ns, stamp_ns)
+        self._last_ns = max(self._last_ns, stamp_ns)
+        self._counts[index] += 1
+        try:
+            self._writer.add_message(self._ids[index], stamp_ns, data, stamp_ns)
+            self._file.flush()  # what a finished chunk holds survives a killed process
+        except OSError as error:
+            raise self._gave_up(error) from error
 
     def close(self) -> None:
-        """Finish the bag, once; after a failed write leave it unfinished."""
-        self._file.finish()
+        """Write the summary and `metadata.yaml`, once; do nothing after a failed write."""
+        if self._file.closed:
+            return
+        try:
+            information = self._add_metadata()
+            self._writer.finish()
+            self._file.close()
+        except OSError as error:
+            raise self._gave_up(error) from error
+        write_metadata(self.path.parent, information)
 
     def __enter__(self) -> 'BagWriter':
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: object, *_: object) -> None:
         """Close the bag, or leave it unfinished after an exception."""
-        if error is None:
+        if kind is None:
             self.close()
         else:
-            self._file.abandon()
+            self._abandon()
+
+    def _register(self, channel: Channel) -> int:
+        # rosbag2 gives each type one schema, however many topics have it.
+        schema = self._schemas.get(channel.type_name)
+        if schema is None:
+            schema = self._schemas[channel.type_name] = self._writer.register_schema(
+                channel.type_name, 'ros2msg', channel.schema_text.encode()
+            )
+        metadata = {QOS_KEY: channel.qos, HASH_KEY: channel.type_hash}
+        return self._writer.register_channel(channel.topic, SERIALIZATION, schema, metadata)
+
+    def _add_metadata(self) -> dict[str, Any]:
+        information = bag_information(
+            self.path.name,
+            self._channels,
+            self._counts,
+            self._first_ns,
+            self._last_ns,
+            self._custom_data,
+        )
+        self._writer.add_metadata(RECORD_NAME, metadata_record(information))
+        return information
+
+    def _abandon(self) -> None:
+        with suppress(OSError):  # what could not be written is tried once more
+            self._file.close()
+
+    def _gave_up(self, error: OSError) -> DdctError:
+        """Leave the file unfinished, and return what to tell of it."""
+        self._abandon()
+        return self._cannot_write(error)
+
+    def _cannot_write(self, error: OSError) -> DdctError:
+        return DdctError(f'{self.path}: cannot write the recording ({error.strerror}): {_ADVICE}')
+
+
+def write_metadata(folder: Path, information: Mapping[str, Any]) -> None:
+    """Write `metadata.yaml` whole or not at all; raise DdctError when it fails."""
+    write_text(str(folder / METADATA_FILE), metadata_yaml(information), _ADVICE)

@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RealtimeFacts
-from ddct_bringup.bag.writer import BagWriter
+from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_bringup.record.heard_nodes import HeardNodes
 from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
@@ -224,7 +224,7 @@ class RecorderNode(GraphNode):
         if self._nodes.silent():
             return False
         facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
-        self._bag = BagWriter(self._folder, self._bag_name, self._topics, facts)
+        self._bag = new_bag(self._folder, self._bag_name, self._topics, facts)
         for node, pairs in self._nodes.said().items():
             # Made anew: a node that is not ours may stamp it with the time of its wall clock.
             message = RUN_INFO.message(START_NS, pairs.items(), name=node)

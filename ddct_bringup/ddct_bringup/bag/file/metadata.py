@@ -1,6 +1,6 @@
 """What rosbag2 writes about a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,6 +31,8 @@ class Channel:
     type_hash: str
     qos: str
     """As `offered_qos` gives it."""
+    normalise: Callable[[bytes], bytes] = bytes
+    """What makes its serialised messages reproducible; they are taken as they are without."""
 
 
 def offered_qos(*, latched: bool) -> str:
