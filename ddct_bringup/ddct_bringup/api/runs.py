@@ -4,6 +4,7 @@ import tempfile
 import threading
 import warnings
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -190,8 +191,7 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
 def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
     """Return the run that a bag holds, a folder or an .mcap file, scored anew."""
     path = Path(bag)
-    judged_by = load_limits(limits)
-    return _read(path, path.as_posix(), judged_by)
+    return _read(path, path.as_posix(), load_limits(limits))
 
 
 def table(runs: Run | Iterable[Run]) -> Any:
@@ -251,10 +251,7 @@ def _kept(plan: RunPlan, out: Path, overwrite: bool, limits: Limits) -> Run:
 
 
 def _execute(plan: RunPlan, folder: Path) -> None:
-    if plan.layout == 'headless':
-        execute(plan, folder)
-        return
-    with _ONE_GRAPH:
+    with nullcontext() if plan.layout == 'headless' else _ONE_GRAPH:
         execute(plan, folder)
 
 

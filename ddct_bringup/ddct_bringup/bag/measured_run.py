@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import OptionGroup, option, require_known
+from ddct_plant.base.options import OptionGroup, option, options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
@@ -101,7 +101,8 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     Raise DdctError for a log that cannot be read, is too short, or has a gap over 0.1 s.
     """
     log = read_log(path, columns, NEEDED)
-    run = _run(columns.run)
+    require_known(columns.run, options_of(MeasuredRun), prefix='run.')
+    run = MeasuredRun(**columns.run)
     start_s = log.time_s[0] if run.start_s is None else run.start_s
     steps = int(np.floor((log.time_s[-1] - start_s) / PERIOD_S + 1e-6))
     if start_s < log.time_s[0] - 1e-6 or steps < 1:
@@ -132,16 +133,9 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     )
 
 
-def _run(content: Mapping[str, Any]) -> MeasuredRun:
-    require_known(content, [field.name for field in fields(MeasuredRun)], prefix='run.')
-    return MeasuredRun(**content)
-
-
 def _facts(run: MeasuredRun, steps: int) -> RunFacts:
     duration_s = time_of_step(steps)
-    window = (run.control_start_s, duration_s)
-    if run.score_window_s:
-        window = (run.score_window_s[0], run.score_window_s[1])
+    first_s, last_s = run.score_window_s or (run.control_start_s, duration_s)
     return RunFacts(
         controller=run.controller,
         architecture=MEASURED,
@@ -151,7 +145,7 @@ def _facts(run: MeasuredRun, steps: int) -> RunFacts:
         mode=MEASURED,
         seed=0,
         control_start_s=run.control_start_s,
-        score_window_s=window,
+        score_window_s=(first_s, last_s),
         duration_s=duration_s,
     )
 

@@ -21,7 +21,7 @@ from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.files.input_file import SCHEMA_KEY, mcap_of
+from ddct_plant.files.input_file import SCHEMA_KEY, located, mcap_of
 from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.topics import (
@@ -104,15 +104,15 @@ def read_bag(path: Path) -> Recording:
     that ended early, or that holds non-finite values, is no error here.
     """
     records = read_records(mcap_of(path))
-    try:
+    with located(str(records.path)):
         return recording_of(records)
-    except DdctError as error:
-        raise DdctError(f'{records.path}: {error}') from error
 
 
 def recording_of(records: BagRecords) -> Recording:
     """Decode the records of a bag; raise the errors of `read_bag`, without the file's name."""
-    facts = _facts(records)
+    if JOINT_STATES.resolved_name not in records.topics:
+        raise DdctError(f'no topic {JOINT_STATES.resolved_name}: not a recording of this project')
+    facts = RunFacts.from_custom_data(records.custom_data)
     messages = _decode(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
     run = facts.kind_of_bag(messages)
@@ -151,12 +151,6 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
         if message.status:
             facts.hear(*DIAGNOSTICS.read(message))
     return facts
-
-
-def _facts(records: BagRecords) -> RunFacts:
-    if JOINT_STATES.resolved_name not in records.topics:
-        raise DdctError(f'no topic {JOINT_STATES.resolved_name}: not a recording of this project')
-    return RunFacts.from_custom_data(records.custom_data)
 
 
 def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:

@@ -3,6 +3,7 @@
 import tempfile
 from collections import defaultdict
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 
 from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY, Channel
@@ -13,7 +14,7 @@ from ddct_bringup.bag.ticks import complete_ticks, tick_topics
 from ddct_bringup.bag.writer import METADATA_FILE, BagWriter, write_metadata
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
-from ddct_plant.files.input_file import mcap_of
+from ddct_plant.files.input_file import located, mcap_of
 
 REPAIRED_KEY = 'repaired'
 """Custom data of a repaired bag has this key, with 'true'."""
@@ -63,15 +64,13 @@ def repair_bag(path: Path) -> Repair:
 
 def _rewrite(mcap: Path) -> Repair:
     records = salvage_records(mcap)
-    try:
+    with located(f'{mcap}: cannot be repaired'):
         kept, last_step = _whole_ticks(records)
         with _scratch_folder(mcap) as scratch:
             new = Path(scratch) / mcap.name
             _write(new, records, kept)
             recording_of(read_records(new))
             original = _swap(new, mcap)
-    except DdctError as error:
-        raise DdctError(f'{mcap}: cannot be repaired: {error}') from error
     return Repair(mcap, original, last_step, len(records.messages) - len(kept))
 
 
@@ -103,11 +102,11 @@ def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int
     for topic, stamp, _ in records.messages:
         stamps[topic].append(stamp)
     run = facts.kind_of_bag(records.topics)
-    count = complete_ticks(stamps, tick_topics(run, replies=run.lockstep))
-    if not count:
+    ticks = complete_ticks(stamps, tick_topics(run, replies=run.lockstep))
+    if not ticks:
         raise DdctError('it holds no complete tick')
-    last_ns = stamp_of_step(count - 1)
-    return [message for message in records.messages if message[1] <= last_ns], count - 1
+    last_ns = stamp_of_step(ticks - 1)
+    return [message for message in records.messages if message[1] <= last_ns], ticks - 1
 
 
 def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':
@@ -120,11 +119,9 @@ def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':
 
 def _swap(new: Path, mcap: Path) -> Path:
     """Put the new bag where the damaged one is, and return where that is kept."""
-    original = mcap.with_name(f'{mcap.name}.damaged')
-    number = 1
-    while original.exists():
-        number += 1
-        original = mcap.with_name(f'{mcap.name}.damaged{number}')
+    names = chain(['.damaged'], (f'.damaged{number}' for number in count(2)))
+    places = (mcap.with_name(mcap.name + name) for name in names)
+    original = next(place for place in places if not place.exists())
     try:
         mcap.rename(original)
         new.rename(mcap)

@@ -47,11 +47,6 @@ class Trajectory:
         raise AttributeError(f'there is no signal {name}')
 
     @property
-    def status(self) -> tuple[tuple[tuple[str, str], ...], ...]:
-        """Per step the (key, value) pairs of `controller/status`."""
-        return self.signals['status']
-
-    @property
     def two_input(self) -> bool:
         """Whether the controller commanded the engine too, by `engine_torque_request`."""
         return all(signal.name in self.signals for signal in ENGINE_REQUEST.signals)

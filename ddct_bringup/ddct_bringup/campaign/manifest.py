@@ -11,7 +11,7 @@ from typing import Any
 
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
-from ddct_bringup.run.source_commit import short_commit, source_commit
+from ddct_bringup.run.description import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version

@@ -91,7 +91,7 @@ def _run_all(
     ]
     entries = [run.entry for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(entries, limits))
-    _report(entries, plans, options, limits)
+    _report(entries, plans, settings, options, limits)
     failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
     if len(failed) == len(plans):
         tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
@@ -135,9 +135,12 @@ def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
 
 
 def _report(
-    entries: list[Entry], plans: list[RunPlan], options: argparse.Namespace, limits: Limits
+    entries: list[Entry],
+    plans: list[RunPlan],
+    settings: RunSettings,
+    options: argparse.Namespace,
+    limits: Limits,
 ) -> None:
-    settings = plans[0].settings
     if options.json:
         write_json(options.json, scores_document(entries, limits))
     stream = sys.stderr if options.json == STDOUT else sys.stdout

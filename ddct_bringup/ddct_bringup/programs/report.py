@@ -79,12 +79,11 @@ def _require_writable(out: str) -> None:
     if out == STDOUT:
         return
     require_place('--out', out)
-    path = Path(out)
     try:
-        if path.is_file() and path.stat().st_size:
-            with path.open('rb') as file:
-                ours = MARKER.encode() in file.read(_HEAD_BYTES)
-            if not ours:
+        if Path(out).is_file():
+            with Path(out).open('rb') as file:
+                head = file.read(_HEAD_BYTES)
+            if head and MARKER.encode() not in head:
                 raise DdctError(f'--out {out} is a file that is not ours: choose another name')
     except OSError as error:
         raise DdctError(f'--out {out}: cannot be read ({error.strerror})') from error

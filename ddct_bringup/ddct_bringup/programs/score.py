@@ -71,8 +71,8 @@ def _score(argv: list[str]) -> int:
 
 def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
     """Return the folders of runs that these options write into."""
-    files = [Path(file) for file in (options.json, options.csv) if file not in (None, STDOUT)]
-    folders = [file.parent for file in files]
+    files = (options.json, options.csv)
+    folders = [Path(file).parent for file in files if file not in (None, STDOUT)]
     if options.signals_csv is not None:
         folders.append(options.signals_csv)
     repaired = [bag if bag.is_dir() else bag.parent for bag in bags] if options.repair else []

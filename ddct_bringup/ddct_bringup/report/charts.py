@@ -60,8 +60,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     document = Document()
     roots = {}
     for quantity in charted_quantities(runs):
-        chart = _chart(quantity.key, quantity.unit, time_axis, cursor)
-        _mark_window(chart, runs[0].facts)
+        chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs[0].facts)
         for run, source in zip(runs, sources, strict=True):
             if quantity in quantities_of(run.trajectory):
                 _line(chart, quantity, run, source)
@@ -73,8 +72,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
         roots[quantity.key] = str(chart.id)
     sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
     if sticking:
-        chart = _chart(LANES, '', time_axis, cursor)
-        _mark_window(chart, runs[0].facts)
+        chart = _chart(LANES, '', time_axis, cursor, runs[0].facts)
         _draw_lanes(chart, sticking)
         document.add_root(chart)
         roots[LANES] = str(chart.id)
@@ -97,7 +95,7 @@ def _source(trajectory: Trajectory) -> ColumnDataSource:
     return ColumnDataSource({key: values.astype(np.float32) for key, values in columns.items()})
 
 
-def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span) -> figure:
+def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span, facts: RunFacts) -> figure:
     chart = figure(
         height=_HEIGHT_PX,
         sizing_mode='stretch_width',
@@ -120,6 +118,7 @@ def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span) -> figure:
     chart.axis.axis_label_text_font_style = 'normal'
     chart.axis.minor_tick_line_color = None
     chart.add_tools(CrosshairTool(overlay=cursor))
+    _mark_window(chart, facts)
     return chart
 
 
@@ -149,9 +148,8 @@ def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSo
         line_color=run.look.light,
         line_dash=list(run.look.dash),
         name=run.label,
-        visible=run.shown,
     )
-    line.tags = [_tag(run)]
+    _switch(line, [run])
     if run.look.mark:
         _mark_line(chart, quantity, run, source)
     if quantity.limit:
@@ -162,9 +160,8 @@ def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSo
             line_width=1.0,
             line_alpha=FAINT,
             line_color=run.look.light,
-            visible=run.shown,
         )
-        limit.tags = [{**_tag(run), 'alpha': FAINT}]
+        _switch(limit, [run], alpha=FAINT)
 
 
 def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
@@ -182,9 +179,8 @@ def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnD
         line_width=1.5,
         line_color=run.look.light,
         fill_color=run.look.light if run.look.filled else None,
-        visible=run.shown,
     )
-    marks.tags = [{**_tag(run), 'fill': run.look.filled}]
+    _switch(marks, [run], fill=run.look.filled)
 
 
 def _draw_references(
@@ -203,9 +199,8 @@ def _draw_references(
             line_width=1.4,
             line_color=NEUTRAL,
             line_dash=[5, 4],
-            visible=any(run.shown for run in members),
         )
-        line.tags = [{'runs': [run.index for run in members], 'colour': None}]
+        _switch(line, members, colour=None)
 
 
 def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
@@ -221,9 +216,8 @@ def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
             fill_color=None,
             line_color=run.look.light,
             line_width=2,
-            visible=run.shown,
         )
-        mark.tags = [_tag(run)]
+        _switch(mark, [run])
 
 
 def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
@@ -237,12 +231,9 @@ def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
     for lane, run in enumerate(runs):
         shade = draw_phases(chart, run.trajectory, lane, run.look.light)
         shade.name = run.label
-        shade.tags = [{**_tag(run), 'fill': True}]
-        marks = draw_events(chart, run.trajectory, lane, NEUTRAL)
-        for mark in marks:
-            mark.tags = [{**_tag(run), 'colour': None}]
-        for item in (shade, *marks):
-            item.visible = run.shown
+        _switch(shade, [run], fill=True)
+        for mark in draw_events(chart, run.trajectory, lane, NEUTRAL):
+            _switch(mark, [run], colour=None)
         shades.append(shade)
     chart.add_tools(
         HoverTool(
@@ -258,10 +249,10 @@ def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
         if run.trajectory.clutch_phase is None:
             continue
         for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
-            mark.visible = run.shown
-            mark.tags = [_tag(run)]
+            _switch(mark, [run])
 
 
-def _tag(run: ChartRun) -> dict[str, Any]:
-    """Return what the page knows a line by: its runs, and its colour or None for the neutral."""
-    return {'runs': [run.index], 'colour': run.look.colour}
+def _switch(mark: DataRenderer, runs: Sequence[ChartRun], **tag: Any) -> None:
+    """Let the page switch a mark with its runs; its tag has their colour, or None if neutral."""
+    mark.visible = any(run.shown for run in runs)
+    mark.tags = [{'runs': [run.index for run in runs], 'colour': runs[0].look.colour, **tag}]

@@ -1,6 +1,6 @@
 """What the words, symbols, signs and dashes of the page mean, so that it needs no other page."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ddct_bringup.report.page_parts import unit_text
@@ -109,10 +109,10 @@ def definitions(
     return {
         'Reading the tables': reading,
         'Signals': signals,
-        'Metrics': _figures((*TABLE_5_1, *FURTHER)),
+        'Metrics': tuple(map(_defined, (*TABLE_5_1, *FURTHER))),
         'Criteria': _criteria(),
         'States and limits': _STATES,
-        'Frequency': _LOOPS + _figures(LOOP_FIGURES),
+        'Frequency': (*_LOOPS, *map(_defined, LOOP_FIGURES)),
         'Update times': _TIMES,
         'Origin': _ORIGIN,
     }
@@ -131,10 +131,6 @@ def _criteria() -> tuple[Definition, ...]:
         else _defined(each)
         for each in CRITERIA
     )
-
-
-def _figures(figures: Sequence[Figure]) -> tuple[Definition, ...]:
-    return tuple(_defined(each) for each in figures)
 
 
 def _defined(figure: Figure) -> Definition:

@@ -140,11 +140,11 @@ class LoopRow:
 
 def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
     """Return one row for each loop that has evidence."""
-    rows = []
-    for each in evidence:
-        if each.entry is not None and each.point is not None:
-            rows.append(_row(each, each.entry, each.point))
-    return rows
+    return [
+        _row(each, each.entry, each.point)
+        for each in evidence
+        if each.entry is not None and each.point is not None
+    ]
 
 
 def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:

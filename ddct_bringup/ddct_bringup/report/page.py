@@ -23,7 +23,7 @@ from ddct_bringup.report.score_tables import (
     metric_cells,
     verdict_rows,
 )
-from ddct_bringup.run.source_commit import short_commit
+from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits

@@ -49,11 +49,6 @@ class ReportRun:
     settings: RunSettings | None = None
     """As `Recording.settings`."""
 
-    @property
-    def controller(self) -> str | None:
-        """The controller's name."""
-        return self.entry['controller']
-
     @cached_property
     def digest(self) -> str | None:
         """

@@ -31,8 +31,7 @@ class RunTiming(RealtimeCounts):
 
     def write(self, folder: Path) -> None:
         """Write `timing.json` into a bag's folder; raise DdctError when that fails."""
-        text = json.dumps(asdict(self)) + '\n'
-        write_text(str(folder / TIMING_FILE), text, _ADVICE)
+        write_text(str(folder / TIMING_FILE), json.dumps(asdict(self)) + '\n', _ADVICE)
 
 
 def read_timing(folder: Path) -> RunTiming | None:
@@ -92,8 +91,7 @@ def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> N
 
     Raise DdctError when that fails.
     """
-    note = {'reason': reason, 'run': dict(custom_data)}
-    write_json(str(folder / NOTE_FILE), note, _ADVICE)
+    write_json(str(folder / NOTE_FILE), {'reason': reason, 'run': dict(custom_data)}, _ADVICE)
 
 
 def failed_run(folder: Path) -> FailedRun | None:

@@ -66,7 +66,9 @@ def execute(
     `stopped()` becomes true; what was recorded until then stays in the folder.
     """
     if plan.layout == 'headless':
-        _execute_headless(plan, folder)
+        told, timing = simulate(plan)
+        write_trajectory(told.trajectory, folder, plan.name, told.custom_data, told.run_info)
+        timing.write(folder)
         return
     work = folder / WORK_FOLDER
     try:
@@ -75,7 +77,10 @@ def execute(
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:
-                _execute_single_process(plan, folder, work, stopped)
+                # The graph needs ROS installed and sourced; a headless run does not.
+                from ddct_bringup.processes.single_process import run_single_process
+
+                run_single_process(plan.node_parameters(folder, work), stopped)
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
@@ -132,24 +137,6 @@ def _execute_processes(
             processes.stop(lambda name: name != 'recorder')
             processes.stop(lambda name: name == 'recorder')
         processes.require_clean_end()
-
-
-def _execute_single_process(
-    plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
-) -> None:
-    # The graph needs ROS installed and sourced; a headless run does not.
-    from ddct_bringup.processes.single_process import run_single_process
-
-    parameters = plan.node_parameters(folder, work)
-    run_single_process(parameters, stopped)
-
-
-def _execute_headless(plan: RunPlan, folder: Path) -> None:
-    recording, timing = simulate(plan)
-    write_trajectory(
-        recording.trajectory, folder, plan.name, recording.custom_data, recording.run_info
-    )
-    timing.write(folder)
 
 
 def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:

@@ -46,11 +46,6 @@ class ClosedLoop:
         reply['status'] = request.status
         return reply
 
-    @property
-    def over(self) -> bool:
-        """Whether the engine's speed ends the run with the present state."""
-        return self.plant.over
-
     def advance(self, reply: dict[str, Any]) -> None:
         """Integrate the driveline over the period that `reply` answered."""
         self.plant.advance(reply)
@@ -80,7 +75,7 @@ def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> T
         loop.advance(rows[-1])
         rows.append(loop.reply(step))
         timing.update_times_us.append(loop.update_time_us)
-        if loop.over:
+        if loop.plant.over:
             break
     timing.steps = len(rows) - 1
     timing.wall_time_s = time.perf_counter() - started

@@ -29,7 +29,7 @@ class RunPlan:
         make_architecture(self.settings, make_controller(self.controller, self.settings))
         if self.layout == 'headless':
             require_headless(self.settings)
-        if self.layout != 'headless':
+        else:
             if not isinstance(self.controller, str):
                 raise ParameterError(
                     f'controller {self.name!r} is known to this process alone: run it headless, '

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from ddct_bringup.run import description
-from ddct_bringup.run.source_commit import short_commit, source_commit
+from ddct_bringup.run.description import short_commit, source_commit
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

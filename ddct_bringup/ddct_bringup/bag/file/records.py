@@ -95,8 +95,9 @@ def read_records(path: Path) -> BagRecords:
         _verify_summary(data)
         bag.add(_unpacked(data, validate_crcs=True))
     except _READ_ERRORS as error:
+        what = ' '.join(str(error).split()) or type(error).__name__
         raise DdctError(
-            f'{path}: the recording is damaged ({_one_line(error)}): '
+            f'{path}: the recording is damaged ({what}): '
             'rescue what is readable with ddct score --repair'
         ) from error
     return bag
@@ -157,7 +158,3 @@ def _verify_summary(data: bytes) -> None:
     covered = data[start : -len(MAGIC) - 4]
     if opcode != 2 or (checksum and zlib.crc32(covered) != checksum):
         raise ValueError('the checksum of the summary is wrong')
-
-
-def _one_line(error: BaseException) -> str:
-    return ' '.join(str(error).split()) or type(error).__name__
