@@ -119,9 +119,7 @@ def recording_of(records: BagRecords) -> Recording:
     last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}
-    for topic in recorded_topics(run):
-        if not topic.signals:
-            continue
+    for topic in (each for each in recorded_topics(run) if each.signals):
         rows, held = _rows(topic, messages.get(topic.resolved_name, []), last)
         signals = topic.signals_in(run)
         if len(rows[0]) != len(signals):

@@ -206,18 +206,17 @@ def _draw_references(
 def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
     """Mark where Table 5.1 has w_d reach zero."""
     for run in runs:
-        if run.thesis_engagement_time_s is None:
-            continue
-        mark = chart.scatter(
-            [run.facts.control_start_s + run.thesis_engagement_time_s],
-            [0.0],
-            marker='diamond',
-            size=13,
-            fill_color=None,
-            line_color=run.look.light,
-            line_width=2,
-        )
-        _switch(mark, [run])
+        if run.thesis_engagement_time_s is not None:
+            mark = chart.scatter(
+                [run.facts.control_start_s + run.thesis_engagement_time_s],
+                [0.0],
+                marker='diamond',
+                size=13,
+                fill_color=None,
+                line_color=run.look.light,
+                line_width=2,
+            )
+            _switch(mark, [run])
 
 
 def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
@@ -246,10 +245,9 @@ def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
 def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
     """Mark locks and releases where the slip is zero."""
     for run in runs:
-        if run.trajectory.clutch_phase is None:
-            continue
-        for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
-            _switch(mark, [run])
+        if run.trajectory.clutch_phase is not None:
+            for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
+                _switch(mark, [run])
 
 
 def _switch(mark: DataRenderer, runs: Sequence[ChartRun], **tag: Any) -> None:

@@ -68,11 +68,9 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
         return None
     if conditions.get('scenario_digest') != run.digest:
         return None
-    for entry in entries:
-        if isinstance(entry, dict) and entry.get('controller') == controller:
-            whole = _is_whole(entry, wear_gain)
-            return LoopEvidence(controller, wear_gain, entry) if whole else None
-    return None
+    ours = (each for each in entries if isinstance(each, dict))
+    entry = next((each for each in ours if each.get('controller') == controller), None)
+    return LoopEvidence(controller, wear_gain, entry) if _is_whole(entry, wear_gain) else None
 
 
 def _is_whole(entry: Any, wear_gain: float) -> bool:
@@ -125,8 +123,7 @@ def _computed(runs: Mapping[str, ReportRun], wear_gain: float) -> list[LoopEvide
 class LoopRow:
     """One row of the table."""
 
-    controller: str
-    wear_gain: str
+    loop: LoopEvidence
     stable: bool
     cells: tuple[tuple[float | None, str], ...]
     """(value, text) for each of `LOOP_FIGURES`."""
@@ -135,7 +132,6 @@ class LoopRow:
     corner_peak: str
     """Highest M_s over all corners."""
     corners_unstable: str
-    remark: str
 
 
 def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
@@ -162,8 +158,7 @@ def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
 def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
     interval = entry['stable_wear_gain'] or {}
     return LoopRow(
-        controller=evidence.controller,
-        wear_gain=f'{evidence.wear_gain:g}',
+        loop=evidence,
         stable=point['stable'],
         cells=tuple(
             (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_FIGURES
@@ -172,5 +167,4 @@ def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
         f'{number_text(interval.get("highest"), ".2f")}',
         corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),
         corners_unstable=str(entry['corners']['unstable']),
-        remark=evidence.remark,
     )

@@ -1,5 +1,7 @@
 """Phases of a clutch that sticks: spans of time to shade, and the instants of lock and release."""
 
+from collections.abc import Iterator
+
 from bokeh.models import ColumnDataSource
 from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
@@ -63,21 +65,19 @@ def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> Glyph
     )
 
 
-def draw_events(chart: figure, run: Trajectory, height: float, colour: str) -> list[GlyphRenderer]:
-    """Mark the locks and releases of a run at a height of the chart."""
-    marks = []
+def draw_events(
+    chart: figure, run: Trajectory, height: float, colour: str
+) -> Iterator[GlyphRenderer]:
+    """Mark the locks and releases of a run at a height of the chart, and yield the marks."""
     for kind, marker in EVENT_MARKERS.items():
         times = [time for events in run.phase_events for time, what in events if what == kind]
         if times:
-            marks.append(
-                chart.scatter(
-                    times,
-                    [height] * len(times),
-                    marker=marker,
-                    size=9,
-                    fill_color='#ffffff',
-                    line_color=colour,
-                    line_width=1.5,
-                )
+            yield chart.scatter(
+                times,
+                [height] * len(times),
+                marker=marker,
+                size=9,
+                fill_color='#ffffff',
+                line_color=colour,
+                line_width=1.5,
             )
-    return marks

@@ -123,16 +123,7 @@ def print_choices() -> None:
 
 
 def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
-    """Print what controllers are computed from, a line for all that share it."""
-    for source, labels in _computed_from(names).items():
-        what = f'computed from {source}'
-        if source == UNSTATED:
-            what = 'not stated whether computed from the scenario or the thesis'
-        print(f'{what}: {printable(", ".join(labels))}', file=stream)
-
-
-def _computed_from(names: Sequence[Chosen]) -> dict[str, list[str]]:
-    """Return by what they are computed from the controllers, files by their own names."""
+    """Print what controllers are computed from, files by their own names, a line for all alike."""
     found: dict[str, list[str]] = {}
     for name in names:
         try:
@@ -140,7 +131,11 @@ def _computed_from(names: Sequence[Chosen]) -> dict[str, list[str]]:
             found.setdefault(spec.computed_from, []).append(spec.name)
         except DdctError:  # a third party's that cannot be loaded; the table of options says why
             found.setdefault(UNSTATED, []).append(str(name))
-    return found
+    for source, labels in found.items():
+        what = f'computed from {source}'
+        if source == UNSTATED:
+            what = 'not stated whether computed from the scenario or the thesis'
+        print(f'{what}: {printable(", ".join(labels))}', file=stream)
 
 
 def controller_options_table() -> Table:
