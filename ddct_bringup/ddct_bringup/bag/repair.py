@@ -6,12 +6,18 @@ from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
 
-from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY, Channel
+from ddct_bringup.bag.file.metadata import (
+    HASH_KEY,
+    METADATA_FILE,
+    QOS_KEY,
+    Channel,
+    write_metadata,
+)
 from ddct_bringup.bag.file.records import BagRecords, read_records, salvage_records
 from ddct_bringup.bag.reader import recording_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.ticks import complete_ticks, tick_topics
-from ddct_bringup.bag.writer import METADATA_FILE, BagWriter, write_metadata
+from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.files.input_file import located, mcap_of

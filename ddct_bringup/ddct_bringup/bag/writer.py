@@ -10,6 +10,7 @@ from mcap.writer import Writer
 from ddct_bringup.bag.file.cdr import CdrNormaliser
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.file.metadata import (
+    ADVICE,
     HASH_KEY,
     QOS_KEY,
     RECORD_NAME,
@@ -17,15 +18,11 @@ from ddct_bringup.bag.file.metadata import (
     Channel,
     bag_information,
     metadata_record,
-    metadata_yaml,
     offered_qos,
+    write_metadata,
 )
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import write_text
 from ddct_plant.graph.topics import Topic
-
-METADATA_FILE = 'metadata.yaml'
-_ADVICE = 'free some space or choose another output folder'
 
 _CHUNK_BYTES = 64 * 1024
 """About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
@@ -181,9 +178,4 @@ class BagWriter:
         return self._cannot_write(error)
 
     def _cannot_write(self, error: OSError) -> DdctError:
-        return DdctError(f'{self.path}: cannot write the recording ({error.strerror}): {_ADVICE}')
-
-
-def write_metadata(folder: Path, information: Mapping[str, Any]) -> None:
-    """Write `metadata.yaml` whole or not at all; raise DdctError when it fails."""
-    write_text(str(folder / METADATA_FILE), metadata_yaml(information), _ADVICE)
+        return DdctError(f'{self.path}: cannot write the recording ({error.strerror}): {ADVICE}')

@@ -39,12 +39,9 @@ def _live(argv: list[str]) -> int:
         raise ParameterError(f'--port is {options.port}: give a number from 0 to {_LAST_PORT}')
     # On a busy machine the nodes of the loop come first; what waits here is buffered.
     os.nice(_NICENESS)
-    factory = partial(LiveNode, options.host, options.port, _say)
+    say = partial(print, f'{PROGRAM}:', flush=True)
+    factory = partial(LiveNode, options.host, options.port, say)
     return run_node(PROGRAM, factory, [PROGRAM, *argv])
-
-
-def _say(text: str) -> None:
-    print(f'{PROGRAM}: {text}', flush=True)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -119,8 +119,7 @@ def _sensors(runs: Sequence[ReportRun]) -> str | None:
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
     """Return what the template needs of each run."""
     entries = [run.entry for run in runs]
-    controllers = [entry['controller'] or entry['bag'] for entry in entries]
-    looks = looks_of(controllers)
+    looks = looks_of(entry['controller'] or entry['bag'] for entry in entries)
     of_each = zip(
         runs, run_labels(entries), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
     )

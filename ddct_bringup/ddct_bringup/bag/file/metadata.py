@@ -2,10 +2,16 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+
+METADATA_FILE = 'metadata.yaml'
+ADVICE = 'free some space or choose another output folder'
+"""Where something of a bag cannot be written."""
 
 ROOT_KEY = 'rosbag2_bagfile_information'
 RECORD_NAME = 'rosbag2'
@@ -107,9 +113,9 @@ def metadata_record(information: Mapping[str, Any]) -> dict[str, str]:
     return {RECORD_KEY: _dump(dict(information))}
 
 
-def metadata_yaml(information: Mapping[str, Any]) -> str:
-    """Return the text of `metadata.yaml`."""
-    return _dump({ROOT_KEY: dict(information)})
+def write_metadata(folder: Path, information: Mapping[str, Any]) -> None:
+    """Write `metadata.yaml` whole or not at all; raise DdctError when it fails."""
+    write_text(str(folder / METADATA_FILE), _dump({ROOT_KEY: dict(information)}), ADVICE)
 
 
 def information_of(record: Mapping[str, str]) -> dict[str, Any]:
