@@ -9,7 +9,7 @@ import dataclasses
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cache
 from importlib.resources import files
 from operator import attrgetter
 from pathlib import Path
@@ -74,23 +74,13 @@ class Limits:
     origin: dict[str, Any] = field(compare=False)
     """`name`, `digest` and `schema_version` of the file, as `scores.json` has them."""
 
-    def of(self, criterion: str, scenario: str) -> Limit | None:
-        """Return the strictest limit of a criterion for a scenario, None without one."""
-        asked = criterion, scenario
-        if asked not in self._strictest:
-            found = [
-                limit
-                for limit in self.limits
-                if limit.criterion == criterion
-                and (limit.applies_to is None or scenario in limit.applies_to)
-            ]
-            self._strictest[asked] = min(found, key=attrgetter('value'), default=None)
-        return self._strictest[asked]
-
-    @cached_property
-    def _strictest(self) -> dict[tuple[str, str], Limit | None]:
-        """What `of` has found so far: many runs ask the same."""
-        return {}
+    def of(self, scenario: str) -> dict[str, Limit]:
+        """Return by criterion the strictest limit for a scenario, where there is one."""
+        strictest: dict[str, Limit] = {}
+        for limit in sorted(self.limits, key=attrgetter('value')):
+            if limit.applies_to is None or scenario in limit.applies_to:
+                strictest.setdefault(limit.criterion, limit)
+        return strictest
 
 
 @cache

@@ -5,7 +5,7 @@ from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERIA, criterion_values
 from ddct_bringup.verdict.judged_run import JudgedRun
-from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits import Limit, Limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID, slip_state
 
 Verdict = dict[str, Any]
@@ -36,8 +36,9 @@ def verdict_of(
     with a limit is within: what never engaged has no engagement to keep within limits, and of a
     limit without a value, as in a run that ended early, nobody knows whether it was kept.
     """
+    strictest = limits.of(scenario)
     criteria = [
-        _judged(criterion.key, criterion.unit, values[criterion.key], limits, scenario)
+        _judged(criterion.key, criterion.unit, values[criterion.key], strictest.get(criterion.key))
         for criterion in CRITERIA
     ]
     found = {criterion['state'] for criterion in criteria if criterion['limit'] is not None}
@@ -55,10 +56,9 @@ def verdict_of_unreadable() -> Verdict:
 
 
 def _judged(
-    name: str, unit: str, value: float | int | None, limits: Limits, scenario: str
+    name: str, unit: str, value: float | int | None, limit: Limit | None
 ) -> dict[str, Any]:
     """Return one criterion; the magnitude of its value is what is limited."""
-    limit = limits.of(name, scenario)
     state = NO_LIMIT
     if limit is not None and value is not None:
         state = WITHIN if abs(value) <= limit.value else BEYOND

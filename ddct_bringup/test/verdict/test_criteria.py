@@ -260,5 +260,5 @@ limits:
 
 
 def test_the_packaged_file_limits_the_dose_by_the_action_value():
-    limit = packaged_limits().of('daily_vibration_dose', 'thesis')
+    limit = packaged_limits().of('thesis')['daily_vibration_dose']
     assert (limit.value, limit.unit) == (9.1, 'm/s^1.75')
