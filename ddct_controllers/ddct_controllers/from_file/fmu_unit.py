@@ -120,8 +120,9 @@ class FmuController(Controller):
 
     def update(self, measurement: Measurement) -> Command:
         """Return the outputs of this period's step; raise DdctError when the FMU fails."""
-        torques = self._step([(each.variable, each.read(measurement)) for each in self._fed])
+        inputs = [(each.variable, each.read(measurement)) for each in self._fed]
         with self._file.located():
+            torques = self._step(inputs)
             for name, torque in torques.items():
                 variable = self._outputs[name].name
                 require_finite(f'fmu.outputs.{variable} at step {measurement.step}', torque)
@@ -150,7 +151,8 @@ class FmuController(Controller):
     def _load(self) -> None:
         self._steps = 0
         self._said: list[str] = []
-        with contextlib.ExitStack() as held, self._named('when it is loaded'):
+        located, named = self._file.located(), self._named('when it is loaded')
+        with located, contextlib.ExitStack() as held, named:
             folder = held.enter_context(TemporaryDirectory(prefix='ddct_fmu_'))
             self._fmu.fmpy.extract(self._fmu.path, folder)
             # FMPy goes to the binary's folder, and stays there when it cannot be loaded.
@@ -173,17 +175,15 @@ class FmuController(Controller):
     def _named(self, when: str) -> Iterator[None]:
         """Raise whatever FMPy raises as a DdctError."""
         self._said.clear()
-        with self._file.located():
-            try:
-                yield
-            except Exception as error:
-                if getattr(error, 'status', None) == _FATAL:
-                    self._instance.component = None
-                said = f': {self._said[-1]}' if self._said else ''
-                raise DdctError(
-                    f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the '
-                    'FMU'
-                ) from error
+        try:
+            yield
+        except Exception as error:
+            if getattr(error, 'status', None) == _FATAL:
+                self._instance.component = None
+            said = f': {self._said[-1]}' if self._said else ''
+            raise DdctError(
+                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the FMU'
+            ) from error
 
 
 def _free(instance: Any) -> None:

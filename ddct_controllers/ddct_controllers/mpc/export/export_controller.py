@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -128,7 +127,7 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
 
 def c_part(name: str) -> str:
     """Return the hand-written C in the file `name`."""
-    return (files('ddct_controllers.mpc.export') / 'c' / name).read_text(encoding='utf-8')
+    return (Path(__file__).parent / 'c' / name).read_text(encoding='utf-8')
 
 
 def macros(values: Mapping[str, int | float], prefix: str = '') -> str:

@@ -33,10 +33,8 @@ _LIMITS = {
         at_most=MOST,
     ),
 }
-_HORIZON, _SOLVER = (
-    ('prediction_steps', 'control_steps', 'preview'),
-    ('backend', 'iteration_limit'),
-)
+_HORIZON = ('prediction_steps', 'control_steps', 'preview')
+_SOLVER = ('backend', 'iteration_limit')
 _CLUTCH_LIMITS = {'highest_torque_n_m': 'highest', 'torque_rate_n_m_s': 'rate_n_m_s'}
 
 
