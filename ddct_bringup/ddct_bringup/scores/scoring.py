@@ -32,7 +32,7 @@ SCHEMA_VERSION = 2
 """Of `scores.json`; 1 had no verdict and did not say its version."""
 
 NOT_COMPUTED = 'not_computed'
-"""Key of `scores.json`, of such a log alone: reasons by figure."""
+"""Key of `scores.json`, of a log of another tool alone: reasons by figure."""
 NEEDS: Mapping[str, tuple[str, ...]] = {
     TORSION: ('torsion_speed_std_rpm', 'judder', 'shuffle_amplitude', 'shuffle_decay'),
     'vehicle_accel': (
@@ -51,7 +51,7 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
     'torque_request': ('torque_total_variation_n_m', 'request_variation'),
     'driveshaft_torque': ('torque_dip',),
 }
-"""Metrics and criteria by the quantity without which they do not exist."""
+"""Metrics and criteria by the quantity of the log without which they do not exist."""
 
 METRIC_NAMES = Metrics._fields
 _COUNT = re.compile('[0-9]{1,9}')

@@ -17,6 +17,7 @@ from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
@@ -195,11 +196,7 @@ def _mapping(
     where = path or 'line 1'
     if not isinstance(content, dict):
         raise ParameterError(f'{where}: give keys and values')
-    known = (*required, *optional)
-    for key in content:
-        if key not in known:
-            full = f'{path}.{key}' if path else key
-            raise ParameterError(f'{full}: unknown key: known are {", ".join(known)}')
+    require_known(content, (*required, *optional), prefix=f'{path}.' if path else '')
     for key in required:
         if key not in content:
             raise ParameterError(f'{where}: the key {key} is missing')

@@ -84,15 +84,25 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'limits\\[0\\].applies_to: give',
         ),
         ('applies_to: all', 'applies_to: []', 'applies_to: []', 'limits\\[0\\].applies_to: give'),
-        ('  settled_time:', '  settling:', '  settling:', 'rules.settling: unknown key'),
-        ('rules:', 'rule:', 'rule:', 'rule: unknown key: known are rules, limits'),
+        (
+            '  settled_time:',
+            '  settling:',
+            '  settling:',
+            'unknown key rules.settling: did you mean rules.settled_time',
+        ),
+        ('rules:', 'rule:', 'rule:', 'unknown key rule: did you mean rules'),
         (
             '    source: Directive 2002/44/EC\n',
             '',
             'daily_vib',
             'limits\\[1\\]: source is missing: c',
         ),
-        ('    clause: annex', '    page: annex', 'page: annex', 'limits\\[0\\].page: unknown key'),
+        (
+            '    clause: annex',
+            '    page: annex',
+            'page: annex',
+            'unknown key limits\\[0\\].page: known: ',
+        ),
         (
             '    source: Directive 2002/44/EC',
             "    source: ''",
@@ -100,7 +110,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'limits\\[1\\].source: ',
         ),
         ('    unit: degC\n', '', 'peak_temperature', 'limits\\[2\\]: the key unit is missing'),
-        ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'more: unknown key'),
+        ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'unknown key more: known: rules, limits'),
     ],
 )
 def test_what_is_wrong_is_named_with_file_line_and_key(old, new, at, complaint):
