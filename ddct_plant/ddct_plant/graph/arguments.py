@@ -13,14 +13,9 @@ from ddct_plant.base.options import require_known
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.graph.node import GraphNode
 
-HELP = ('-h', '--help')
+HELP = {'-h', '--help'}
 ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
 _NO_LOGS = 'failed to initialize logging'
-
-
-def help_asked(arguments: Sequence[str]) -> bool:
-    """Say whether `--help` is anywhere among the arguments."""
-    return any(argument in HELP for argument in arguments)
 
 
 def require_ros_arguments(arguments: Sequence[str]) -> None:

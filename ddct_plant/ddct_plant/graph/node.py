@@ -146,7 +146,11 @@ class GraphNode(Node):
         *,
         raw: bool = False,
     ) -> None:
-        """Call `receive` with each message of a topic, or its bytes; a DdctError ends the node."""
+        """
+        Call `receive` with each message of a topic, or its bytes; a DdctError ends the node.
+
+        `qos` is for topics that are not latched.
+        """
         guarded = self.guarded(receive)
         qos = RECORDER_LATCHED_QOS if topic.latched else qos
         self.create_subscription(topic.message_class, topic.name, guarded, qos, raw=raw)

@@ -13,7 +13,7 @@ from rclpy.task import Future
 
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.graph.arguments import (
-    help_asked,
+    HELP,
     init_ros,
     node_help,
     require_declared,
@@ -117,7 +117,7 @@ def run_node(
 
     def program(argv: list[str]) -> int:
         if arguments is None:
-            if help_asked(argv):
+            if not HELP.isdisjoint(argv):
                 print(node_help(name, factory, sys.argv))
                 return 0
             require_ros_arguments(argv)
