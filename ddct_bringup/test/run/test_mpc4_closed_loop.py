@@ -9,6 +9,8 @@ import pytest
 from ddct_bringup.reproduction.runs import HeadlessRun, StaticControllerAlone, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
+    closed_loop,
+    growth,
     model_without_actuator,
 )
 from ddct_bringup.reproduction.studies.mpc4_readings import READINGS
@@ -16,7 +18,6 @@ from ddct_bringup.reproduction.studies.study import (
     close_time_s,
     deviation_range,
 )
-from ddct_bringup.reproduction.studies.torque_level import closed_loop, growth
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost

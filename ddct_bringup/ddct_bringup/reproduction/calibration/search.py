@@ -1,10 +1,28 @@
-"""Search of the calibration: over the end of the score window, the two kinds of PI, and starts."""
+"""
+The searches of the calibration.
+
+One is for the best fit, over the end of the score window, the two kinds of PI, and starts. The
+others are in the region of the parameters in which the nine figures are within tolerance: for its
+centre and its rim.
+"""
 
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
-from ddct_bringup.reproduction.calibration.parameters import BASE, DURATION_S, TARGETS
+import numpy as np
+import scipy
+
+from ddct_bringup.reproduction.calibration.parameters import (
+    BASE,
+    DURATION_S,
+    LOWER,
+    PARAMETERS,
+    RANGE,
+    TARGETS,
+    Values,
+)
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit
 from ddct_plant.base.errors import DdctError
 
@@ -25,6 +43,11 @@ STARTS = tuple(
     )
 )
 """Start values for the window that is chosen; the first two serve every window."""
+RIM = 0.98
+"""Largest scaled residual on the rim: rounding of the values and curvature may take the rest."""
+_STEPS = 40
+_PRECISION = 1e-3
+"""Change of what is sought, in tolerances or in shares of a range, at which a search ends."""
 
 
 def search(progress: Progress) -> tuple[list[Fit], list[Fit]]:
@@ -59,3 +82,88 @@ def _one_of_each_kind(optima: Sequence[Fit]) -> list[Fit]:
     for one in sorted(optima, key=lambda one: one.objective):
         best.setdefault(one.pi_kind, one)
     return [best[kind] for kind in sorted(best, reverse=True)]
+
+
+def centre(problem: Problem, start: Values) -> tuple[float, ...]:
+    """
+    Return the (6,) values near (6,) start values whose largest scaled residual t is the least.
+
+    Sequential quadratic programming: least t with |residuals| <= t.
+    """
+    both_signs, jacobian = _both_signs(problem)
+    shares = _shares(start)
+    first = both_signs(shares)
+    ones = np.ones((len(first), 1))
+    least = _least(
+        np.append(np.zeros(len(PARAMETERS)), 1.0),
+        np.append(shares, np.max(first)),
+        lambda at: at[-1] + both_signs(at[:-1]),
+        lambda at: np.hstack([jacobian(at[:-1]), ones]),
+    )
+    return _values(least[:-1])
+
+
+def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[float, ...]:
+    """
+    Return the (6,) values with all |residuals| <= RIM that goes the farthest along a direction.
+
+    `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
+    """
+    both_signs, jacobian = _both_signs(problem)
+    gain = -np.array(direction, dtype=float)
+    return _values(_least(gain, _shares(start), lambda at: RIM + both_signs(at), jacobian))
+
+
+_Function = Callable[[np.ndarray], np.ndarray]
+
+
+def _both_signs(problem: Problem) -> tuple[_Function, _Function]:
+    """
+    Return (-r, r), (18,), of the scaled residuals r and its derivatives, (18, 6).
+
+    They are functions of the parameters' (6,) shares of their ranges, and keep what they computed:
+    each is asked for twice at a point.
+    """
+
+    @lru_cache
+    def values(*at: float) -> np.ndarray:
+        residuals = problem.residuals(at)
+        return np.concatenate([-residuals, residuals])
+
+    @lru_cache
+    def derivatives(*at: float) -> np.ndarray:
+        jacobian = problem.jacobian(at)
+        return np.vstack([-jacobian, jacobian])
+
+    return lambda at: values(*_values(at)), lambda at: derivatives(*_values(at))
+
+
+def _shares(values: Values) -> np.ndarray:
+    return (np.asarray(values, dtype=float) - LOWER) / RANGE
+
+
+def _values(shares: np.ndarray) -> tuple[float, ...]:
+    """Return the values; SLSQP leaves the bounds by the last digits."""
+    return tuple((LOWER + np.clip(shares, 0.0, 1.0) * RANGE).tolist())
+
+
+def _least(
+    gain: np.ndarray, start: np.ndarray, limits: _Function, limits_jacobian: _Function
+) -> np.ndarray:
+    """
+    Return where gain @ at is least with all `limits` at least zero, by SLSQP.
+
+    The first of `at` are shares of the parameters' ranges, from 0 to 1; what follows is positive.
+    """
+    further = len(start) - len(PARAMETERS)
+    answer = scipy.optimize.minimize(
+        lambda at: gain @ at,
+        start,
+        jac=lambda at: gain,
+        bounds=[(0.0, 1.0)] * len(PARAMETERS) + [(0.0, None)] * further,
+        constraints={'type': 'ineq', 'fun': limits, 'jac': limits_jacobian},
+        method='SLSQP',
+        options={'maxiter': _STEPS, 'ftol': _PRECISION},
+    )
+    found: np.ndarray = answer.x
+    return found

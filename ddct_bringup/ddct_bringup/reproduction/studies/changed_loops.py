@@ -1,5 +1,10 @@
-"""Loops with a clutch without actuator, a measured state, a load step or noise on the speeds."""
+"""
+Loops with a clutch without actuator, a measured state, a load step or noise on the speeds.
 
+And the linear loop of plant, filter and feedback, of which the modes are asked for.
+"""
+
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -11,17 +16,22 @@ from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import run_start
 from ddct_controllers.mpc.model.transmission_model import (
+    ENGINE_TORQUE,
     MEASURED,
     REQUEST,
     SLIP_ACCELERATION,
+    STATES,
     TransmissionModel,
     transmission_model,
 )
-from ddct_plant.base.timebase import SUBSTEPS
+from ddct_controllers.mpc.program.horizon import CondensedProgram
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
 
+ALL_BUT_ONE = 1.0 - 1e-6
+"""Beyond this a mode is as good as an integrator."""
 TWIST = MEASURED
 """Place of theta_sr in the state, after the speeds."""
 
@@ -40,6 +50,41 @@ def model_without_actuator(
     b[:, REQUEST] += wear_gain * model.clutch
     d[SLIP_ACCELERATION, REQUEST] = wear_gain * plant.c[0] @ plant.b[:, 1]
     return TransmissionModel(a, b, c, d, clutch=model.clutch)
+
+
+def closed_loop(
+    program: CondensedProgram, observer: Observer, plant: TransmissionModel
+) -> np.ndarray:
+    """
+    Return the matrix (2 STATES, 2 STATES) of `plant` and filter within limits.
+
+    Without weights on the moves the inputs follow from the estimate alone.
+    """
+    feedback = -np.linalg.solve(program.structure.hessian, program.gradient[:, :STATES])
+    inputs, measured = [REQUEST, ENGINE_TORQUE], np.eye(observer.gain.shape[1], STATES)
+    correction = observer.gain @ measured
+    estimate = np.hstack([correction, np.eye(STATES) - correction])
+    moves, model = feedback @ estimate, observer.model
+    return np.vstack(
+        [
+            np.hstack([plant.a, np.zeros_like(plant.a)]) + plant.b[:, inputs] @ moves,
+            model.a @ estimate + model.b[:, inputs] @ moves,
+        ]
+    )
+
+
+def growth(program: CondensedProgram, observer: Observer, plant: TransmissionModel) -> float:
+    """Return the factor by which the fastest growing mode grows per period; below 1 none does."""
+    return float(np.abs(np.linalg.eigvals(closed_loop(program, observer, plant))).max())
+
+
+def slow_times_s(program: CondensedProgram, observer: Observer) -> list[float]:
+    """Return the three longest time constants with the plant that the observer expects."""
+    sizes = np.abs(np.linalg.eigvals(closed_loop(program, observer, observer.model)))
+    times = [
+        PERIOD_S / -math.log(size) if 0.0 < size < ALL_BUT_ONE else math.inf for size in sizes
+    ]
+    return sorted(times, reverse=True)[:3]
 
 
 class LoopWithoutActuator(ClosedLoop):

@@ -13,7 +13,6 @@ from ddct_bringup.reproduction.studies import (
     readings,
     sweeps,
     table_5_2,
-    torque_level,
     wear,
 )
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction
@@ -36,7 +35,7 @@ STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
         admissible_scenarios.score_windows,
         sweeps.state_of_art,
         table_5_2.table_5_2_in_numbers,
-        torque_level.torque_level,
+        mpc4_readings.torque_level,
         sweeps.torsion_weight,
         sweeps.two_input_wear,
         wear.wear,

@@ -1,4 +1,4 @@
-"""MPC4 under the readings that Section 4.3 of the thesis leaves open."""
+"""MPC4 under the readings that Section 4.3 leaves open, and with a pull towards the demand."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -17,7 +17,9 @@ from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithMeasuredState,
     LoopWithoutActuator,
     MeasuredState,
+    growth,
     model_without_actuator,
+    slow_times_s,
 )
 from ddct_bringup.reproduction.studies.study import (
     TWO_INPUTS,
@@ -26,7 +28,6 @@ from ddct_bringup.reproduction.studies.study import (
     cells,
     headers,
 )
-from ddct_bringup.reproduction.studies.torque_level import growth
 from ddct_bringup.run.headless import ClosedLoop, run_loop
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_controllers.mpc.controller import MpcController
@@ -36,9 +37,13 @@ from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
 
+PULLS = (0.0, 0.01, 0.05, 0.1, 0.14, 0.2, 0.5, 1.0, 2.0)
+NEAR_WEAR = (0.95, 1.05)
+COASTING_S = 170
 STIFFER_PULL = 0.05
 """r of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
 Model = Callable[[DrivelineParameters, float], TransmissionModel]
@@ -78,7 +83,7 @@ class Reading:
         return run_loop(loop(settings, self.controller(settings)), settings.scenario.steps)
 
     def growth(self, wear_gain: float) -> float:
-        """Return the growth per period of its loop with a worn clutch, see `torque_level`."""
+        """Return the growth per period of its loop with a worn clutch, see `growth`."""
         mpc4 = self.controller(THESIS_SETTINGS)
         return growth(
             mpc4.program, mpc4.observer, self.plant(THESIS_SCENARIO.driveline, wear_gain)
@@ -140,4 +145,39 @@ def mpc4_readings() -> Study:
             ('MPC4 as the thesis prints it', time, '-', torsion, acceleration, '-', '-', *none),
         ],
         ('Growth is that of the fastest mode of plant, filter and feedback per period of 10 ms.',),
+    )
+
+
+def torque_level() -> Study:
+    """Return how a pull towards the demand closes the torque level that the cost leaves open."""
+    driveline = THESIS_SCENARIO.driveline
+    model = transmission_model(driveline)
+    worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]
+    rows = []
+    for pull in PULLS:
+        observer = make_observer(THESIS_SETTINGS, model)
+        settings = TwoInputCost(demand_weight=pull).settings()
+        mpc4 = MpcController(model, observer, settings, EngineAuthority())
+        run = headless_run(THESIS_SETTINGS, mpc4)
+        left = run.trajectory.engine_torque[-1] - run.trajectory.torque_demand[-1]
+        rows.append(
+            (
+                f'{pull:g}',
+                *cells(TWO_INPUTS, run),
+                f'{left:.1f}',
+                ', '.join(f'{time:.3g}' for time in slow_times_s(mpc4.program, observer)),
+                *(f'{growth(mpc4.program, observer, plant):.3f}' for plant in worn),
+            )
+        )
+    return Study(
+        'MPC4 in the thesis scenario, by its pull towards the demand',
+        (
+            'pull per N m',
+            *headers(TWO_INPUTS),
+            'left at end N m',
+            'slowest modes s',
+            *(f'growth at K_usura {gain:g}' for gain in NEAR_WEAR),
+        ),
+        rows,
+        (f'One of the slowest modes, {COASTING_S:g} s, is the vehicle that coasts.',),
     )

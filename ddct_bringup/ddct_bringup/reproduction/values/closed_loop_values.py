@@ -92,7 +92,7 @@ def _mpc_oscillates_less() -> Finding:
 
 def _table_claims() -> dict[str, Value | None]:
     """Return the values that the five controllers of Table 5.1 decide, by the ids of the files."""
-    times, rows = metric(FIGURES[0], ROW_OF), sigmas(tuple(ROW_OF))
+    times, rows = metric('engagement_time_s', ROW_OF), sigmas(tuple(ROW_OF))
     of_time, of_all = text('s', times), sigma_text(rows, ROW_OF)
     four = (*_FREQUENCY, *_PREDICTIVE)
     pairs = [(mpc, other) for mpc in _PREDICTIVE for other in _FREQUENCY]

@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from ddct_bringup.reproduction.numbers.number_file import thesis_numbers
+from ddct_bringup.reproduction.numbers.gate import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.thesis import predictions

@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.calibration.ensemble import (
 )
 from ddct_bringup.reproduction.calibration.parameters import BASE, RANGE, values_of
 from ddct_bringup.reproduction.calibration.problem import Problem
-from ddct_bringup.reproduction.calibration.region import RIM, centre, rim
+from ddct_bringup.reproduction.calibration.search import RIM, centre, rim
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
