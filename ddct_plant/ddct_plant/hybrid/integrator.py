@@ -109,16 +109,16 @@ class _Motion:
     def _pass_pieces(self, first: int) -> int:
         """Go on to the next piece in which there is an event; return its number."""
         layout, values = self._forcing.layout, self._forcing.values(self._signs)
-        passage = self._integrator.maps[self._signs].by_piece(
+        ends, slips, lasts = self._integrator.maps[self._signs].by_piece(
             np.concatenate((self._state, values[layout.shifts[first]]))
         )
-        count = min(passage.lasts, layout.pieces - first)
+        count = min(lasts, layout.pieces - first)
         if count:
-            self._state = passage.ends[count - 1]
+            self._state = ends[count - 1]
             nodes = values[layout.nodes[first : first + count + 1]]
             for place, element in enumerate(self._integrator.flows[self._signs].slipping):
                 capacities = nodes[:, element - len(self._signs)]
-                before, after = passage.slips[:count, place].T
+                before, after = slips[:count, place].T
                 self._work[element] += float(
                     before.dot(capacities[:-1]) + after.dot(capacities[1:])
                 )

@@ -43,17 +43,6 @@ class Interval:
     """(N,) friction torques at the end, left limits."""
 
 
-class Passage(NamedTuple):
-    """What a mode makes of the pieces of an interval, one after the other, if it lasts."""
-
-    ends: np.ndarray
-    """(P, n): the state after each."""
-    slips: np.ndarray
-    """(P, slipping elements, 2): the integrals of |s| (1 - t) and |s| t, t from 0 to 1 in it."""
-    lasts: int
-    """How many pieces go by before one in which a guard may turn negative."""
-
-
 class IntervalMap:
     """
     A mode from the start of an interval on, as functions of v = [x, *u, *c]; see `Layout`.
@@ -104,19 +93,22 @@ class IntervalMap:
             work[element] = sum(map(mul, values[integrals], capacities[capacity]))
         return Interval(values[: self._states], self._signs, [], work, values[self._friction])
 
-    def by_piece(self, v: np.ndarray) -> Passage:
-        """Return what becomes of each piece."""
+    def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+        """
+        Return what the mode makes of the pieces, one after the other, if it lasts.
+
+        The first are the states after each, (P, n); the second the integrals of |s| (1 - t) and
+        |s| t, t from 0 to 1 in it, (P, slipping elements, 2); the third is how many pieces go by
+        before one in which a guard may turn negative.
+        """
         values = self._by_piece(v).reshape(self._pieces, -1)
         slips = self._states + 2 * self._slipping
         # Not `<`: a value that is not a number must not pass either.
         safe = values[:, slips:] >= 0.0
         first = int(safe.argmin())
         lasts = self._pieces if safe.flat[first] else first // safe.shape[1]
-        return Passage(
-            values[:, : self._states],
-            values[:, self._states : slips].reshape(self._pieces, self._slipping, 2),
-            lasts,
-        )
+        integrals = values[:, self._states : slips].reshape(self._pieces, self._slipping, 2)
+        return values[:, : self._states], integrals, lasts
 
 
 def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
