@@ -6,7 +6,7 @@ import pickle
 import threading
 import warnings
 from dataclasses import replace
-from importlib.metadata import EntryPoint
+from importlib.metadata import EntryPoint, EntryPoints
 
 import numpy as np
 import pytest
@@ -175,7 +175,7 @@ def test_a_broken_controller_of_another_package_does_not_stop_the_comparison_of_
         EntryPoint('absent', 'no_such_package:make', registry.ENTRY_POINT_GROUP),
         EntryPoint('soft', f'{__name__}:Soft', registry.ENTRY_POINT_GROUP),
     ]
-    monkeypatch.setattr(registry, '_entry_points', lambda: points)
+    monkeypatch.setattr(registry, '_entry_points', lambda: EntryPoints(points))
     monkeypatch.setattr(registry, 'own_controller_names', lambda: ['pi'])
     with pytest.warns(UserWarning, match="'absent'.*no_such_package.*; left out") as warned:
         runs = api.compare('all', duration=SHORT_S, out=tmp_path, wear_gain=0.9)
