@@ -15,15 +15,15 @@ from ddct_bringup.run.beside_bag import RunTiming, failed_run, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
+from ddct_bringup.verdict.criteria import criterion_values
 from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.state import INVALID
-from ddct_bringup.verdict.verdict import Verdict, judge, verdict_of_unreadable
+from ddct_bringup.verdict.state import INVALID, slip_state
+from ddct_bringup.verdict.verdict import Verdict, verdict_of, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
-from ddct_plant.scenario.plant import cut_speed
 
 Entry = dict[str, Any]
 """One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, ..."""
@@ -166,14 +166,15 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
 def _verdict(
     recording: Recording, metrics: dict[str, Any], limits: Limits, *, valid: bool
 ) -> Verdict:
-    facts, trajectory = recording.facts, recording.trajectory
+    facts, trajectory, settings = recording.facts, recording.trajectory, recording.settings
+    rules = limits.rules
     start = steps_in('control_start_s', facts.control_start_s)
-    engagements_a_day = limits.rules.engagements_a_day
-    run = JudgedRun(trajectory, start, facts.score_window_s, metrics, engagements_a_day)
-    known = engine_end(recording) if valid else INVALID
-    settings = recording.settings
-    limiter = cut_speed(settings.scenario) if settings else math.inf
-    return judge(run, limits, facts.scenario, known, limiter)
+    state = engine_end(recording) if valid else INVALID
+    if state is None:
+        cut_speed = settings.scenario.cut_speed if settings else math.inf
+        state = slip_state(trajectory, start, rules, cut_speed)
+    run = JudgedRun(trajectory, start, facts.score_window_s, metrics, rules.engagements_a_day)
+    return verdict_of(state, criterion_values(run), limits, facts.scenario)
 
 
 def scores_document(runs: Sequence[Entry], limits: Limits) -> dict[str, Any]:

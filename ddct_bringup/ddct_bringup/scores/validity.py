@@ -8,7 +8,6 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import START_NS, time_of_step
 from ddct_plant.graph.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE, LOAD_TORQUE
-from ddct_plant.scenario.plant import end_cause
 
 MISS_TOLERANCE = 0.01
 """
@@ -44,7 +43,7 @@ def engine_end(recording: Recording) -> str | None:
     if recording.settings is None:
         return None
     speed = float(recording.trajectory.joint_speed[-1, 0])
-    return end_cause(recording.settings.scenario, speed)
+    return recording.settings.scenario.end_cause(speed)
 
 
 def _why_early(recording: Recording) -> str:

@@ -3,27 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.verdict.criteria import CRITERIA, criterion_values
-from ddct_bringup.verdict.judged_run import JudgedRun
+from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limit, Limits
-from ddct_bringup.verdict.state import ENGAGED, INVALID, slip_state
+from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 Verdict = dict[str, Any]
 """State, limits and criteria, as in `scores.json`."""
 WITHIN, BEYOND, NO_LIMIT = 'within', 'beyond', 'no_limit'
-
-
-def judge(
-    run: JudgedRun, limits: Limits, scenario: str, known: str | None, cut_speed: float
-) -> Verdict:
-    """
-    Return the verdict over a run of a scenario.
-
-    `known` is the state where more than the slip decides it: the run is invalid, or its engine
-    left its limits. `cut_speed` is that of the rev limiter in rad/s, infinite without one.
-    """
-    state = known or slip_state(run.trajectory, run.control_start, limits.rules, cut_speed)
-    return verdict_of(state, criterion_values(run), limits, scenario)
 
 
 def verdict_of(

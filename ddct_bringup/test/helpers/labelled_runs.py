@@ -14,7 +14,6 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import cut_speed
 from ddct_plant.scenario.settings import RunSettings
 
 UNBOUND = ('friction.most_n_m=100000.0',)
@@ -69,7 +68,7 @@ class LabelledRun:
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        rules, limiter = packaged_limits().rules, cut_speed(scenario)
+        rules, limiter = packaged_limits().rules, scenario.cut_speed
         return slip_state(trajectory, scenario.control_start_step, rules, limiter)
 
 

@@ -30,7 +30,7 @@ from ddct_plant.graph.topics import (
     RunKind,
     Topic,
 )
-from ddct_plant.scenario.plant import driveline_sensors, end_cause, initial_state, make_driveline
+from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 
@@ -130,7 +130,7 @@ class DrivelineNode(GraphNode):
         return owner
 
     def _over_early(self) -> bool:
-        return bool(end_cause(self.settings.scenario, self.driveline.engine_speed))
+        return bool(self.settings.scenario.end_cause(self.driveline.engine_speed))
 
     def _listen_to_replies(self) -> None:
         rows = len(CLUTCH_TORQUE.signals_in(self._run))

@@ -21,7 +21,6 @@ from ddct_plant.models.stick_slip_driveline import (
     friction_integrator,
     friction_system,
 )
-from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
@@ -77,18 +76,6 @@ def make_engine(settings: RunSettings) -> Engine:
     """Return the engine of the scenario, within its authority and limits."""
     scenario = settings.scenario
     return Engine(scenario.engine, scenario.engine_authority, scenario.engine_limits)
-
-
-def end_cause(scenario: Scenario, engine_speed: float) -> str | None:
-    """Return why a run ends early with the engine at w_m in rad/s, None where it goes on."""
-    limits = scenario.engine_limits
-    return limits.end_cause(engine_speed) if limits else None
-
-
-def cut_speed(scenario: Scenario) -> float:
-    """Return w_m in rad/s from which the rev limiter cuts the fuel, infinite without one."""
-    limits = scenario.engine_limits
-    return limits.cut_rad_s if limits else math.inf
 
 
 def make_actuator(settings: RunSettings, initial: InitialState) -> Actuator:

@@ -1,6 +1,7 @@
 """A scenario: everything about a run that is not the controller or the way it is started."""
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -175,6 +176,15 @@ class Scenario(OptionGroup):
     def steps(self) -> int:
         """N, the number of 10 ms periods of the run."""
         return steps_in('duration_s', self.duration_s)
+
+    def end_cause(self, engine_speed: float) -> str | None:
+        """Return why a run ends early with the engine at w_m in rad/s, None where it goes on."""
+        return self.engine_limits.end_cause(engine_speed) if self.engine_limits else None
+
+    @property
+    def cut_speed(self) -> float:
+        """w_m in rad/s from which the rev limiter cuts the fuel, infinite without one."""
+        return self.engine_limits.cut_rad_s if self.engine_limits else math.inf
 
     @property
     def of_stick_slip(self) -> tuple[str, ...]:

@@ -6,7 +6,6 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.plant import (
     driveline_sensors,
-    end_cause,
     holding_torque,
     initial_state,
     linear_clutch,
@@ -147,7 +146,7 @@ class WholePlant:
     @property
     def over(self) -> bool:
         """Whether the engine's speed ends the run with the present state."""
-        return bool(end_cause(self._scenario, self.driveline.engine_speed))
+        return bool(self._scenario.end_cause(self.driveline.engine_speed))
 
     def advance(self, reply: dict[str, Any]) -> None:
         """Integrate the driveline over the period that `reply` answered."""
