@@ -1,6 +1,7 @@
 """The closed loops of many runs, `ClosedLoop` over columns, and their slip references."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -60,10 +61,8 @@ def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
     # Only here: the other architectures need not wait for the imports of the design.
     from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
 
-    drivelines = [run.scenario.driveline for run in runs]
-    first, places = distinct(drivelines)
-    designed = [design_feedforward(drivelines[index]) for index in first]
-    models = [designed[place] for place in places]
+    designed = cache(design_feedforward)
+    models = [designed(run.scenario.driveline) for run in runs]
     torques = plants.engine_torque
     at_rest = [state_at_rest(*each) for each in zip(models, torques[0], strict=True)]
     filters = Filters(models, np.stack(at_rest, axis=-1))

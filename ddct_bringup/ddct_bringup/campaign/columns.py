@@ -33,12 +33,11 @@ VECTORISED_RTOL = 1e-9
 
 def schema_of(spec: CampaignSpec) -> pa.Schema:
     """Return the columns of a campaign; what varies has one by its dotted key."""
-    varied = [(key, _type(spec, key)) for key in spec.keys]
     fields = [
         (INDEX, pa.int64()),
         (CONTROLLER, pa.string()),
         (PATH, pa.string()),
-        *varied,
+        *((key, _type(spec, key)) for key in spec.keys),
         *((name, pa.float64()) for name in METRIC_COLUMNS),
         *_VERDICT,
         *((name, pa.float64()) for name in CRITERION_COLUMNS),

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -81,14 +80,9 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
 def _controller(run: CampaignRun, shared: dict[str, Controller]) -> Controller:
     """Return the controller of a run: one of ours that no run changes is made once."""
     spec = run.controller
-    if spec.computed_from != THESIS or spec.name not in _our_names():
+    if spec.computed_from != THESIS or spec.name not in own_controller_names():
         return make_controller(spec, run.settings)
     key = repr((spec.name, run.settings.scenario.controllers.get(spec.name)))
     if key not in shared:
         shared[key] = make_controller(spec, run.settings)
     return shared[key]
-
-
-@cache
-def _our_names() -> frozenset[str]:
-    return frozenset(own_controller_names())
