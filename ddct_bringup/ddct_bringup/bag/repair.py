@@ -95,10 +95,9 @@ def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes
         ]
     except (LookupError, UnicodeDecodeError) as error:
         raise DdctError(f'what it says of its channels is unusable ({error!r})') from error
-    bag = BagWriter(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'})
-    for message in messages:
-        bag.write(*message)
-    bag.close()
+    with BagWriter(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'}) as bag:
+        for message in messages:
+            bag.write(*message)
 
 
 def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int]:

@@ -42,14 +42,14 @@ class _Layout:
 
 
 class _Walk:
-    """Passes over a message body and notes which bytes carry no value, and where lengths are."""
+    """Passes over a message, notes bytes that carry no value and those that its layout is read from."""
 
-    def __init__(self, definition: MessageDefinition, body: memoryview) -> None:
+    def __init__(self, definition: MessageDefinition, cdr: bytes) -> None:
         self._fields = definition.fields
-        self._body = body
-        self.at = 0
-        self.gaps: list[range] = []
-        self.lengths: list[int] = []
+        self._cdr = cdr
+        self.at = _BODY
+        self.gaps = [range(len(_HEADER), _BODY)]
+        self.lengths = [range(len(_HEADER))]
 
     def message(self, type_name: str) -> None:
         """Pass a message; raise ValueError or struct.error where the body holds none."""
@@ -66,16 +66,16 @@ class _Walk:
 
     def _numbers(self, size: int, count: int) -> None:
         if count:
-            start, self.at = self.at, self.at + -self.at % size
+            start, self.at = self.at, self.at + (_BODY - self.at) % size
             self.gaps.append(range(start, self.at))
             self.at += size * count
 
     def _length(self) -> int:
         """Pass the length of a string or sequence and return it; raise ValueError if too long."""
         self._numbers(4, 1)
-        self.lengths.append(self.at - 4)
-        (count,) = struct.unpack_from('<I', self._body, self.at - 4)
-        if count > len(self._body) - self.at:
+        self.lengths.append(range(self.at - 4, self.at))
+        (count,) = struct.unpack_from('<I', self._cdr, self.at - 4)
+        if count > len(self._cdr) - self.at:
             raise ValueError('a length runs past the end')
         return count
 
@@ -111,24 +111,20 @@ class CdrNormaliser:
 
     def _layout(self, cdr: bytes) -> _Layout:
         type_name = self._definition.type_name
-        walk = _Walk(self._definition, memoryview(cdr)[_BODY:])
+        walk = _Walk(self._definition, cdr)
         try:
             if cdr[: len(_HEADER)] != _HEADER:
                 raise ValueError('not little-endian CDR')
             walk.message(type_name)
-            if _BODY + walk.at > len(cdr):
+            if walk.at > len(cdr):
                 raise ValueError('it is cut short')
         except struct.error as error:
             raise DdctError(f'a message is no {type_name}: it is cut short') from error
         except ValueError as error:
             raise DdctError(f'a message is no {type_name}: {error}') from error
-        size = _BODY + walk.at
-        options = range(len(_HEADER), _BODY)
-        gaps = [range(_BODY + gap.start, _BODY + gap.stop) for gap in walk.gaps]
-        lengths = [range(_BODY + at, _BODY + at + 4) for at in walk.lengths]
-        depends = _ones(size, [range(len(_HEADER)), *lengths])
-        keep = _ones(size, [range(size)]) & ~_ones(size, [options, *gaps])
-        return _Layout(size, keep, depends, int.from_bytes(cdr, 'little') & depends)
+        depends = _ones(walk.at, walk.lengths)
+        keep = _ones(walk.at, [range(walk.at)]) & ~_ones(walk.at, walk.gaps)
+        return _Layout(walk.at, keep, depends, int.from_bytes(cdr, 'little') & depends)
 
 
 def _ones(size: int, places: Sequence[range]) -> int:
