@@ -44,7 +44,7 @@ def make_observer(**noise):
 def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
     """Let the observer follow a plant; return its gain and errors of C_f and C_load, (n, 3)."""
     plant = transmission_model(DRIVELINE)
-    effect = plant.a[:4, 4:].copy()
+    transition, effect = plant.a.copy(), plant.a[:4, 4:]
     twist = LOAD_N_M / DRIVELINE.halfshaft_stiffness
     state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
     found = []
@@ -53,8 +53,8 @@ def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
         corrected = observer.correct(tuple(state[:3] + error), LOAD_N_M)
         found.append((observer.wear_gain, *(observer.wear_gain * corrected[STATES:])))
         observer.predict((request, 120.0, LOAD_N_M))
-        plant.a[:4, 4:] = true_gain * effect
-        state = plant.a @ state + plant.b @ (request, 120.0, LOAD_N_M + load_error_n_m)
+        transition[:4, 4:] = true_gain * effect
+        state = transition @ state + plant.b @ (request, 120.0, LOAD_N_M + load_error_n_m)
     return np.array(found)
 
 
@@ -201,16 +201,16 @@ def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
     requests, engine = 4.0 * np.arange(periods), rng.normal(120.0, 5.0, periods)
     loads = rng.normal(LOAD_N_M, 10.0, periods)
     plant = transmission_model(DRIVELINE)
-    effect = plant.a[:4, 4:].copy()
+    transition, effect = plant.a.copy(), plant.a[:4, 4:]
     twist = 1.3 * loads[0] / DRIVELINE.halfshaft_stiffness
     state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
     measured = [state[:3]]
-    plant.a[:4, 4:] = 0.8 * effect
+    transition[:4, 4:] = 0.8 * effect
     observer.correct(tuple(measured[0]), loads[0])
     for k in range(periods):
         inputs = np.array([requests[k], engine[k], loads[k]])
         observer.predict(tuple(inputs))
-        state = plant.a @ state + plant.b @ (inputs + [0.0, 0.0, 20.0])
+        state = transition @ state + plant.b @ (inputs + [0.0, 0.0, 20.0])
         measured.append(state[:3] + rng.normal(0.0, NOISE.speed_rad_s, 3))
         corrected = observer.correct(tuple(measured[-1]), loads[min(k + 1, periods - 1)])
     mean, covariance = conditioned(requests, engine, loads, np.array(measured), wear)
