@@ -37,12 +37,12 @@ WINDOW_ENDS_S = tuple(
 STARTS = tuple(
     (*torques, rise_end, 105.0, *gains)
     for torques, rise_end, gains in itertools.product(
-        ((5.0, 300.0), (40.0, 250.0)),
-        (0.53, 0.40),
+        ((5.0, 300.0), (40.0, 250.0)),  # start and end of C_m
+        (0.53, 0.40),  # end of its rise
         ((0.10, 0.02), (0.02, 0.12)),  # K_p and K_i: mostly proportional, mostly integral
     )
 )
-"""Start values for the window that is chosen; the first two serve every window."""
+"""Start values, all with one slope, for the chosen window; the first two serve every window."""
 RIM = 0.98
 """Largest scaled residual on the rim: rounding of the values and curvature may take the rest."""
 _STEPS = 40
