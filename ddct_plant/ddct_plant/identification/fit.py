@@ -41,8 +41,6 @@ class Identification:
     """The best fit, not rounded."""
     relative_std: np.ndarray
     """(7,) standard deviation of each fitted parameter over its value."""
-    correlation: np.ndarray
-    """(7, 7) between the fitted parameters."""
     condition: float
     """Condition number of the weighted Jacobian with respect to the logarithms."""
     weakest_direction: np.ndarray
@@ -96,7 +94,6 @@ def identify_driveline(coefficients: PrintedCoefficients = PRINTED) -> Identific
     return Identification(
         parameters=parameters,
         relative_std=std,
-        correlation=covariance / np.outer(std, std),
         condition=float(singular.S[0] / singular.S[-1]),
         weakest_direction=singular.Vh[-1],
         coefficients=tuple(
