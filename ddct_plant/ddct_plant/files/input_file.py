@@ -85,8 +85,6 @@ def parse_json(text: str) -> Any:
             json.dumps(value, ensure_ascii=False).encode('utf-8')
     except RecursionError as error:
         raise ParameterError('not valid JSON: nested too deeply') from error
-    except ParameterError:
-        raise
     except ValueError as error:
         raise ParameterError(f'not valid JSON: {error}') from error
     return value
@@ -97,12 +95,12 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(value) != len(pairs):
         keys = [key for key, _ in pairs]
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise ParameterError(f'not valid JSON: the key {twice!r} is given twice')
+        raise ValueError(f'the key {twice!r} is given twice')
     return value
 
 
 def _refuse_constant(constant: str) -> NoReturn:
-    raise ParameterError(f'not valid JSON: {constant} is no number')
+    raise ValueError(f'{constant} is no number')
 
 
 @contextmanager
