@@ -111,6 +111,13 @@ def test_a_bag_needs_no_columns_and_gives_back_its_driveline(
         ('unit: Nm', 'unit: Nm, between: spline', "between is 'spline': choose from linear, held"),
         ('time:', 'vehicle_speed:', "unit 'ms': choose from m/s, km/h"),
         ('columns:', 'colums:', 'give columns by quantity'),
+        (
+            'unit: Nm',
+            'unit: Nm, betwen: held',
+            'columns.clutch_torque.betwen: did you mean',
+        ),
+        ('unit: Nm', 'unit: Nm, x: y', 'columns.clutch_torque.x: known: column, unit, between'),
+        ('columns:', 'x: 1\ncolumns:', 'unknown key x: known: columns, run'),
     ],
 )
 def test_a_wrong_column_map_is_refused_in_one_line(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import close_name
+from ddct_plant.base.options import close_name, require_known
 from ddct_plant.base.units import si_values
 from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.yaml_text import parse_yaml
@@ -89,9 +89,7 @@ def load_columns(file: str) -> ColumnMap:
 def _column_map(content: Any) -> ColumnMap:
     if not isinstance(content, dict) or not isinstance(content.get('columns'), dict):
         raise ParameterError('give columns by quantity, columns: {time: {column: t, unit: s}}')
-    for key in content:
-        if key not in ('columns', 'run'):
-            raise ParameterError(f'unknown key {key}: known: columns, run')
+    require_known(content, ('columns', 'run'))
     columns = {str(name): _column(str(name), each) for name, each in content['columns'].items()}
     if TIME not in columns:
         raise ParameterError(f'columns.{TIME} is missing')
@@ -107,9 +105,8 @@ def _column(name: str, content: Any) -> Column:
         raise ParameterError(f'unknown {key}: {close_name(name, QUANTITIES, "columns.")}')
     if not isinstance(content, dict) or not {'column', 'unit'} <= set(content):
         raise ParameterError(f'{key}: give {{column: NAME, unit: UNIT}}')
+    require_known(content, ('column', 'unit', 'between'), prefix=f'{key}.')
     for part, value in content.items():
-        if part not in ('column', 'unit', 'between'):
-            raise ParameterError(f'unknown key {key}.{part}: known: column, unit, between')
         if not isinstance(value, str):
             raise ParameterError(f'{key}.{part} is {value!r}: give text')
     found = Column(**content)
