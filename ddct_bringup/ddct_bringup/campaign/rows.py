@@ -40,6 +40,7 @@ class RunBase:
     """What runs have in common, before something is varied."""
 
     file: ScenarioFile
+    """Their scenario as it is without changes."""
     changes: Mapping[str, Any]
     """Values by dotted scenario key, as `--set` gives them."""
     settings: Mapping[str, Any]
