@@ -153,8 +153,7 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
     assert main([str(bags.write(trajectory)), '--limits', str(mine)]) == 1
     captured = capsys.readouterr()
     assert captured.err == (
-        f'ddct score: limits {mine}: line 2: limit: unknown key: known are rules, limits, '
-        'schema_version\n'
+        f'ddct score: limits {mine}: line 2: unknown key limit: did you mean limits?\n'
     )
     assert captured.out == ''
 
