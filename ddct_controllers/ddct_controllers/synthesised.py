@@ -14,19 +14,14 @@ SYNTHESISED = {'hinf_thesis': 'thesis', 'hinf_fitted': 'fitted', 'hinf_sampled':
 IDENTIFIED = DrivelineParameters()
 
 
-@lru_cache(maxsize=8 * len(SYNTHESISED))
 def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -> 'HinfDesign':
     """
     Return the design behind a registry name for a driveline; the same numbers in every process.
 
     Raise DdctError where the driveline has no such controller.
     """
-    # Only here: who runs another controller need not wait for the imports of the synthesis.
-    from ddct_controllers.design.h_infinity.design import design_h_infinity
-    from ddct_controllers.design.h_infinity.recipes import make_weights
-
     try:
-        return design_h_infinity(make_weights(SYNTHESISED[name]), driveline)
+        return _designed(SYNTHESISED[name], driveline)
     except DdctError as error:
         if driveline == IDENTIFIED:
             raise
@@ -34,3 +29,12 @@ def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -
             f"controller {name!r} cannot be computed for the scenario's driveline: {error}; "
             'or choose another controller'
         ) from error
+
+
+@lru_cache(maxsize=8 * len(SYNTHESISED))
+def _designed(recipe: str, driveline: DrivelineParameters) -> 'HinfDesign':
+    # Only here: who runs another controller need not wait for the imports of the synthesis.
+    from ddct_controllers.design.h_infinity.design import design_h_infinity
+    from ddct_controllers.design.h_infinity.recipes import make_weights
+
+    return design_h_infinity(make_weights(recipe), driveline)
