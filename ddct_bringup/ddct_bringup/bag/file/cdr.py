@@ -42,7 +42,7 @@ class _Layout:
 
 
 class _Walk:
-    """Passes over a message, notes bytes that carry no value and those that its layout is read from."""
+    """Passes over a message; notes bytes without a value and those that tell its layout."""
 
     def __init__(self, definition: MessageDefinition, cdr: bytes) -> None:
         self._fields = definition.fields
