@@ -114,6 +114,7 @@ class RoadLoad:
         """0.5 rho_a A_f C_a in kg/m."""
         self.wind = parameters.wind_speed_m_s
         """v_a in m/s."""
+        self._constant_slope = parameters.slope_rad
         self._constant_force = self._force(parameters.slope_rad)
         self.wheel_radius = vehicle.wheel_radius_m
         """r_w in m."""
@@ -126,6 +127,11 @@ class RoadLoad:
         """
         force = self._force(self._slope.at(time_s)) if self._slope else self._constant_force
         return resisting_torque(self.drag, self.wind, force, self.wheel_radius, vehicle_speed)
+
+    def rolling_torque(self, time_s: float) -> float:
+        """Return the size of F_r r_w in N m at a scenario time."""
+        slope_rad = self._slope.at(time_s) if self._slope else self._constant_slope
+        return self._weight * math.cos(slope_rad) * self._rolling * self.wheel_radius
 
     def forces(self, times_s: np.ndarray) -> np.ndarray:
         """Return F_r + F_g in N at scenario times, (n,)."""
@@ -144,29 +150,12 @@ class HoldingTorque:
     It resists whichever way the wheel turns or would turn, so a car at rest stays at rest.
     """
 
-    def __init__(
-        self,
-        load: LoadParameters,
-        vehicle: VehicleParameters,
-        brake: BrakeProfile,
-        slope: SlopeProfile | None = None,
-    ) -> None:
-        """Take `slope` in place of the load's constant one where it has points."""
-        self._load, self._vehicle, self._brake = load, vehicle, brake
-        self._slope = slope if slope and slope.given else None
-        self._constant_rolling = self._rolling(load.slope_rad)
+    def __init__(self, load: RoadLoad, brake: BrakeProfile) -> None:
+        self._load, self._brake = load, brake
 
     def capacity(self, time_s: float) -> float:
         """Return it in N m, not negative, at a scenario time."""
-        rolling = self._constant_rolling
-        if self._slope:
-            rolling = self._rolling(self._slope.at(time_s))
-        return rolling + self._brake.torque(time_s)
-
-    def _rolling(self, slope_rad: float) -> float:
-        vehicle = self._vehicle
-        normal_force = vehicle.mass_kg * vehicle.gravity_m_s2 * math.cos(slope_rad)
-        return normal_force * self._load.rolling_coefficient * vehicle.wheel_radius_m
+        return self._load.rolling_torque(time_s) + self._brake.torque(time_s)
 
 
 def air_and_slope(

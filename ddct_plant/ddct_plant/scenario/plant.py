@@ -105,7 +105,8 @@ def make_load(settings: RunSettings) -> RoadLoad:
 def holding_torque(settings: RunSettings) -> HoldingTorque:
     """Return the friction at the wheel of a stick-slip run: rolling resistance and brake."""
     scenario = settings.scenario
-    return HoldingTorque(scenario.load, scenario.vehicle, scenario.brake, scenario.slope)
+    load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
+    return HoldingTorque(load, scenario.brake)
 
 
 def driveline_sensors(settings: RunSettings) -> DrivelineSensors | None:

@@ -23,14 +23,14 @@ VEHICLE = VehicleParameters()
 def test_without_brake_rolling_and_the_rest_are_the_load_of_a_car_that_rolls_forward(slope, speed):
     load = LoadParameters(slope_rad=slope, wind_speed_m_s=3.0)
     rest = air_and_slope(load, VEHICLE).torque(speed)
-    rolling = HoldingTorque(load, VEHICLE, BrakeProfile()).capacity(0.0)
+    rolling = HoldingTorque(RoadLoad(load, VEHICLE), BrakeProfile()).capacity(0.0)
     assert rest + rolling == pytest.approx(RoadLoad(load, VEHICLE).torque(speed), rel=1e-13)
 
 
 def test_rolling_resistance_is_that_of_the_normal_force():
     load = LoadParameters(rolling_coefficient=0.02, slope_rad=0.1)
     expected = 1500.0 * 9.81 * 0.02 * math.cos(0.1) * VEHICLE.wheel_radius_m
-    found = HoldingTorque(load, VEHICLE, BrakeProfile()).capacity(7.0)
+    found = HoldingTorque(RoadLoad(load, VEHICLE), BrakeProfile()).capacity(7.0)
     assert found == pytest.approx(expected, rel=1e-12)
 
 
@@ -38,8 +38,8 @@ def test_the_brake_is_linear_between_its_points_and_holds_its_ends():
     brake = BrakeProfile((0.5, 1.5), (1000.0, 0.0))
     found = [brake.torque(time_s) for time_s in (0.0, 0.5, 1.0, 1.5, 9.0)]
     assert found == pytest.approx([1000.0, 1000.0, 500.0, 0.0, 0.0])
-    rolling = HoldingTorque(LoadParameters(), VEHICLE, BrakeProfile()).capacity(0.0)
-    both = HoldingTorque(LoadParameters(), VEHICLE, brake).capacity(1.0)
+    rolling = HoldingTorque(RoadLoad(LoadParameters(), VEHICLE), BrakeProfile()).capacity(0.0)
+    both = HoldingTorque(RoadLoad(LoadParameters(), VEHICLE), brake).capacity(1.0)
     assert both == pytest.approx(rolling + 500.0)
 
 
@@ -67,5 +67,5 @@ def test_a_slope_over_time_is_at_each_instant_the_constant_one():
     rest = air_and_slope(load, VEHICLE, slope).torque(9.0, 1.5)
     assert rest == air_and_slope(there, VEHICLE).torque(9.0)
     brake = BrakeProfile()
-    held = HoldingTorque(load, VEHICLE, brake, slope).capacity(1.5)
-    assert held == HoldingTorque(there, VEHICLE, brake).capacity(1.5)
+    held = HoldingTorque(RoadLoad(load, VEHICLE, slope), brake).capacity(1.5)
+    assert held == HoldingTorque(RoadLoad(there, VEHICLE), brake).capacity(1.5)
