@@ -70,10 +70,10 @@ class IntervalMap:
         """For each element that slips: its number, its integrals, its capacity."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
-            capacity = layout.capacities[element]
-            rows.append(_by_value(slips[:, place], held=capacity.stop - capacity.start == 1))
+            where = layout.capacities[element]
+            rows.append(_by_value(slips[:, place], held=where.stop - where.start == 1))
             integrals = slice(first, first + len(rows[-1]))
-            self._work.append((element, integrals, capacity))
+            self._work.append((element, integrals, where))
             first = integrals.stop
         units, directions = _shortfalls(flow.guards, starts)
         nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
@@ -89,8 +89,8 @@ class IntervalMap:
         if not min(values[self._guards]) >= sum(map(abs, values[self._shortfalls])):
             return None
         work = [0.0] * len(self._signs)
-        for element, integrals, capacity in self._work:
-            work[element] = sum(map(mul, values[integrals], capacities[capacity]))
+        for element, integrals, where in self._work:
+            work[element] = sum(map(mul, values[integrals], capacities[where]))
         return Interval(values[: self._states], self._signs, [], work, values[self._friction])
 
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
