@@ -2,23 +2,13 @@
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, options_of, section
 from ddct_plant.base.timebase import steps_in
 
 _MOST = 1e6
-
-
-class Errors(NamedTuple):
-    """The errors of one sensor that have its unit."""
-
-    noise: float
-    """Standard deviation."""
-    quantum: float
-    """Step between two values, 0 for none."""
-    bias: float
 
 
 def _noise(unit: str) -> Any:
@@ -80,10 +70,10 @@ class SensorOptions(OptionGroup):
                 f'{self.dropout:g} give at least {least:g}'
             )
 
-    @property
-    def errors(self) -> Errors:
-        """Its errors in its unit."""
-        raise NotImplementedError
+    def error(self, kind: str) -> float:
+        """Return its `noise`, `quantum` or `bias`: the option of that name and the unit."""
+        (name,) = (name for name in options_of(type(self)) if name.startswith(f'{kind}_'))
+        return float(getattr(self, name))
 
     @property
     def delay_steps(self) -> int:
@@ -126,11 +116,6 @@ class SpeedSensor(SensorOptions):
     )
 
     @property
-    def errors(self) -> Errors:
-        """Its errors in rad/s."""
-        return Errors(self.noise_rad_s, self.quantum_rad_s, self.bias_rad_s)
-
-    @property
     def count_steps(self) -> int:
         """How long teeth are counted, in periods."""
         return steps_in(f'{self.prefix}count_s', self.count_s)
@@ -159,11 +144,6 @@ class VehicleSpeedSensor(SensorOptions, prefix='sensors.vehicle_speed.'):
     quantum_m_s: float = _quantum('m/s')
     bias_m_s: float = _bias('m/s')
 
-    @property
-    def errors(self) -> Errors:
-        """Its errors in m/s."""
-        return Errors(self.noise_m_s, self.quantum_m_s, self.bias_m_s)
-
 
 @dataclass(frozen=True)
 class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
@@ -172,11 +152,6 @@ class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
     noise_n_m: float = _noise('N m')
     quantum_n_m: float = _quantum('N m')
     bias_n_m: float = _bias('N m')
-
-    @property
-    def errors(self) -> Errors:
-        """Its errors in N m."""
-        return Errors(self.noise_n_m, self.quantum_n_m, self.bias_n_m)
 
 
 @dataclass(frozen=True)

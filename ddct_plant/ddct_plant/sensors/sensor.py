@@ -39,8 +39,10 @@ class Sensor:
     def __init__(self, options: SensorOptions, quantity: str, seed: int) -> None:
         """Take the random numbers that belong to the seed of the run and the quantity."""
         self._gain = options.gain
-        self._errors = options.errors
-        self._normal = gaussian(seed, quantity) if self._errors.noise else None
+        self._noise = options.error('noise')
+        self._bias = options.error('bias')
+        self._quantum = options.error('quantum')
+        self._normal = gaussian(seed, quantity) if self._noise else None
         self._losses = losses(seed, quantity, options) if options.dropout else None
         self._places = 1 + options.delay_steps
         self._line: deque[float] = deque(maxlen=self._places)
@@ -57,14 +59,13 @@ class Sensor:
 
     def _reading(self, truth: float) -> float:
         """Return s_k."""
-        errors = self._errors
-        value = self._gain * truth + errors.bias
+        value = self._gain * truth + self._bias
         if self._normal is not None:
-            value += errors.noise * next(self._normal)
-        if not errors.quantum or math.isinf(value):  # of a loop that diverges
+            value += self._noise * next(self._normal)
+        if not self._quantum or math.isinf(value):  # of a loop that diverges
             return value
         # The remainder is exact, and no quantum is too small for it.
-        return value - math.remainder(value, errors.quantum)
+        return value - math.remainder(value, self._quantum)
 
 
 class ToothCount:
