@@ -209,13 +209,14 @@ def _plain(name: str, source: str, controller: object) -> Controller:
             f'controller {name!r}: {source} returned '
             f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
         )
-    preview, two_input = controller.preview_steps, controller.commands_engine
+    preview = controller.preview_steps
     _require(
         type(preview) is int and preview >= 0,
         name,
         f'preview_steps is {preview!r}',
         'a whole number of steps',
     )
+    two_input = controller.commands_engine
     _require(type(two_input) is bool, name, f'commands_engine is {two_input!r}', 'True or False')
     gains = controller.gains()
     _require(_is_mapping(gains, Real), name, f'gains() is {gains!r}', 'numbers by name')

@@ -151,8 +151,11 @@ class FmuController(Controller):
     def _load(self) -> None:
         self._steps = 0
         self._said: list[str] = []
-        located, named = self._file.located(), self._named('when it is loaded')
-        with located, contextlib.ExitStack() as held, named:
+        with (
+            self._file.located(),
+            contextlib.ExitStack() as held,
+            self._named('when it is loaded'),
+        ):
             folder = held.enter_context(TemporaryDirectory(prefix='ddct_fmu_'))
             self._fmu.fmpy.extract(self._fmu.path, folder)
             # FMPy goes to the binary's folder, and stays there when it cannot be loaded.

@@ -56,7 +56,8 @@ class CondensedProgram:
 
 def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
     """Return the program; raise ParameterError when horizons or weights leave moves open."""
-    prediction, inputs = predict(model, settings), len(settings.inputs)
+    inputs = len(settings.inputs)
+    prediction = predict(model, settings)
     weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
     weights[-len(settings.outputs) :] += [terms.final_weight**2 for terms in settings.outputs]
     hessian, gradient = _cost(model, settings, prediction, weights)
@@ -65,6 +66,7 @@ def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgra
     hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
     rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
     limited = np.flatnonzero(np.isfinite(lower) | np.isfinite(upper))
+    # Those of the levels come first, move by move, and of each input in turn.
     levels = limited[limited < settings.control_steps * inputs]
     return CondensedProgram(
         QpStructure(hessian, rows[limited], limited >= len(hard[0]), settings.soft_limit_weight),
