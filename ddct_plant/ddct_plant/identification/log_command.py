@@ -11,9 +11,9 @@ from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.log_fit import PARAMETERS, LogFit, Prediction, fit_log, predict
 from ddct_plant.identification.log_scenario import load_of, scenario_of
-from ddct_plant.identification.log_stretches import LOAD, SPEEDS, TORQUES, stretches_of
+from ddct_plant.identification.log_stretches import LOAD, TORQUES, stretches_of
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
-from ddct_plant.measured.log import MeasuredLog, read_log
+from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
 from ddct_plant.scenario.file import scenario_to_yaml

@@ -10,13 +10,12 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.log_model import Stretch, residuals_of
 from ddct_plant.identification.log_problem import DAMPINGS, LogProblem, NoiseModel, whiteness
 from ddct_plant.identification.log_stretches import (
-    SPEEDS,
     KnownLoad,
     stretches_of,
     torques_are_noisy,
     with_more_torque_noise,
 )
-from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETERS = tuple(vars(DrivelineParameters()))

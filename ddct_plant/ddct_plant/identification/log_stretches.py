@@ -7,9 +7,8 @@ import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.log_model import Stretch
-from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
 
-SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
 TORQUES = ('engine_torque', 'clutch_torque')
 LOAD = 'load_torque'
 FEWEST_SAMPLES = 40

@@ -48,6 +48,9 @@ QUANTITIES: Mapping[str, Quantity] = {
     'torque_request': Quantity('N m', '', 'asked of the clutch', 'torque_request_n_m'),
 }
 
+OWN_HELD = ('engine_torque',)
+"""What keeps its value between the samples that we write; all else is linear."""
+
 
 @dataclass(frozen=True)
 class Column:
@@ -69,10 +72,9 @@ class ColumnMap:
 
 def own_columns(*names: str) -> ColumnMap:
     """Return the map of quantities in what `score --signals-csv` writes."""
-    held = ('engine_torque',)
     return ColumnMap(
         {
-            name: Column(each.own_column, each.unit, HELD if name in held else LINEAR)
+            name: Column(each.own_column, each.unit, HELD if name in OWN_HELD else LINEAR)
             for name in names
             for each in [QUANTITIES[name]]
         },

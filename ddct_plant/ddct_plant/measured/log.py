@@ -24,13 +24,13 @@ from ddct_plant.graph.topics import (
     VEHICLE_ACCEL,
     Topic,
 )
-from ddct_plant.measured.columns import HELD, QUANTITIES, TIME, ColumnMap
+from ddct_plant.measured.columns import HELD, OWN_HELD, QUANTITIES, TIME, ColumnMap
 
 MOST_BYTES = 200_000_000
 MOST_ROWS = 1_000_000
 HIGHEST_SPEED = 1000.0
 """In rad/s. No engine, shaft or wheel of a car is faster; 3000 rpm taken for rad/s is."""
-_SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
+SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
 _BAG_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
 
 
@@ -147,9 +147,9 @@ def _read_bag_log(path: Path) -> MeasuredLog:
     joints, torques = values[JOINT_STATES], values[ENGINE_TORQUE]
     if not joints or not torques:
         raise DdctError(f'{bag}: no {JOINT_STATES.resolved_name}: not a recording of this project')
-    by_stamp: dict[str, dict[int, float]] = {name: {} for name in _SPEEDS}
+    by_stamp: dict[str, dict[int, float]] = {name: {} for name in SPEEDS}
     for stamp, (_, speeds, _) in joints.items():
-        for name, speed in zip(_SPEEDS, speeds, strict=False):
+        for name, speed in zip(SPEEDS, speeds, strict=False):
             by_stamp[name][stamp] = speed
     by_stamp['engine_torque'] = {stamp: torque for stamp, (torque,) in torques.items()}
     if values[CLUTCH_PHASE]:
@@ -169,7 +169,7 @@ def _read_bag_log(path: Path) -> MeasuredLog:
         for name, found in by_stamp.items()
     }
     time_s = (np.array(stamps) - START_NS) / 1e9
-    return MeasuredLog(path, _digest(bag), time_s, signals, ('engine_torque',))
+    return MeasuredLog(path, _digest(bag), time_s, signals, OWN_HELD)
 
 
 def _bag_values(bag: Path) -> dict[Topic, dict[int, tuple[Any, ...]]]:
