@@ -5,7 +5,6 @@ import hashlib
 import importlib.resources
 import json
 from collections.abc import Iterable, Mapping
-from copy import deepcopy
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -59,7 +58,7 @@ class ScenarioFile:
         self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
     ) -> Scenario:
         """Return the scenario with overrides, as `load_scenario` tells."""
-        content = deepcopy(dict(self.content))
+        content = dict(self.content)
         start_before = content.get('control_start_s')
         given = (
             overrides.items()
@@ -154,13 +153,19 @@ def _read(name_or_file: str) -> tuple[str, str]:
 
 
 def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
-    """Change one value, or a group of them; return the keys of what was given."""
+    """
+    Change one value, or a group of them; return the keys of what was given.
+
+    Every group on the way is copied: others may hold it too.
+    """
     *folders, leaf = key.split('.')
     target = content
     for folder in folders:
-        target = target.setdefault(folder, {})
-        if not isinstance(target, dict):
+        group = target.get(folder, {})
+        if not isinstance(group, dict):
             raise ParameterError(f'--set {key}: {folder} holds a value, not keys')
+        target[folder] = dict(group)
+        target = target[folder]
     target[leaf] = value
     return list(flat(value, key))
 

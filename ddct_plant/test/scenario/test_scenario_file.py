@@ -1,11 +1,13 @@
 """Scenarios are read whole or refused with the key that is wrong."""
 
+import copy
 import json
 
 import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import (
+    ScenarioFile,
     load_scenario,
     scenario_digest,
     scenario_names,
@@ -191,3 +193,13 @@ def test_exponents_are_numbers_as_people_write_them(text):
 def test_text_that_only_looks_like_an_exponent_stays_text():
     with pytest.raises(ParameterError, match='give a number'):
         load_scenario('thesis', ['load.slope_rad=1e'])
+
+
+def test_values_that_are_set_change_neither_the_file_nor_the_group_that_was_given():
+    file = ScenarioFile.read('thesis')
+    before = copy.deepcopy(file.content)
+    group = {'time_s': [0.0, 1.0], 'torque_n_m': [100.0, 100.0]}
+    scenario = file.scenario({'engine': group, 'engine.factor': 2.0, 'load.slope_rad': 0.01})
+    assert scenario.engine.torque_n_m == (200.0, 200.0)
+    assert file.content == before
+    assert group == {'time_s': [0.0, 1.0], 'torque_n_m': [100.0, 100.0]}
