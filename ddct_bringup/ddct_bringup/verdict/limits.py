@@ -155,7 +155,7 @@ def _limit(path: str, content: Any) -> Limit:
     required = ('criterion', 'value', 'unit', 'applies_to')
     limit = _mapping(path, content, required, (*_CITATION, 'convention'))
     criterion = limit['criterion']
-    if criterion not in CRITERION_UNITS:
+    if not isinstance(criterion, str) or criterion not in CRITERION_UNITS:
         known = ', '.join(CRITERION_UNITS)
         raise ParameterError(f'{path}.criterion: {criterion!r} is unknown: choose from {known}')
     _require_unit(f'{path}.unit', limit['unit'], CRITERION_UNITS[criterion])

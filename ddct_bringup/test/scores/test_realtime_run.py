@@ -10,8 +10,8 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.scoring import score_recording, why_invalid
-from ddct_bringup.scores.validity import realtime_summary
+from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.validity import realtime_summary, why_invalid
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.scenario.file import load_scenario

@@ -61,6 +61,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
         ('schema_version: 1', 'schema_version: 2', 'schema_version', 'schema_version is 2, this'),
         ('schema_version: 1', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
         ('criterion: mean_jerk', 'criterion: jerkiness', 'jerkiness', 'limits\\[4\\].criterion: '),
+        ('criterion: mean_jerk', 'criterion: [jerk]', '[jerk]', 'limits\\[4\\].criterion: '),
         (
             'unit: m/s^3',
             'unit: g/s',

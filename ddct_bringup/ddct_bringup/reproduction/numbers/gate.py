@@ -101,8 +101,8 @@ def _place(number: ThesisNumber) -> tuple[int, ...]:
 
 
 def _number(own: Mapping[str, Any], defaults: Mapping[str, Any]) -> ThesisNumber:
-    entry = {**defaults, **own}
-    del entry['numbers']
+    entry = {key: value for key, value in defaults.items() if key != 'numbers'}
+    entry.update(own)
     name = f'{entry.get("section")}, {entry.get("item")}'
     unknown = sorted(entry.keys() - _KEYS)
     if unknown:

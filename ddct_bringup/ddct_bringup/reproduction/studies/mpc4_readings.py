@@ -136,7 +136,8 @@ def mpc4_readings() -> Study:
     return Study(
         'MPC4 in the thesis scenario, by reading',
         (
-            *('reading', *headers(TWO_INPUTS)),
+            'reading',
+            *headers(TWO_INPUTS),
             *(f'growth at K_usura {gain:g}' for gain in WEAR_GAINS),
         ),
         [

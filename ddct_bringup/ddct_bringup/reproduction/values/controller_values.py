@@ -5,9 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.design.analysis.closed_loop import (
-    step_figures,
-)
+from ddct_controllers.design.analysis.closed_loop import step_figures
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications

@@ -164,6 +164,7 @@ def test_entries_take_what_their_group_gives_and_stand_in_the_order_of_the_secti
         ("item: 'a'", "item: 'b', section: '3.2'", 'given twice: 3.2, b'),
         ("printed: '1'", 'printed: 1', 'printed is 1: put it in quotes'),
         ("unit: 's'", "units: 's'", 'unknown key units'),
+        ("unit: 's'", "numbers: [{item: 'd', printed: '4'}]", 'unknown key numbers'),
         ("'2.10'", "'two'", "section 'two'"),
         ("item: 'b', ", '', 'item'),
     ],
