@@ -1,6 +1,6 @@
 """Driveline: engine, primary shaft, wheel and driveshaft, stepped exactly (Section 1.5)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -85,12 +85,12 @@ def driveline_outputs(
     torques: tuple[float, float, float],
     clutch_sticks: bool = False,
     wheels_stick: bool = False,
-    friction: tuple[Any, ...] = (),
+    friction: Mapping[str, Any] | None = None,
 ) -> DrivelineOutputs:
     """
     Return the outputs in a state (7,) with C_m, C_f and C_load just before, in N m.
 
-    `friction` holds the last three fields, which only a clutch that sticks has.
+    `friction` holds the fields that only a clutch that sticks has.
 
     While the clutch sticks the slip is 0, and while the wheels stick the acceleration is, not the
     rounding of a difference.
@@ -101,15 +101,14 @@ def driveline_outputs(
     shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
     engine_torque, clutch_torque, load_torque = torques
     wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia
-    slip_speed = 0.0 if clutch_sticks else engine - shaft
     return DrivelineOutputs(
-        [*angles, twist],
-        [engine, shaft, wheel, twist_speed],
-        [engine_torque, clutch_torque, load_torque, shaft_torque],
-        slip_speed,
-        wheel_radius * wheel,
-        wheel_radius * wheel_accel,
-        *friction,
+        joint_position=[*angles, twist],
+        joint_speed=[engine, shaft, wheel, twist_speed],
+        joint_effort=[engine_torque, clutch_torque, load_torque, shaft_torque],
+        slip_speed=0.0 if clutch_sticks else engine - shaft,
+        vehicle_speed=wheel_radius * wheel,
+        vehicle_accel=wheel_radius * wheel_accel,
+        **(friction or {}),
     )
 
 

@@ -76,11 +76,11 @@ class StickSlipDriveline:
             (engine_torque, clutch_torque, load_torque + wheel_torque),
             clutch_sticks=now.signs[CLUTCH] == 0,
             wheels_stick=now.signs[WHEEL] == 0,
-            friction=(
-                float(PHASES.index(self._clutch_phase)),
-                now.work[CLUTCH],
-                self._phase_events() if now.events else (),
-            ),
+            friction={
+                'clutch_phase': float(PHASES.index(self._clutch_phase)),
+                'friction_work': now.work[CLUTCH],
+                'phase_events': self._phase_events() if now.events else (),
+            },
         )
 
     def _phase_events(self) -> tuple[PhaseEvent, ...]:
