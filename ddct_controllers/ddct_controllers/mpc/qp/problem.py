@@ -46,6 +46,8 @@ class QpStructure:
 
     def __post_init__(self) -> None:
         own_matrices(self, 'QP', hessian='nn', constraints='mn')
+        if not self.hessian.size:
+            raise ParameterError('QP: the hessian is empty: give it a variable')
         _require_definite(self.hessian)
         rows = len(self.constraints)
         soft = np.array(np.zeros(rows, dtype=bool) if self.soft is None else self.soft)

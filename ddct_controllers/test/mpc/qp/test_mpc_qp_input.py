@@ -62,6 +62,7 @@ def test_a_hessian_that_cannot_be_solved_is_refused_at_configuration(hessian, co
     ('arguments', 'complaint'),
     [
         ({'constraints': np.eye(3)}, r'constraints is \(3, 3\), it must be \(3, 2\)'),
+        ({'hessian': np.eye(0), 'constraints': np.ones((1, 0))}, 'hessian is empty'),
         ({'constraints': np.full((1, 2), INF)}, 'constraints must be a matrix of finite'),
         ({'soft': np.array([True])}, '2 booleans'),
         ({'soft': np.array([0.0, 1.0])}, '2 booleans'),
