@@ -143,8 +143,8 @@ class PiController(Controller):
     """
     u = -(K_p e + K_i integral of e) with e in rpm and u in N m.
 
-    G_c(s) = -(K_p + K_i/s) by zero-order hold. The thesis prints no gains: those of its scenario
-    are calibrated.
+    G_c(s) = -(K_p + K_i/s) by zero-order hold: the preliminary controller that the thesis compares
+    against (Section 1.4.5.1). It prints no gains: those of its scenario are calibrated.
     """
 
     def __init__(self, proportional_gain: float, integral_gain: float) -> None:

@@ -51,7 +51,7 @@ TABLE_4_1 = {'mpc1': TableRow(12, 3), 'mpc2': TableRow(16, 6), 'mpc3': TableRow(
 BASIS = TABLE_4_1['mpc3']
 """Whose horizon and weights our own controllers take over."""
 PREVIEW = replace(BASIS, preview=True)
-"""What they make of it."""
+"""The same with preview, as they have it."""
 
 
 def default_torsion_weight(total_ratio: float) -> float:

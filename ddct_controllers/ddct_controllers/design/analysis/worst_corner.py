@@ -29,6 +29,7 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
 WEAR_GAINS = (WEAR_RANGE[0], 1.0, WEAR_RANGE[1])
+"""K_usura at the ends of its range, and of a new clutch."""
 _CANDIDATE_SHARE = 0.95
 """Corners whose M_s on the grid reaches this share of the highest are solved for exactly."""
 

@@ -141,9 +141,11 @@ class _Search:
 
     def _slower_s(self, structure: str) -> float:
         """Return the rise time with the highest crossover below those that were tried, or inf."""
-        slower = _CROSSOVERS_RAD_S[: self._first][::-1]
-        found = (self._quickest(structure, float(each), within_contours=False) for each in slower)
-        return next((each[1] for each in found if each and math.isfinite(each[1])), math.inf)
+        for crossover in _CROSSOVERS_RAD_S[: self._first][::-1]:
+            found = self._quickest(structure, float(crossover), within_contours=False)
+            if found is not None and math.isfinite(found[1]):
+                return found[1]
+        return math.inf
 
     def _quickest(
         self, structure: str, crossover: float, within_contours: bool
@@ -159,6 +161,7 @@ class _Search:
 
         if refused(0) or not self._count:
             return found(0)
+        # False sorts before True: this is the first of the rising ratios that is refused.
         first_refused = bisect(range(len(_ZERO_RATIOS)), False, lo=1, key=refused)
         return found(first_refused - 1)
 

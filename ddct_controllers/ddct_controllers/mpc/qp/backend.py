@@ -114,7 +114,7 @@ def make_backend(
     """
     require_choice('QP backend', name, BACKENDS)
     limit = ITERATION_LIMITS[name] if iteration_limit is None else iteration_limit
-    # Only here: a solver is a QpBackend.
+    # Only here: the solvers are built on this module.
     from ddct_controllers.mpc.qp.solvers import SOLVERS
 
     return SOLVERS[name](structure, limit)
