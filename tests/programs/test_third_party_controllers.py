@@ -109,7 +109,7 @@ def test_a_controller_that_cannot_be_had_stops_only_what_asks_for_it(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     install(monkeypatch, tmp_path / 'absent', SUPPORT, {'absent': 'no_such_package:make'})
-    monkeypatch.setattr(registry, '_own_controllers', lambda: {'pi': PI})
+    monkeypatch.setattr(registry, '_OWN', {'pi': PI})
     monkeypatch.setattr(registry, '_entry_points', lambda: entry_points(name='absent'))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, 'argv', ['ddct', *command])
