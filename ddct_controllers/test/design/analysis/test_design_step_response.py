@@ -2,6 +2,7 @@
 
 import math
 
+import control
 import numpy as np
 import pytest
 
@@ -54,6 +55,23 @@ def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
     assert time[1] == PERIOD_S
     assert type(output) is np.ndarray
     assert overshoot(time, output) == pytest.approx(0.760, abs=0.001)
+
+
+@pytest.mark.parametrize('points', [1, 128, 129, 1000])
+@pytest.mark.parametrize('name', ['ls2', 'hinf1'])
+@pytest.mark.parametrize('as_run', [False, True])
+def test_every_point_is_that_of_python_control(name, as_run, points):
+    """Also where one block of points ends and the next begins."""
+    controller = PRINTED_CONTROLLERS[name]
+    continuous = continuous_loop(controller)
+    sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))
+    system = sampled if as_run else continuous.to_state_space()
+    step_s = PERIOD_S if as_run else 0.001
+    time, output = step_response(sampled if as_run else continuous, points * step_s)
+    assert time == pytest.approx(step_s * np.arange(points + 1), rel=1e-12)
+    theirs = control.ss(system.a, system.b, system.c, system.d, dt=system.period_s or 0)
+    expected = control.step_response(control.feedback(theirs), time).outputs
+    np.testing.assert_allclose(output, expected, rtol=0.0, atol=1e-10)
 
 
 def test_rise_is_interpolated_and_none_when_the_final_value_is_not_reached():
