@@ -1,10 +1,12 @@
 """The slip reference that a run's scenario and architecture ask for."""
 
+from dataclasses import replace
+
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
-from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
-from ddct_plant.scenario.plant import initial_state, make_load
+from ddct_plant.scenario.plant import make_load
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
@@ -55,9 +57,9 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     control starts feedback is off and only the static controller C_fOL acts. So no controller
     enters: the values are those of any controller's run, to the last bit.
     """
-    settings = RunSettings(scenario, architecture='detailed')
+    nominal = replace(scenario, actuator=ActuatorParameters())
+    settings = RunSettings(nominal, architecture='detailed')
     plant = WholePlant(settings, two_input=False)
-    plant.actuator = Actuator(initial_state(settings).torque_request)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = make_load(settings)
     slips = []

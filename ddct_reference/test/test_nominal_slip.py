@@ -21,3 +21,9 @@ def test_full_equilibrium_holds_the_slip_of_40_rad_s_for_a_second(engine_damping
     damping = f'driveline.engine_damping={engine_damping}'
     assert largest_change(damping, 'equilibrium=full') < 0.6
     assert largest_change(damping) > 40.0
+
+
+@pytest.mark.parametrize('changed', ['actuator.delay_s=0.03', 'sensors.engine_speed.gain=1.1'])
+def test_it_is_that_of_the_printed_actuator_and_of_the_true_speeds(changed):
+    slips = nominal_slip(load_scenario('thesis', [changed]))
+    assert slips == nominal_slip(load_scenario('thesis'))
