@@ -33,7 +33,7 @@ def declare_timeout(node: Node, name: str, default: float, description: str) -> 
 
 
 def declare_fail_safe(node: Node, name: str, default: float, description: str) -> FailSafeSettings:
-    """Declare the same, and how fast the clutch opens then."""
+    """Declare such a timeout, and how fast the clutch opens after it."""
     return FailSafeSettings(
         declare_timeout(node, name, default, description),
         declare(node, 'fail_safe_ramp_n_m_s', _FAIL_SAFE['fail_safe_ramp_n_m_s']),

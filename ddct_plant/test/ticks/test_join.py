@@ -62,6 +62,7 @@ def test_inputs_that_were_passed_over_are_forgotten():
     offer(join, 'b', 1)
     assert join.take() == (1, {'a': 'a1', 'b': 'b1'})
     assert offer(join, 'b', 0) is Verdict.IGNORE
+    assert not join._waiting
 
 
 def test_a_stamp_off_the_grid_is_an_error():
