@@ -4,6 +4,7 @@ import pytest
 
 from ddct_plant.fail_safe.guarded import GuardedEngine
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
+from ddct_plant.models.engine_limits import EngineLimits
 
 DEMAND = 308.0
 SLOW = EngineAuthority(slew_n_m_s=500.0, lag_s=0.03)
@@ -22,6 +23,20 @@ def test_with_every_request_it_is_the_engine_itself():
     engine, requests = guarded(), [320.0, 330.0, 290.0]
     answers = [engine.request(step, request) for step, request in enumerate(requests)]
     assert answers == bare(requests)
+
+
+def test_its_limits_are_those_at_the_speed_of_the_period_with_a_request_or_without():
+    def limited() -> Engine:
+        return Engine(TorqueProfile((0.0,), (DEMAND,)), EngineAuthority(), EngineLimits())
+
+    engine, bare_engine = GuardedEngine(limited(), 0.05), limited()
+    engine.speed = 110.0
+    assert engine.request(0, 320.0) == bare_engine.torque(0, 320.0, 110.0) < 200.0
+    assert [engine.tick(step) for step in range(1, 6)] == [None] * 5
+    engine.speed = 300.0
+    for step in range(1, 6):
+        bare_engine.torque(step, 320.0, 300.0)
+    assert engine.tick(6) == bare_engine.torque(6, DEMAND, 300.0) > 200.0
 
 
 @pytest.mark.parametrize('skipped', [1, 2, 4])
