@@ -12,6 +12,7 @@ import pytest
 from mcap.reader import make_reader
 
 from ddct_bringup.bag import repair
+from ddct_bringup.bag.file.records import salvage_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
 from ddct_plant.base.errors import DdctError
@@ -101,6 +102,23 @@ def test_a_killed_recording_loses_at_most_one_chunk(killed, source):
         'copy_0.mcap.damaged',
         'metadata.yaml',
     ]
+
+
+def test_a_chunk_is_whole_on_the_disk_as_soon_as_it_is_full(bags, source, tmp_path):
+    file = tmp_path / 'copy' / 'copy_0.mcap'
+    seen = []
+
+    def watched(messages):
+        size = file.stat().st_size
+        for number, message in enumerate(messages, 1):
+            yield message
+            if file.stat().st_size > size:
+                size = file.stat().st_size
+                seen.append((number, len(salvage_records(file).messages)))
+
+    bags.rewrite(source, 'copy', watched)
+    assert len(seen) > 2
+    assert [held for _, held in seen] == [written for written, _ in seen]
 
 
 def test_a_repaired_bag_is_read_by_rosbags(killed):

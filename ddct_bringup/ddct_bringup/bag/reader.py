@@ -119,7 +119,9 @@ def recording_of(records: BagRecords) -> Recording:
     last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}
-    for topic in (each for each in recorded_topics(run) if each.signals):
+    for topic in recorded_topics(run):
+        if not topic.signals:
+            continue
         rows, held = _rows(topic, messages.get(topic.resolved_name, []), last)
         signals = topic.signals_in(run)
         if len(rows[0]) != len(signals):

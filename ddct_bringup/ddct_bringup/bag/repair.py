@@ -124,8 +124,8 @@ def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':
 
 def _swap(new: Path, mcap: Path) -> Path:
     """Put the new bag where the damaged one is, and return where that is kept."""
-    names = chain(['.damaged'], (f'.damaged{number}' for number in count(2)))
-    places = (mcap.with_name(mcap.name + name) for name in names)
+    numbers = chain([''], count(2))
+    places = (mcap.with_name(f'{mcap.name}.damaged{number}') for number in numbers)
     original = next(place for place in places if not place.exists())
     try:
         mcap.rename(original)
