@@ -67,13 +67,19 @@ class IntervalMap:
         rows = [ends[-1], flow.force @ driven]
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
-        """For each element that slips: its number, its integrals, its capacity."""
+        """For each element that slips: its number, its integrals, its capacities."""
+        self._held_work: list[tuple[int, int, int]] = []
+        """The same of those whose capacity is held, one each: a sum would take longer."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
             where = layout.capacities[element]
-            rows.append(_by_value(slips[:, place], held=where.stop - where.start == 1))
+            held = where.stop - where.start == 1
+            rows.append(_by_value(slips[:, place], held=held))
             integrals = slice(first, first + len(rows[-1]))
-            self._work.append((element, integrals, where))
+            if held:
+                self._held_work.append((element, first, where.start))
+            else:
+                self._work.append((element, integrals, where))
             first = integrals.stop
         units, directions = _shortfalls(flow.guards, starts)
         nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
@@ -91,6 +97,8 @@ class IntervalMap:
         work = [0.0] * len(self._signs)
         for element, integrals, where in self._work:
             work[element] = sum(map(mul, values[integrals], capacities[where]))
+        for element, integral, place in self._held_work:
+            work[element] = values[integral] * capacities[place]
         return Interval(values[: self._states], self._signs, [], work, values[self._friction])
 
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:

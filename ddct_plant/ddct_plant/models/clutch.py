@@ -161,8 +161,7 @@ class FrictionClutch:
         for _ in range(self._step, step):
             self._heat.advance(friction_work)
         self._step = step
-        _, facing_c, _ = self._heat.temperatures_c
-        return self.capacity(actuator_torque, facing_c, slip_speed)
+        return self.capacity(actuator_torque, self._heat.facing_c, slip_speed)
 
     def capacity(
         self,

@@ -87,6 +87,11 @@ class ClutchHeat:
         plate, facing, housing = self._above_ambient
         return self._ambient_c + plate, self._ambient_c + facing, self._ambient_c + housing
 
+    @property
+    def facing_c(self) -> float:
+        """The facing's temperature in degrees Celsius, that friction depends on."""
+        return self._ambient_c + self._above_ambient[1]
+
     def advance(self, friction_work: float) -> None:
         """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""
         p, f, h = self._above_ambient

@@ -1,8 +1,8 @@
 """Driveline: engine, primary shaft, wheel and driveshaft, stepped exactly (Section 1.5)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,12 +85,14 @@ def driveline_outputs(
     torques: tuple[float, float, float],
     clutch_sticks: bool = False,
     wheels_stick: bool = False,
-    friction: Mapping[str, Any] | None = None,
+    clutch_phase: float | None = None,
+    friction_work: float | None = None,
+    phase_events: tuple[PhaseEvent, ...] | None = None,
 ) -> DrivelineOutputs:
     """
     Return the outputs in a state (7,) with C_m, C_f and C_load just before, in N m.
 
-    `friction` holds the fields that only a clutch that sticks has.
+    The last three are for a clutch that sticks, as `DrivelineOutputs` has them.
 
     While the clutch sticks the slip is 0, and while the wheels stick the acceleration is, not the
     rounding of a difference.
@@ -108,7 +110,9 @@ def driveline_outputs(
         slip_speed=0.0 if clutch_sticks else engine - shaft,
         vehicle_speed=wheel_radius * wheel,
         vehicle_accel=wheel_radius * wheel_accel,
-        **(friction or {}),
+        clutch_phase=clutch_phase,
+        friction_work=friction_work,
+        phase_events=phase_events,
     )
 
 

@@ -114,10 +114,10 @@ class RoadLoad:
         """0.5 rho_a A_f C_a in kg/m."""
         self.wind = parameters.wind_speed_m_s
         """v_a in m/s."""
-        self._constant_slope = parameters.slope_rad
-        self._constant_force = self._force(parameters.slope_rad)
         self.wheel_radius = vehicle.wheel_radius_m
         """r_w in m."""
+        self._constant_force = self._force(parameters.slope_rad)
+        self._constant_rolling = self._rolling_torque(parameters.slope_rad)
 
     def torque(self, vehicle_speed: float, time_s: float = 0.0) -> float:
         """
@@ -130,14 +130,18 @@ class RoadLoad:
 
     def rolling_torque(self, time_s: float) -> float:
         """Return the size of F_r r_w in N m at a scenario time."""
-        slope_rad = self._slope.at(time_s) if self._slope else self._constant_slope
-        return self._weight * math.cos(slope_rad) * self._rolling * self.wheel_radius
+        if self._slope is None:
+            return self._constant_rolling
+        return self._rolling_torque(self._slope.at(time_s))
 
     def forces(self, times_s: np.ndarray) -> np.ndarray:
         """Return F_r + F_g in N at scenario times, (n,)."""
         if self._slope is None:
             return np.full(len(times_s), self._constant_force)
         return self._force(self._slope.over(times_s), np.cos, np.sin)
+
+    def _rolling_torque(self, slope_rad: float) -> float:
+        return self._weight * math.cos(slope_rad) * self._rolling * self.wheel_radius
 
     def _force(self, slope_rad: Any, cos: Any = math.cos, sin: Any = math.sin) -> Any:
         return self._weight * (self._rolling * cos(slope_rad) + sin(slope_rad))
@@ -151,11 +155,13 @@ class HoldingTorque:
     """
 
     def __init__(self, load: RoadLoad, brake: BrakeProfile) -> None:
-        self._load, self._brake = load, brake
+        self._load = load
+        self._brake = brake if brake.given else None
 
     def capacity(self, time_s: float) -> float:
         """Return it in N m, not negative, at a scenario time."""
-        return self._load.rolling_torque(time_s) + self._brake.torque(time_s)
+        rolling = self._load.rolling_torque(time_s)
+        return rolling + self._brake.torque(time_s) if self._brake else rolling
 
 
 def air_and_slope(

@@ -27,6 +27,7 @@ CLUTCH, WHEEL = 0, 1
 """The friction elements by number."""
 _HELD = (0, 1, 3)
 """Inputs that are held: C_m, C_load and holding torque, not the clutch capacity."""
+_PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 
 
 class StickSlipDriveline:
@@ -76,11 +77,9 @@ class StickSlipDriveline:
             (engine_torque, clutch_torque, load_torque + wheel_torque),
             clutch_sticks=now.signs[CLUTCH] == 0,
             wheels_stick=now.signs[WHEEL] == 0,
-            friction={
-                'clutch_phase': float(PHASES.index(self._clutch_phase)),
-                'friction_work': now.work[CLUTCH],
-                'phase_events': self._phase_events() if now.events else (),
-            },
+            clutch_phase=_PHASE_NUMBERS[self._clutch_phase],
+            friction_work=now.work[CLUTCH],
+            phase_events=self._phase_events() if now.events else (),
         )
 
     def _phase_events(self) -> tuple[PhaseEvent, ...]:

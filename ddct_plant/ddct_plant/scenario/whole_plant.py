@@ -153,5 +153,5 @@ class WholePlant:
         self.driveline.step(
             reply['engine_torque'],
             reply['load_torque'],
-            *(reply[name] for name in self._friction.torques),
+            *map(reply.__getitem__, self._friction.torques),
         )
