@@ -73,10 +73,6 @@ class BrakeProfile(Profile, prefix='brake.'):
         at_most=1e5,
     )
 
-    def torque(self, time_s: float) -> float:
-        """Return the capacity in N m at a scenario time; the ends hold before and after."""
-        return self.at(time_s) if self.given else 0.0
-
 
 def resisting_torque(
     drag: Any, wind: Any, force: Any, wheel_radius: Any, vehicle_speed: Any
@@ -161,7 +157,7 @@ class HoldingTorque:
     def capacity(self, time_s: float) -> float:
         """Return it in N m, not negative, at a scenario time."""
         rolling = self._load.rolling_torque(time_s)
-        return rolling + self._brake.torque(time_s) if self._brake else rolling
+        return rolling + self._brake.at(time_s) if self._brake else rolling
 
 
 def air_and_slope(

@@ -36,7 +36,7 @@ def test_rolling_resistance_is_that_of_the_normal_force():
 
 def test_the_brake_is_linear_between_its_points_and_holds_its_ends():
     brake = BrakeProfile((0.5, 1.5), (1000.0, 0.0))
-    found = [brake.torque(time_s) for time_s in (0.0, 0.5, 1.0, 1.5, 9.0)]
+    found = [brake.at(time_s) for time_s in (0.0, 0.5, 1.0, 1.5, 9.0)]
     assert found == pytest.approx([1000.0, 1000.0, 500.0, 0.0, 0.0])
     rolling = HoldingTorque(RoadLoad(LoadParameters(), VEHICLE), BrakeProfile()).capacity(0.0)
     both = HoldingTorque(RoadLoad(LoadParameters(), VEHICLE), brake).capacity(1.0)

@@ -37,7 +37,7 @@ def test_sections_survive_their_yaml_and_change_the_digest(scenario_file):
     scenario = load_scenario(scenario_file(BASE + SECTIONS))
     assert scenario.friction.slip_share == (1.0, 0.9)
     assert (scenario.heat.facing_c, scenario.heat.housing_c) == (200.0, 20.0)
-    assert scenario.brake.torque(0.5) == 400.0
+    assert scenario.brake.at(0.5) == 400.0
     assert scenario.engine_limits.stall_rad_s == 60.0
     assert (scenario.closing.margin, scenario.closing.dwell_s) == (1.3, 0.1)
     assert scenario.initial.clutch_phase == 'locked'
