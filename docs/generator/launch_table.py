@@ -1,6 +1,7 @@
 """The launches and the tip-in with a new clutch, in numbers."""
 
 from ddct_bringup.run.headless import run_headless
+from ddct_plant.models.driveline import LOCK
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -30,7 +31,7 @@ def _row(name: str, controller: str) -> tuple[str, ...]:
     assert trajectory.phase_events is not None
     assert trajectory.friction_work is not None
     events = [event for step in trajectory.phase_events for event in step]
-    locked_s = next(time for time, kind in events if kind == 'lock')
+    locked_s = next(event.time_s for event in events if event.kind == LOCK)
     wheel_radius = settings.scenario.vehicle.wheel_radius_m
     return (
         f'`{name}`',

@@ -12,6 +12,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
 from ddct_plant.graph.topics import RunKind, all_topics, recorded_topics
+from ddct_plant.models.driveline import PhaseEvent
 
 RUN_INFO = {'load': {'version': '1.0'}, 'engine': {'version': '1.0', 'seed': '0'}}
 
@@ -63,7 +64,7 @@ def random_trajectory(steps, preview_steps=2, clutch='linear'):
     )
     texts: dict[str, Any] = {'status': status}
     if run.clutch != 'linear':
-        events = (((0.25, 'lock'), (1.0 / 3.0, 'release')), ())
+        events = ((PhaseEvent(0.25, 'lock', -200.0 / 3.0), PhaseEvent(1.0 / 3.0, 'release')), ())
         texts['phase_events'] = tuple(events[step % 2] for step in range(steps + 1))
     return Trajectory.of_columns({**arrays, **texts})
 

@@ -90,19 +90,14 @@ class JudgedRuns(JudgedRun):
         return np.array([steps if np.isnan(time) else step_at(time) for time in at_s.tolist()])
 
     @property
-    def slipping_stretches(self) -> tuple[np.ndarray, np.ndarray]:
-        """First sample of the longest stretch of slipping and the one behind its last, (R,)."""
-        runs, samples = self.trajectory.slip_speed.shape
+    def slipping_spans(self) -> tuple[np.ndarray, np.ndarray]:
+        """First sample of slipping from control start on and the one behind the last, (R,)."""
+        sample = np.arange(self.trajectory.slip_speed.shape[-1])
         mask = self.trajectory.slip_speed != 0.0
-        mask &= np.arange(samples) < self.first_together[:, np.newaxis]
-        changes = np.diff(mask, prepend=False, append=False, axis=-1)
-        rows, edges = (each.reshape(-1, 2) for each in np.nonzero(changes))
-        # Each row's stretches from the longest to the shortest, the earlier of equals first.
-        order = np.lexsort((edges[:, 0], edges[:, 0] - edges[:, 1], rows[:, 0]))
-        found, at = np.unique(rows[order, 0], return_index=True)
-        longest = np.zeros((runs, 2), dtype=int)
-        longest[found] = edges[order][at]
-        return longest[:, 0], longest[:, 1]
+        mask &= sample >= self.control_start
+        mask &= sample < self.first_together[:, np.newaxis]
+        first, after = np.argmax(mask, axis=-1), len(sample) - np.argmax(mask[:, ::-1], axis=-1)
+        return first, np.where(mask.any(axis=-1), after, first)
 
     @cached_property
     def shuffle(self) -> tuple[Values, Values]:
@@ -119,8 +114,8 @@ class JudgedRuns(JudgedRun):
 
     @property
     def judder(self) -> Values:
-        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
-        first, after = self.slipping_stretches
+        """R.m.s. in rpm of w_sr from 2 to 20 Hz while the clutch slips."""
+        first, after = self.slipping_spans
         long = (after - first - 1) * PERIOD_S >= SHORTEST_JUDDER_S
         found = np.full(len(first), np.nan)
         if long.any():

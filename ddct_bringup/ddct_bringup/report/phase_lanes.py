@@ -7,15 +7,18 @@ from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.judged_run import LOCKED, SLIPPING
+from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
+from ddct_plant.models.driveline import LOCK, RELEASE
 
 LANES = 'phases'
 """Name of the chart."""
 OPACITY = {'open': 0.0, 'slipping': 0.3, 'locked': 0.85}
 """By phase, in the order of its numbers."""
-EVENT_MARKERS = {'lock': 'triangle', 'release': 'inverted_triangle'}
+EVENT_MARKERS = {LOCK: 'triangle', RELEASE: 'inverted_triangle'}
 _PHASES = tuple(OPACITY)
 _HALF_HEIGHT = 0.36
+_AFTER = {LOCK: LOCKED, RELEASE: SLIPPING}
+"""The phase after an event. A reversal changes none: the clutch may be open."""
 
 Span = tuple[float, float, str]
 """Scenario times in s at which a phase begins and ends, and its name."""
@@ -30,7 +33,7 @@ def phase_spans(run: Trajectory) -> list[Span]:
     time_s = run.time_s.tolist()
     changes = [(time_s[0], run.clutch_phase[0])]
     for time, phase, events in zip(time_s, run.clutch_phase, run.phase_events, strict=True):
-        changes += [(when, LOCKED if what == 'lock' else SLIPPING) for when, what in events]
+        changes += [(each.time_s, _AFTER[each.kind]) for each in events if each.kind in _AFTER]
         if changes[-1][1] != phase:
             changes.append((time, phase))
     ends = [time for time, _ in changes[1:]] + [time_s[-1]]
@@ -70,7 +73,9 @@ def draw_events(
 ) -> Iterator[GlyphRenderer]:
     """Mark the locks and releases of a run at a height of the chart, and yield the marks."""
     for kind, marker in EVENT_MARKERS.items():
-        times = [time for events in run.phase_events for time, what in events if what == kind]
+        times = [
+            each.time_s for events in run.phase_events for each in events if each.kind == kind
+        ]
         if times:
             yield chart.scatter(
                 times,

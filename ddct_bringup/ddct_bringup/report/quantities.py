@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.judged_run import LOCKED
+from ddct_bringup.verdict.meeting import LOCKED
 from ddct_plant.base.units import rpm_from_rad_s
 
 

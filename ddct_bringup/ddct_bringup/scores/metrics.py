@@ -9,8 +9,9 @@ import scipy
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.verdict.criteria import finite
+from ddct_bringup.verdict.meeting import first_lock, first_meeting
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
-from ddct_plant.base.timebase import PERIOD_S, steps_in
+from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 
 
@@ -24,7 +25,8 @@ class Metrics(NamedTuple):
 
     engagement_time_s: float | None
     """t_a (thesis Section 5.1): from control start to the first sign change of w_d, interpolated
-    linearly between samples; None without one, or when w_d is zero at control start."""
+    linearly between samples; None without one, or when w_d is zero at control start. Of a clutch
+    that sticks to the instant of the first lock, or of passing through zero."""
     torsion_speed_std_rpm: float | None
     """Standard deviation (ddof 0) of w_sr over the score window."""
     acceleration_std_m_s2: float | None
@@ -43,8 +45,8 @@ class Metrics(NamedTuple):
     """Friction work of the clutch over the whole run: exact where the run reports it, otherwise
     the integral of |C_f w_d| by trapezoids."""
     lockup_slip_acceleration_rad_s2: float | None
-    """Slope of w_d where it first changes its sign, between the samples around it. A clutch that
-    sticks makes the latter exactly zero: then between the two samples before."""
+    """Slope of w_d where it first changes its sign, between the samples around it. Of a clutch
+    that sticks the exact one just before the first lock after control start."""
     torque_total_variation_n_m: float | None
     """Sum of the magnitudes of all changes of the clutch torque request over the whole run."""
     steps: int
@@ -103,6 +105,9 @@ def metric_values(
     slip = trajectory.slip_speed
     with np.errstate(all='ignore'):  # what is not finite becomes None
         engagement_time, lockup_slope = _first_sign_change(slip, start)
+        if trajectory.phase_events is not None:
+            engagement_time = _first_meeting_time(trajectory, start, engagement_time)
+            lockup_slope = _slip_acceleration_at_lock(trajectory, start)
         return {
             'engagement_time_s': engagement_time,
             'lockup_slip_acceleration_rad_s2': lockup_slope,
@@ -124,11 +129,31 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.nda
     after = start + np.argmax(changed, axis=-1)
     # Without a change the first one seems to be at `start`, as it is where the slip is zero there.
     found = after > start
-    last, before, earlier = (_at(slip, np.maximum(after - back, 0)) for back in range(3))
+    last, before = (_at(slip, np.maximum(after - back, 0)) for back in range(2))
     step = before - last
     time = (after - 1 - start + before / step) * PERIOD_S
-    step = np.where((last == 0.0) & (after >= 2), earlier - before, step)
     return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
+
+
+def _first_meeting_time(trajectory: Trajectory, start: int, crossing_s: np.ndarray) -> np.ndarray:
+    """
+    Return the time in s from step `start` to the first lock or reversal, NaN without.
+
+    `crossing_s` is that of the first change of sign of the samples. Bags recorded before reversals
+    were events may have one without an event; then it stands.
+    """
+    found = first_meeting(trajectory, start)
+    if found is None:
+        return crossing_s
+    step, event = found
+    earlier = crossing_s <= time_of_step(step - 1 - start)
+    return crossing_s if earlier else np.array(event.time_s - time_of_step(start))
+
+
+def _slip_acceleration_at_lock(trajectory: Trajectory, start: int) -> np.ndarray:
+    """Return that of the first lock after step `start` in rad/s^2, NaN where it is not known."""
+    lock = first_lock(trajectory, start)
+    return np.array(math.nan if lock is None else lock.slip_acceleration, dtype=float)
 
 
 def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:

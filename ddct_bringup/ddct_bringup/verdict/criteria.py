@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_bringup.verdict.judged_run import JudgedRun, Values
 from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
-from ddct_bringup.verdict.vibration import mean_jerk, torque_dip
+from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
 from ddct_plant.program.table import Figure
 
 AXIS_FACTOR = 1.4
@@ -129,8 +129,9 @@ CRITERIA = (
         'judder',
         'rpm',
         lambda run: run.judder,
-        'r.m.s. of w_sr from 2 to 20 Hz over the longest stretch of slipping',
-        'the clutch slips for less than 1 s',
+        'r.m.s. of w_sr from 2 to 20 Hz from the first to the last sample of slipping after '
+        'control start, of a linear clutch before t_a',
+        f'the clutch slips for less than {SHORTEST_JUDDER_S:g} s after control start',
     ),
     _criterion(
         'shuffle_amplitude',

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.meeting import SLIPPING, events_of, first_lock, locked_at
 from ddct_bringup.verdict.vibration import (
     judder,
     shuffle,
@@ -17,11 +18,8 @@ from ddct_bringup.verdict.vibration import (
 )
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.models import driveline
-from ddct_plant.models.driveline import PHASES
+from ddct_plant.models.driveline import RELEASE
 
-SLIPPING, LOCKED = PHASES.index(driveline.SLIPPING), PHASES.index(driveline.LOCKED)
-"""Values of `clutch_phase`."""
 _DRIVESHAFT = 3
 """Its place among the joints."""
 Values = float | int | np.ndarray
@@ -53,7 +51,7 @@ class JudgedRun:
 
     @property
     def judder(self) -> Values | None:
-        """R.m.s. in rpm of w_sr from 2 to 20 Hz over the longest stretch of slipping."""
+        """R.m.s. in rpm of w_sr from 2 to 20 Hz while the clutch slips, short locks included."""
         return judder(self.torsion_speed_rpm[self.slipping])
 
     @cached_property
@@ -87,24 +85,24 @@ class JudgedRun:
 
         None when the plates never lock, and for a linear clutch.
         """
-        start = time_of_step(self.control_start)
-        if self._locked_at_control_start:
-            return start
-        return min((time for time in self._times('lock') if time >= start), default=None)
+        if locked_at(self.trajectory, self.control_start):
+            return time_of_step(self.control_start)
+        lock = first_lock(self.trajectory, self.control_start)
+        return lock.time_s if lock else None
 
     @property
     def time_to_lock_s(self) -> float | None:
         """From control start to the first lock; None too when locked at control start."""
-        if self.locks_from_s is None or self._locked_at_control_start:
-            return None
-        return self.locks_from_s - time_of_step(self.control_start)
+        lock = first_lock(self.trajectory, self.control_start)
+        return lock.time_s - time_of_step(self.control_start) if lock else None
 
     @property
     def releases(self) -> int | None:
         """How often the plates part after `locks_from_s`; None without."""
         if self.locks_from_s is None:
             return None
-        return sum(time >= self.locks_from_s for time in self._times('release'))
+        releases = events_of(self.trajectory, RELEASE)
+        return sum(event.time_s >= self.locks_from_s for event in releases)
 
     @property
     def together_from(self) -> int | None:
@@ -119,9 +117,9 @@ class JudgedRun:
     @property
     def slipping(self) -> slice:
         """
-        Samples of the longest stretch of slipping.
+        Samples from the first to the last of slipping, from control start on.
 
-        Of a linear clutch, which slips on after t_a, the samples before t_a at which w_d is not 0;
+        Of a linear clutch, which slips on after t_a, those before t_a at which w_d is not 0;
         without t_a all of them.
         """
         if self.trajectory.clutch_phase is not None:
@@ -130,22 +128,8 @@ class JudgedRun:
             mask = self.trajectory.slip_speed != 0.0
             if self.together_from is not None:
                 mask[self.together_from :] = False
-        edges = np.flatnonzero(np.diff(mask, prepend=False, append=False)).reshape(-1, 2)
-        if not edges.size:
-            return slice(0, 0)
-        first, after = edges[np.argmax(edges[:, 1] - edges[:, 0])]
-        return slice(int(first), int(after))
-
-    @property
-    def _locked_at_control_start(self) -> bool:
-        phase = self.trajectory.clutch_phase
-        start = self.control_start
-        return phase is not None and len(phase) > start and phase[start] == LOCKED
-
-    def _times(self, kind: str) -> list[float]:
-        """Return the scenario times in s of all locks or releases, none of a linear clutch."""
-        events = self.trajectory.phase_events or ()
-        return [time for step in events for time, what in step if what == kind]
+        slips = self.control_start + np.flatnonzero(mask[self.control_start :])
+        return slice(int(slips[0]), int(slips[-1]) + 1) if slips.size else slice(0, 0)
 
 
 def step_at(time_s: float) -> int:

@@ -3,6 +3,10 @@
 from ddct_plant.program.table import PURE, Figure
 
 NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
+NO_LOCKUP = (
+    'after control start the plates never came together, or they were together there already, or '
+    'the bag was recorded before locks had a slip acceleration'
+)
 NO_WINDOW = 'the run ends before the score window does, or a value is not finite'
 NOT_FINITE = 'a value is not finite'
 NO_TIMING = 'there is no timing.json'
@@ -15,7 +19,8 @@ TABLE_5_1 = (
         't_a',
         's',
         '.3f',
-        't_a, control start to the first change of sign of w_d',
+        't_a, control start to the first change of sign of w_d; of plates that stick, to the '
+        'exact instant at which they first lock or pass through zero',
         NO_CROSSING,
     ),
     Figure(
@@ -83,8 +88,9 @@ FURTHER = (
         'dw_d/dt at lock-up',
         'rad/s^2',
         '.2f',
-        'slope of w_d where the plates first come together',
-        NO_CROSSING,
+        'slope of w_d where it first changes its sign; of plates that stick, the exact one just '
+        'before the first lock',
+        NO_LOCKUP,
     ),
     Figure(
         'torque_total_variation_n_m',

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.judged_run import LOCKED
 from ddct_bringup.verdict.limits import Rules
+from ddct_bringup.verdict.meeting import LOCKED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED

@@ -17,8 +17,12 @@ _JERK_FILTER_ORDER = 2
 """Order of the Butterworth filter, which runs once forward and once backward."""
 JUDDER_BAND_HZ = (2.0, 20.0)
 BAND_PASS_ORDER = 2
-SHORTEST_JUDDER_S = 1.0
-"""Of slipping: two periods of the lowest frequency of the band."""
+SHORTEST_JUDDER_S = 1.0 / JUDDER_BAND_HZ[0]
+"""
+One period of the lowest frequency of the band, below which nothing can be said of it: 51 samples.
+
+The filter needs 16 samples, for its padding.
+"""
 
 
 def jerk(acceleration: np.ndarray) -> np.ndarray:
@@ -113,7 +117,7 @@ def judder(torsion_speed: np.ndarray) -> float | None:
     Return the root of the mean square of the (n,) w_sr between 2 and 20 Hz, in its unit.
 
     The samples are those while the clutch slips. A second-order Butterworth band-pass runs forward
-    and backward. None for less than 1 s.
+    and backward. None for less than `SHORTEST_JUDDER_S`.
     """
     if (len(torsion_speed) - 1) * PERIOD_S < SHORTEST_JUDDER_S:
         return None

@@ -39,19 +39,20 @@ def stack():
     )
 
 
+def judged(kind, trajectory, window=WINDOW):
+    metrics: dict[str, Any] = dict(metric_values(trajectory, START, window))
+    if kind is JudgedRun:
+        metrics = {name: finite(value) for name, value in metrics.items()}
+    window_s = tuple(step / 100 for step in window)
+    return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0)
+
+
 @pytest.mark.parametrize('window', [WINDOW, (200, 400)], ids=['scored', 'ends before'])
 def test_criteria_are_those_of_each_run(stack, window):
-    def judged(kind, trajectory):
-        metrics: dict[str, Any] = dict(metric_values(trajectory, START, window))
-        if kind is JudgedRun:
-            metrics = {name: finite(value) for name, value in metrics.items()}
-        window_s = tuple(step / 100 for step in window)
-        return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0)
-
-    ours: dict[str, Any] = raw_criteria(judged(JudgedRuns, stack))
+    ours: dict[str, Any] = raw_criteria(judged(JudgedRuns, stack, window))
     undefined = set()
     for run in range(RUNS):
-        single = raw_criteria(judged(JudgedRun, one_or_more(stack, run)))
+        single = raw_criteria(judged(JudgedRun, one_or_more(stack, run), window))
         for name, value in single.items():
             found = ours[name] if np.ndim(ours[name]) == 0 else ours[name][run]
             if finite(value) is None:
@@ -60,3 +61,20 @@ def test_criteria_are_those_of_each_run(stack, window):
             else:
                 assert found == pytest.approx(value, rel=1e-12), name
     assert {'shuffle_decay', 'shuffle_amplitude', 'judder', 'engagement_time'} <= undefined
+
+
+def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_run(stack):
+    """From 51 samples on, the same for 100 as for 101; the last run rests at zero at first."""
+    lengths = [1, 15, 16, 50, 51, 100, 101, 0]
+    steps = np.arange(SAMPLES)
+    slip = np.array([np.where(steps < START + length, 30.0, -1e-9) for length in lengths])
+    slip[-1] = np.where((steps >= START + 5) & (steps < START + 125), 30.0, 0.0)
+    signals = one_or_more(stack, slice(len(lengths))).signals
+    trajectory = Trajectory({**signals, 'slip_speed': slip})
+    batch: Any = judged(JudgedRuns, trajectory).judder
+    single = [judged(JudgedRun, one_or_more(trajectory, run)).judder for run in range(len(slip))]
+    assert [each is not None for each in single] == [length >= 51 for length in lengths[:-1]] + [
+        True
+    ]
+    for ours, alone in zip(batch.tolist(), single, strict=True):
+        assert finite(ours) == (None if alone is None else pytest.approx(alone, rel=1e-12))

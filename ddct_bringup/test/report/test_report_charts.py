@@ -16,6 +16,7 @@ from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_bringup.report.quantities import quantities_of
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.graph.topics import all_signals
+from ddct_plant.models.driveline import PhaseEvent
 
 STEPS = 20
 RPM = 30.0 / math.pi
@@ -124,9 +125,11 @@ def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
 def sticking_run() -> Trajectory:
     """Return `RUN` with a clutch that closes at 0.02 s, locks, and lets go again."""
     random = np.random.default_rng(2)
-    events: list[tuple[tuple[float, str], ...]] = [()] * (STEPS + 1)
-    events[6] = ((0.053, 'lock'),)
-    events[9] = ((0.081, 'release'), (0.084, 'lock'), (0.088, 'release'))
+    events: list[tuple[PhaseEvent, ...]] = [()] * (STEPS + 1)
+    events[1] = (PhaseEvent(0.007, 'reverse'),)
+    events[6] = (PhaseEvent(0.053, 'lock'),)
+    kinds = {0.081: 'release', 0.084: 'lock', 0.088: 'release'}
+    events[9] = tuple(PhaseEvent(time_s, kind) for time_s, kind in kinds.items())
     phase = np.ones(STEPS + 1)
     phase[:2] = 0.0
     phase[6:9] = 2.0

@@ -77,7 +77,8 @@ def test_events_alternate_stand_in_their_period_and_end_in_the_phase_that_is_rec
     states = {'lock': 2.0, 'release': 1.0}
     phase = found.clutch_phase[0]
     for k in range(1, found.steps + 1):
-        for time_s, kind in found.phase_events[k]:
+        for time_s, kind, acceleration in found.phase_events[k]:
+            assert np.isfinite(acceleration)
             assert found.time_s[k - 1] <= time_s <= found.time_s[k] + 1e-12
             assert states[kind] != phase
             phase = states[kind]

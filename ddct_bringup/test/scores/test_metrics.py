@@ -10,6 +10,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_plant.graph.topics import all_signals
+from ddct_plant.models.driveline import PhaseEvent
 
 STEPS = 300
 TIME = np.arange(STEPS + 1) / 100.0
@@ -77,12 +78,55 @@ def test_engagement_time_is_undefined_when_the_run_ends_before_control_starts():
     assert score(trajectory(steps=50)).engagement_time_s is None
 
 
-def test_a_clutch_that_sticks_is_engaged_at_the_first_zero_sample():
-    slip = np.maximum(20.005 - 16.0 * TIME, 0.0)
-    slip[TIME > 1.244] = 0.0
-    metrics = score(trajectory(slip_speed=slip))
-    assert metrics.engagement_time_s == pytest.approx(1.25 - 0.6, abs=1e-12)
-    assert metrics.lockup_slip_acceleration_rad_s2 == pytest.approx(-16.0, rel=1e-9)
+def sticking(slip, events):
+    """Return a run with a clutch that sticks, its events by step."""
+    run = trajectory(slip_speed=slip)
+    steps = tuple(events.get(step, ()) for step in range(STEPS + 1))
+    phase = np.where(slip == 0.0, 2.0, 1.0)
+    return Trajectory({**run.signals, 'clutch_phase': phase, 'phase_events': steps})
+
+
+SLIP = np.maximum(19.6 - 16.0 * TIME, 0.0)
+"""Zero from 1.23 s on, the lock is at 1.225 s."""
+
+
+def test_a_clutch_that_sticks_is_engaged_at_the_instant_of_its_first_lock():
+    metrics = score(sticking(SLIP, {123: (PhaseEvent(1.225, 'lock', -62.6),)}))
+    assert metrics.engagement_time_s == pytest.approx(1.225 - 0.6, abs=1e-12)
+    assert metrics.lockup_slip_acceleration_rad_s2 == -62.6
+
+
+def test_a_lock_between_two_samples_that_both_slip_is_an_engagement():
+    events = (PhaseEvent(1.003, 'lock', -50.0), PhaseEvent(1.005, 'release', 0.0))
+    metrics = score(sticking(np.full(STEPS + 1, 3.0), {101: events}))
+    assert metrics.engagement_time_s == pytest.approx(1.003 - 0.6, abs=1e-12)
+    assert metrics.lockup_slip_acceleration_rad_s2 == -50.0
+
+
+def test_plates_that_pass_through_zero_are_engaged_there_and_locked_later():
+    slip = np.where(TIME < 1.0025, 3.0, np.where(TIME < 1.5, -3.0, 0.0))
+    passing, lock = PhaseEvent(1.0075, 'reverse', -20.0), PhaseEvent(1.495, 'lock', 44.0)
+    metrics = score(sticking(slip, {101: (passing,), 150: (lock,)}))
+    assert metrics.engagement_time_s == pytest.approx(1.0075 - 0.6, abs=1e-12)
+    assert metrics.lockup_slip_acceleration_rad_s2 == 44.0
+
+
+def test_bags_recorded_before_reversals_and_slip_accelerations_have_what_they_have():
+    slip = np.where(TIME < 1.0025, 3.0, np.where(TIME < 1.5, -1.0, 0.0))
+    later = score(sticking(slip, {150: (PhaseEvent(1.495, 'lock'),)}))
+    assert later.engagement_time_s == pytest.approx(1.0075 - 0.6, abs=1e-12)
+    assert later.lockup_slip_acceleration_rad_s2 is None
+    lock = score(sticking(SLIP, {123: (PhaseEvent(1.225, 'lock'),)}))
+    assert lock.engagement_time_s == pytest.approx(1.225 - 0.6, abs=1e-12)
+    assert lock.lockup_slip_acceleration_rad_s2 is None
+
+
+def test_events_before_control_start_do_not_count():
+    slip = np.where((TIME > 0.2) & (TIME < 0.3), 0.0, 3.0)
+    lock = (PhaseEvent(0.195, 'lock', -9.0),)
+    metrics = score(sticking(slip, {20: lock, 31: (PhaseEvent(0.3, 'release', 0.0),)}))
+    assert metrics.engagement_time_s is None
+    assert metrics.lockup_slip_acceleration_rad_s2 is None
 
 
 def test_standard_deviations_are_over_the_window_with_both_ends_and_ddof_0():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
+from scipy.signal import butter, sosfiltfilt
 
 from ddct_bringup.scores.metrics import compute_metrics
 from ddct_bringup.verdict.criteria import CRITERION_UNITS, criterion_values
@@ -10,6 +11,7 @@ from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of
+from ddct_plant.models.driveline import PhaseEvent
 
 T = times()
 WINDOW_S = (0.6, 2.0)
@@ -27,9 +29,11 @@ def shaft(signal, index=3):
 
 
 def sticking(events, phase, slip=None, **signals):
-    """Return a run with a clutch that sticks, its events by step."""
+    """Return a run with a clutch that sticks, its events by step as (time, kind) and more."""
     slip = np.zeros(301) if slip is None else slip
-    steps = tuple(tuple(events.get(step, ())) for step in range(301))
+    steps = tuple(
+        tuple(PhaseEvent(*event) for event in events.get(step, ())) for step in range(301)
+    )
     return made_run(slip, clutch_phase=phase, phase_events=steps, **signals)
 
 
@@ -105,19 +109,55 @@ def test_judder_of_a_linear_clutch_that_never_comes_together_is_that_of_the_whol
     assert found['judder'] == pytest.approx(4.0 / np.sqrt(2.0), rel=0.05)
 
 
-def test_judder_of_less_than_one_second_of_slipping_is_undefined():
-    speed = shaft(np.sin(50.0 * T))
-    slipping_for = {99: None, 101: float}
-    for steps, kind in slipping_for.items():
-        run = sticking({}, phases((0, 2), (60, 1), (60 + steps, 2)), joint_speed=speed)
-        found = values(run)['judder']
-        assert (found is None) == (kind is None), steps
+@pytest.mark.parametrize('samples', [15, 50, 51, 100, 101])
+@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+def test_judder_needs_half_a_second_of_slipping_one_period_of_2_hz(clutch, samples):
+    speed = 9.0 * np.sin(50.0 * T)
+    if clutch == 'linear':
+        slip = np.where((60 + samples) / 100.0 - 1e-9 > T, 300.0, -1e-9)
+        found = values(made_run(slip, joint_speed=shaft(speed)))['judder']
+    else:
+        phase = phases((0, 2), (60, 1), (60 + samples, 2))
+        found = values(sticking({}, phase, joint_speed=shaft(speed)))['judder']
+    band = butter(2, (2.0, 20.0), 'bandpass', fs=100.0, output='sos')
+    if samples < 51:
+        assert found is None
+        return
+    filtered = sosfiltfilt(band, speed[60 : 60 + samples] / RAD_S_PER_RPM)
+    assert found == pytest.approx(np.sqrt(np.mean(filtered**2)), rel=1e-9)
 
 
-def test_judder_takes_the_longest_stretch_of_slipping():
-    quiet, loud = phases((0, 1), (120, 2), (150, 1), (200, 2)), np.where(T > 1.4, 1.0, 0.0)
-    run = sticking({}, quiet, joint_speed=shaft(loud * np.sin(50.0 * T)))
-    assert values(run)['judder'] < 1e-9
+def test_judder_goes_on_over_short_locks_from_control_start_to_the_last_slip():
+    """Locks and releases every 0.1 s are judder itself; what came before control start is not."""
+    every = [(step, 1 + step // 10 % 2) for step in range(60, 200, 10)]
+    speed = shaft(np.where(T < 0.6, 99.0, 1.0) * np.sin(50.0 * T))
+    some = values(sticking({}, phases((0, 1), *every), joint_speed=speed))['judder']
+    slips_on = values(sticking({}, phases((0, 1), (190, 2)), joint_speed=speed))['judder']
+    assert some == slips_on
+    assert some == pytest.approx(1.0 / np.sqrt(2.0) / RAD_S_PER_RPM, rel=0.1)
+
+
+def test_slip_acceleration_at_lock_is_that_of_the_first_lock_after_control_start():
+    events = {
+        20: [(0.195, 'lock', -1.0)],
+        30: [(0.3, 'release', 2.0)],
+        151: [(1.503, 'reverse', -3.0), (1.505, 'lock', 62.5), (1.507, 'release', 0.0)],
+        160: [(1.595, 'lock', -5.0)],
+    }
+    phase = phases((0, 1), (20, 2), (30, 1), (160, 2))
+    slip = np.where(T < 0.195, 9.0, np.where(phase == 2, 0.0, 200.0 * np.abs(1.51 - T)))
+    found = values(sticking(events, phase, slip))
+    assert found['slip_acceleration_at_lock'] == 62.5
+    assert found['time_to_lock'] == pytest.approx(0.905)
+    assert found['engagement_time'] == pytest.approx(0.903)
+
+
+def test_plates_locked_at_control_start_have_no_first_lock():
+    events = {100: [(0.993, 'release', 1.0)], 120: [(1.2, 'lock', -62.5)]}
+    phase = phases((0, 2), (100, 1), (120, 2))
+    found = values(sticking(events, phase, np.where(phase == 2, 0.0, 5.0)))
+    for name in ('slip_acceleration_at_lock', 'time_to_lock', 'engagement_time'):
+        assert found[name] is None, name
 
 
 def test_shuffle_after_lock_has_an_amplitude_and_a_time_in_which_it_decays():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
-from ddct_bringup.verdict.judged_run import LOCKED, SLIPPING
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
 from ddct_bringup.verdict.state import slip_state, turns_of
 
 T = times()

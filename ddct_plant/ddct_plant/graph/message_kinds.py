@@ -18,7 +18,7 @@ from typing import Any, ClassVar
 from ddct_plant.base.errors import DdctError, ParameterError, require_finite, require_number
 from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.hybrid.friction_system import require_capacities
-from ddct_plant.models.driveline import PHASE_CHANGES, PHASES, PhaseEvent
+from ddct_plant.models.driveline import PHASE_EVENTS, PHASES, PhaseEvent
 
 NS_PER_S = 1_000_000_000
 Write = Callable[..., Any]
@@ -329,16 +329,25 @@ class Status(MessageKind):
 
 @dataclass(frozen=True)
 class PhaseReport(MessageKind):
-    """A DiagnosticArray about the plates: phase, friction work, then each lock and release."""
+    """
+    A DiagnosticArray about the plates: phase, friction work, then what happened at slip zero.
+
+    That is a pair for each event, its kind and time, and one with the slip acceleration behind it.
+    """
 
     _WORK: ClassVar[str] = 'friction_work_j'
+    _ACCELERATION: ClassVar[str] = 'slip_acceleration_rad_s2'
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         fill_pairs = Status(self.type, 'clutch')._filler(message, class_of)
 
         def fill(phase: float, work: float, events: Sequence[PhaseEvent]) -> None:
-            changes = [(kind, repr(time_s)) for time_s, kind in events]
-            fill_pairs([('phase', PHASES[int(phase)]), (self._WORK, repr(float(work))), *changes])
+            pairs = [('phase', PHASES[int(phase)]), (self._WORK, repr(float(work)))]
+            for event in events:
+                pairs.append((event.kind, repr(event.time_s)))
+                if event.slip_acceleration is not None:
+                    pairs.append((self._ACCELERATION, repr(event.slip_acceleration)))
+            fill_pairs(pairs)
 
         return fill
 
@@ -346,13 +355,26 @@ class PhaseReport(MessageKind):
         """Return number of the phase, work in J and events; raise LookupError if one is bad."""
         pairs = [(pair.key, pair.value) for pair in message.status[0].values]
         try:
-            (_, phase), (key, work), *changes = pairs
-            events = tuple((float(time_s), kind) for kind, time_s in changes)
-            if key == self._WORK and all(kind in PHASE_CHANGES for _, kind in events):
+            (_, phase), (key, work), *rest = pairs
+            events = self._events(rest)
+            if key == self._WORK:
                 return float(PHASES.index(phase)), float(work), events
         except ValueError:
             pass
         raise LookupError(f'its status holds {pairs}')
+
+    def _events(self, pairs: Sequence[tuple[str, str]]) -> tuple[PhaseEvent, ...]:
+        """Return the events, in bags of before without accelerations; raise ValueError."""
+        events: list[PhaseEvent] = []
+        for key, value in pairs:
+            number = float(value)
+            if key in PHASE_EVENTS:
+                events.append(PhaseEvent(number, key))
+            elif key == self._ACCELERATION and events and events[-1].slip_acceleration is None:
+                events[-1] = events[-1]._replace(slip_acceleration=number)
+            else:
+                raise ValueError
+        return tuple(events)
 
     def read(self, topic: str, message: Any) -> float:
         """Return the friction work in J; raise DdctError unless finite and not negative."""
@@ -360,7 +382,7 @@ class PhaseReport(MessageKind):
             _, work, _ = self.values(message)
         except LookupError as error:
             raise DdctError(
-                f'{topic}: {error}: it needs phase, {self._WORK}, then the locks and releases'
+                f'{topic}: {error}: it needs phase, {self._WORK}, then the events'
             ) from error
         return require_number(topic, work, at_least=0.0)
 

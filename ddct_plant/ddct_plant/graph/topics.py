@@ -192,7 +192,7 @@ CLUTCH_PHASE = Topic(
     (
         Signal('clutch_phase', '1', '0 open, 1 slipping, 2 locked'),
         Signal('friction_work', 'J', 'exact, of the period that has ended'),
-        Signal('phase_events', '', 'scenario time in s and `lock` or `release`, in that period'),
+        Signal('phase_events', '', 'what happened at slip zero in it: `PhaseEvent`'),
     ),
     when=_stick_slip,
 )

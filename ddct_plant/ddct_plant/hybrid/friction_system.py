@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import accumulate, combinations, pairwise
 
 import numpy as np
@@ -54,6 +55,11 @@ class FrictionSystem:
                         f'friction system: h g of the elements {stuck} is singular: they cannot '
                         'stick together, as their slips or torques depend on each other'
                     )
+
+    @cached_property
+    def size_of_h(self) -> np.ndarray:
+        """(N, n): the magnitudes of `h`, by which the rounding of slips is judged."""
+        return np.abs(self.h)
 
     @property
     def elements(self) -> int:

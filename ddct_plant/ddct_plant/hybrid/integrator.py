@@ -142,15 +142,16 @@ class _Motion:
             done += part
             if guard is None:
                 return
+            before = course
             course, orders = choose_mode(
                 self._integrator.system,
                 self._integrator.flows,
                 self._state,
                 self._signs,
-                course.flow.guarded[guard],
+                before.flow.guarded[guard],
                 partial(self._forcing.at, piece=piece, part=done),
             )
-            self._note_change((piece + done) * piece_s, course.flow.signs)
+            self._note_change((piece + done) * piece_s, before, part, course)
         raise DdctError(
             f'friction: more than {MOST_EVENTS} events in {piece_s:g} s: '
             'look for values that are far too large'
@@ -165,10 +166,12 @@ class _Motion:
             work = (before + after) * capacities[element] + after * part * changes[element]
             self._work[element] += part * self._integrator.piece_s * work
 
-    def _note_change(self, time_s: float, signs: Signs) -> None:
-        """Take the new mode, and note what changes."""
+    def _note_change(self, time_s: float, before: Course, part: float, after: Course) -> None:
+        """Take the mode after an event at `part` of the course before it; note what changes."""
+        signs = after.flow.signs
         for i, (old, new) in enumerate(zip(self._signs, signs, strict=True)):
             if old != new:
                 kind = 'lock' if new == 0 else 'release' if old == 0 else 'reverse'
-                self._events.append(Event(time_s, i, kind))
+                slope = before.slip_slope(i, part) if old else after.slip_slope(i, 0.0)
+                self._events.append(Event(time_s, i, kind, slope / self._integrator.piece_s))
         self._signs = signs

@@ -26,6 +26,8 @@ class Event(NamedTuple):
     element: int
     kind: str
     """`lock`, `release` or `reverse`."""
+    slip_acceleration: float
+    """Slope of its slip per s just before the event; of a release just after it."""
 
 
 @dataclass(slots=True)

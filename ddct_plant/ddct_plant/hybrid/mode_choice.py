@@ -42,7 +42,7 @@ def choose_mode(
     derivative that is not zero; below it the coefficients are rounding, and become zero.
     """
     slips = np.abs(system.h.dot(state)).tolist()
-    sizes = np.abs(system.h).dot(np.abs(state)).tolist()
+    sizes = system.size_of_h.dot(np.abs(state)).tolist()
     for slack in SLACKS:
         stuck = tuple(
             0 if i == element or slip <= slack * size else sign

@@ -120,6 +120,15 @@ class Course(NamedTuple):
         """Return the state (n,) at t = `part`."""
         return (part**self.flow.powers).dot(self.states)
 
+    def slip_slope(self, element: int, part: float) -> float:
+        """Return the slope over a piece of the slip of an element that slips, at t = `part`."""
+        flow = self.flow
+        coefficients = self.guards[flow.guarded.index(element)].tolist()
+        slope = 0.0
+        for order in range(flow.degree, 0, -1):
+            slope = slope * part + order * coefficients[order]
+        return flow.signs[element] * slope + 0.0  # no zero with a sign
+
     def capacities(self) -> tuple[list[float], list[float]]:
         """Return those in force at t = 0, and their change over a piece, (N,) each."""
         elements = len(self.flow.signs)

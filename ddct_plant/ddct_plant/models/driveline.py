@@ -50,9 +50,23 @@ class InitialState:
 
 PHASES = OPEN, SLIPPING, LOCKED = ('open', 'slipping', 'locked')
 """What the plates of a clutch that sticks can do; in signals by number."""
-PHASE_CHANGES = ('lock', 'release')
-PhaseEvent = tuple[float, str]
-"""Scenario time in s, and one of PHASE_CHANGES."""
+PHASE_EVENTS = LOCK, RELEASE, REVERSE = ('lock', 'release', 'reverse')
+"""What happens at slip zero: the plates stick, part, or pass through it without sticking."""
+
+
+class PhaseEvent(NamedTuple):
+    """The plates of a clutch that sticks lock, part, or slip the other way from now on."""
+
+    time_s: float
+    """Scenario time."""
+    kind: str
+    """One of PHASE_EVENTS."""
+    slip_acceleration: float | None = None
+    """
+    dw_d/dt in rad/s^2 just before it, of a release just after it.
+
+    None where it is not known: bags recorded before it was part of the event do not have it.
+    """
 
 
 class DrivelineOutputs(NamedTuple):
@@ -75,7 +89,7 @@ class DrivelineOutputs(NamedTuple):
     friction_work: float | None = None
     """Exact friction work in J of the period that has ended."""
     phase_events: tuple[PhaseEvent, ...] | None = None
-    """Locks and releases in it, in the order of time."""
+    """What happened at slip zero in it, in the order of time."""
 
 
 def driveline_outputs(

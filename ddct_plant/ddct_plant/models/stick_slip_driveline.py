@@ -12,7 +12,6 @@ from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.models.driveline import (
     LOCKED,
     OPEN,
-    PHASE_CHANGES,
     PHASES,
     SLIPPING,
     DrivelineOutputs,
@@ -85,9 +84,9 @@ class StickSlipDriveline:
     def _phase_events(self) -> tuple[PhaseEvent, ...]:
         start_s = time_of_step(self._steps - 1)
         return tuple(
-            (start_s + event.time_s, event.kind)
+            PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
             for event in self.now.events
-            if event.element == CLUTCH and event.kind in PHASE_CHANGES
+            if event.element == CLUTCH
         )
 
     def step(

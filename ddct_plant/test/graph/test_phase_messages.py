@@ -13,24 +13,42 @@ from ddct_plant.graph.topics import (  # noqa: E402
     HOLDING_TORQUE,
     RunKind,
 )
+from ddct_plant.models.driveline import PhaseEvent  # noqa: E402
 
 STAMP, LATER = stamp_of_step(123), stamp_of_step(124)
+LOCKS = (PhaseEvent(0.5, 'lock', -62.5),)
 LOW, HIGH = [10.0 + i / 3.0 for i in range(11)], [12.0 + i / 3.0 for i in range(11)]
 
 
 def test_phase_work_and_events_come_back_to_the_last_bit():
     write = CLUTCH_PHASE.writer()
-    events = ((1.2345678901234567, 'release'), (0.1 + 1.13, 'lock'))
+    events = (
+        PhaseEvent(1.2345678901234567, 'release', 0.0),
+        PhaseEvent(0.1 + 1.13, 'lock', -200.0 / 3.0),
+        PhaseEvent(1.2345, 'reverse'),
+    )
     for values in ((1.0, 1.0 / 3.0, events), (2.0, 0.0, ()), (0.0, 1e-17, events[:1])):
         message = write(STAMP, *values)
         assert CLUTCH_PHASE.values(message) == values
+        assert all(isinstance(each, PhaseEvent) for each in CLUTCH_PHASE.values(message)[2])
         assert CLUTCH_PHASE.read(message) == values[1]
 
 
-def test_the_phase_stands_in_words():
-    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, ((0.5, 'lock'),))
+def test_the_phase_stands_in_words_and_each_event_before_its_slip_acceleration():
+    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS)
     pairs = [(pair.key, pair.value) for pair in message.status[0].values]
-    assert pairs == [('phase', 'slipping'), ('friction_work_j', '0.25'), ('lock', '0.5')]
+    assert pairs == [
+        ('phase', 'slipping'),
+        ('friction_work_j', '0.25'),
+        ('lock', '0.5'),
+        ('slip_acceleration_rad_s2', '-62.5'),
+    ]
+
+
+def test_events_of_bags_recorded_before_have_no_slip_acceleration():
+    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS)
+    message.status[0].values = message.status[0].values[:3]
+    assert CLUTCH_PHASE.values(message)[2] == (PhaseEvent(0.5, 'lock', None),)
 
 
 @pytest.mark.parametrize(
@@ -42,11 +60,14 @@ def test_the_phase_stands_in_words():
         (1, 'friction_work_j', 'nan', 'finite'),
         (1, 'work', '1.0', 'its status holds'),
         (2, 'lock', 'soon', 'its status holds'),
-        (2, 'reverse', '0.5', 'its status holds'),
+        (2, 'bounce', '0.5', 'its status holds'),
+        (2, 'slip_acceleration_rad_s2', '1.0', 'its status holds'),
+        (3, 'slip_acceleration_rad_s2', 'fast', 'its status holds'),
+        (3, 'slip_acceleration', '1.0', 'its status holds'),
     ],
 )
 def test_a_report_that_is_none_is_refused(place, key, value, complaint):
-    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, ((0.5, 'lock'),))
+    message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS)
     pair = message.status[0].values[place]
     pair.key, pair.value = key, value
     with pytest.raises(DdctError, match=complaint):

@@ -312,6 +312,9 @@ def test_two_events_in_one_piece():
     # w(t) = -0.0005 + 2 t + 6000 t^2, then at rest until u = 3 at a quarter of the piece.
     lock_s = (-2.0 + np.sqrt(4.0 + 4.0 * 6000.0 * 0.0005)) / 12000.0
     assert [e.time_s for e in done.events] == pytest.approx([lock_s, 0.00025], abs=1e-15)
+    # Before the lock the kinetic capacity adds to u; after the release it is 1 below the static.
+    slopes = [2.0 + 12000.0 * lock_s, 3.0 - 2.0]
+    assert [e.slip_acceleration for e in done.events] == pytest.approx(slopes, rel=1e-12)
     moved_s = 0.00075
     expected = (3.0 - 2.0) * moved_s + 12000.0 * moved_s**2 / 2.0
     assert done.state == pytest.approx([expected], rel=1e-12)
@@ -326,7 +329,31 @@ def test_an_open_element_reverses_without_locking():
     (event,) = done.events
     assert event.kind == 'reverse'
     assert event.time_s == pytest.approx(0.005)
+    assert event.slip_acceleration == pytest.approx(-1.0)
     assert done.work == [0.0]
+
+
+@pytest.mark.parametrize('sign', [1, -1])
+@pytest.mark.parametrize(('static', 'kind'), [(3.0, 'lock'), (2.0, 'reverse')])
+def test_static_capacity_above_the_push_locks_from_either_side(sign, static, kind):
+    """A push of 2.5 through zero is held by a static capacity of 3, and not by one of 2."""
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[0, 1])
+    done = integrator.advance([sign * 0.009], (sign,), [-sign * 2.5], [2.0], [static])
+    (event,) = done.events
+    assert event.kind == kind
+    assert event.time_s == pytest.approx(0.002, rel=1e-12)
+    assert event.slip_acceleration == pytest.approx(-sign * 4.5, rel=1e-12)
+    beyond = 0.5 * 0.008 if kind == 'reverse' else 0.0
+    assert done.state == pytest.approx([-sign * beyond], rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_a_release_with_equal_capacities_starts_without_acceleration(sign):
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[1])
+    push = (sign * np.linspace(0.0, 4.0, PIECES + 1)).tolist()
+    (event,) = integrator.advance([0.0], (0,), push, [2.0], [2.0]).events
+    assert (event.kind, event.slip_acceleration) == ('release', 0.0)
+    assert np.copysign(1.0, event.slip_acceleration) == 1.0
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,15 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline import PHASES, Driveline, InitialState
+from ddct_plant.models.driveline_model import states_and_torques
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.stick_slip_driveline import CLUTCH, WHEEL, StickSlipDriveline
 
@@ -89,6 +92,37 @@ def test_the_clutch_locks_once_and_carries_what_keeps_the_plates_together():
     assert now.joint_effort[1] == pytest.approx(
         60.0 - PARAMETERS.engine_inertia * accel, rel=1e-10
     )
+
+
+@pytest.mark.parametrize('engine', [168.0, 152.0])
+@pytest.mark.parametrize(('static', 'kind'), [(180.0, 'lock'), (150.0, 'reverse')])
+def test_the_event_at_slip_zero_has_the_slip_acceleration_just_before_it(engine, static, kind):
+    """What the shaft takes at zero, some 168 N m, is above the kinetic capacity of 150 N m."""
+    start = initial(engine, 160.0, twist=0.24 if engine < 160.0 else -0.24)
+    torque = 60.0 if engine < 160.0 else -60.0
+    driveline, (a, b) = make(start), states_and_torques(PARAMETERS)
+    driveline.step(torque, 0.0, [150.0] * 11, [static] * 11, 0.0)
+    clutch = math.copysign(150.0, engine - 160.0)
+
+    def slope(_, state):
+        return a @ state + b @ [torque, clutch, 0.0]
+
+    def slip(_, state):
+        return state[0] - state[1]
+
+    at_zero: Any = slip
+    at_zero.terminal = True
+    at = [start.engine_speed, start.shaft_speed, start.wheel_speed, start.twist]
+    found = solve_ivp(slope, (0.0, 0.01), at, events=at_zero, rtol=1e-12, atol=1e-12)
+    events = driveline.outputs().phase_events
+    assert events is not None
+    event = events[0]
+    assert event.slip_acceleration is not None
+    assert event.kind == kind
+    assert event.time_s == pytest.approx(found.t_events[0][0], rel=1e-8)
+    engine_slope, shaft_slope = slope(0.0, found.y_events[0][0])[:2]
+    assert event.slip_acceleration == pytest.approx(engine_slope - shaft_slope, rel=1e-8)
+    assert event.slip_acceleration * clutch < 0.0
 
 
 def test_it_slips_again_where_the_static_capacity_is_exceeded():

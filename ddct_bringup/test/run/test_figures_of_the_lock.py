@@ -1,0 +1,41 @@
+"""What happens at the lock is measured there, in runs of the packaged scenarios."""
+
+from functools import lru_cache
+
+import pytest
+
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+LIMITS = packaged_limits()
+
+
+@lru_cache
+def scored(scenario, controller, wear_gain=1.0):
+    settings = RunSettings(load_scenario(scenario), clutch='stick_slip', wear_gain=wear_gain)
+    entry = scored_headless(settings, controller, LIMITS)
+    return entry['metrics'], {each['name']: each['value'] for each in entry['verdict']['criteria']}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('controller', 'expected'), [('mpc1', -62.6), ('pedal_mpc', -41.0)])
+def test_slip_acceleration_at_lock_is_the_exact_one(controller, expected):
+    """The two samples before it differ by -3 rad/s^2: the torque rises within the last 10 ms."""
+    metrics, criteria = scored('launch', controller)
+    assert metrics['lockup_slip_acceleration_rad_s2'] == pytest.approx(expected, abs=0.05)
+    assert criteria['slip_acceleration_at_lock'] == metrics['lockup_slip_acceleration_rad_s2']
+
+
+@pytest.mark.parametrize('controller', ['ls3', 'hinf1'])
+def test_engagement_time_is_the_instant_of_the_lock(controller):
+    metrics, criteria = scored('launch_gentle', controller)
+    assert metrics['engagement_time_s'] == criteria['time_to_lock']
+    assert abs(metrics['engagement_time_s'] - round(metrics['engagement_time_s'], 2)) > 1e-5
+
+
+def test_a_run_with_many_releases_has_judder():
+    _, criteria = scored('launch_gentle', 'ls3')
+    assert criteria['releases_after_lock'] == 14
+    assert criteria['judder'] > 10.0
