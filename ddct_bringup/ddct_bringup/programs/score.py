@@ -42,7 +42,7 @@ The exit code is 0 only if every bag was scored and valid: whole, of the length 
 run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
 steps without a reply, and no node in its safe state. A run that a stalled or over-revved
 engine ended is valid: that is its state.
-peak_jerk_m_s3: 20 Hz low-pass without delay. vdv_m_s1_75 is weighted by
+peak_jerk_m_s3: control start to the end, 20 Hz low-pass without delay. vdv_m_s1_75 is weighted by
 {VDV_WEIGHTING}.
 """
 

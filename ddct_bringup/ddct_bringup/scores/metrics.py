@@ -36,7 +36,8 @@ class Metrics(NamedTuple):
     slip_final_rpm: float | None
     """Last sample of w_d, with its sign."""
     peak_jerk_m_s3: float | None
-    """Largest magnitude of the jerk in the score window; A_x low-passed at 20 Hz without delay."""
+    """Largest magnitude of the jerk from control start to the end of the run; A_x low-passed at
+    20 Hz without delay. None too when the run ends before the score window does."""
     vdv_m_s1_75: float | None
     """Vibration dose value over the score window, weighting `metric_figures.VDV_WEIGHTING`."""
     weighted_acceleration_m_s2: float | None
@@ -67,7 +68,6 @@ _OF_WINDOW = (
     'torsion_speed_std_rpm',
     'acceleration_std_m_s2',
     'slip_rmse_rpm',
-    'peak_jerk_m_s3',
     'vdv_m_s1_75',
     'weighted_acceleration_m_s2',
 )
@@ -116,6 +116,7 @@ def metric_values(
             'torque_total_variation_n_m': np.sum(
                 np.abs(np.diff(trajectory.torque_request)), axis=-1
             ),
+            'peak_jerk_m_s3': _peak_jerk(trajectory, start, window[1]),
             **_window_metrics(trajectory, *window),
         }
 
@@ -168,6 +169,19 @@ def _friction_energy(trajectory: Trajectory) -> np.ndarray:
     return scipy.integrate.trapezoid(power, dx=PERIOD_S)
 
 
+def _peak_jerk(trajectory: Trajectory, start: int, last_scored: int) -> np.ndarray:
+    """
+    Return the largest magnitude of the jerk from step `start` on, NaN for a run that ends early.
+
+    The filter begins with the run, not at `start`. A run that ends before `last_scored` may have
+    ended before its lock.
+    """
+    found = np.abs(jerk(trajectory.vehicle_accel)[..., start:])
+    if trajectory.steps < last_scored:
+        return np.full(found.shape[:-1], math.nan)
+    return np.max(found, axis=-1, initial=-math.inf)
+
+
 def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, np.ndarray]:
     """Return the metrics over the samples `first` to `last`, both included."""
     if trajectory.steps < last:
@@ -182,7 +196,6 @@ def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, 
         rpm_from_rad_s(np.std(trajectory.joint_speed[..., window, 3], axis=-1)),
         np.std(acceleration[..., window], axis=-1),
         rpm_from_rad_s(np.sqrt(np.mean(error**2, axis=-1))),
-        np.max(np.abs(jerk(acceleration)[..., first:]), axis=-1, initial=-math.inf),
         vibration_dose(weighted),
         np.sqrt(np.mean(weighted**2, axis=-1)),
     )

@@ -56,7 +56,8 @@ FURTHER = (
         'peak jerk',
         'm/s^3',
         '.2f',
-        'largest jerk in the score window, A_x through a 20 Hz low-pass without delay',
+        'largest jerk from control start to the end of the run, A_x through a 20 Hz low-pass '
+        'without delay',
         NO_WINDOW,
     ),
     Figure(

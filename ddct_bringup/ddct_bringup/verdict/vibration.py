@@ -30,7 +30,9 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     Return the (..., n-1) jerk in m/s^3 midway between the (..., n) samples in m/s^2.
 
     The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
-    that it is not delayed, and is differenced. Shorter than 10 samples gives an empty array.
+    that it is not delayed, and is differenced. Beyond both ends it goes on for 90 ms, turned about
+    its value there: a slope stays as it is, a level gives no jerk. Shorter than 10 samples gives
+    an empty array.
     """
     padding = 3 * (_JERK_FILTER_ORDER + 1)
     if acceleration.shape[-1] <= padding:

@@ -35,6 +35,13 @@ def test_engagement_time_is_the_instant_of_the_lock(controller):
     assert abs(metrics['engagement_time_s'] - round(metrics['engagement_time_s'], 2)) > 1e-5
 
 
+def test_a_lock_after_the_score_window_counts_in_the_peak_jerk():
+    """The plates of `ls1` lock at 2.3 s, when the window of `thesis` is over."""
+    metrics, criteria = scored('thesis', 'ls1', 0.7)
+    assert criteria['time_to_lock'] > 1.1
+    assert metrics['peak_jerk_m_s3'] == pytest.approx(13.0, abs=0.1)
+
+
 def test_a_run_with_many_releases_has_judder():
     _, criteria = scored('launch_gentle', 'ls3')
     assert criteria['releases_after_lock'] == 14

@@ -154,7 +154,6 @@ def test_window_metrics_do_not_depend_on_what_comes_after_the_window():
     whole, cut = (score(trajectory(steps, **signals))._asdict() for steps in (300, 200))
     for name in ('torsion_speed_std_rpm', 'acceleration_std_m_s2', 'slip_rmse_rpm'):
         assert whole[name] == cut[name]
-    assert whole['peak_jerk_m_s3'] == cut['peak_jerk_m_s3'] > 0.0
     assert whole['vdv_m_s1_75'] == cut['vdv_m_s1_75'] > 0.0
 
 
@@ -169,10 +168,27 @@ def test_window_metrics_are_undefined_when_the_run_is_one_step_too_short():
     assert metrics.steps == 199
 
 
-def test_peak_jerk_is_the_largest_in_the_window_only():
-    before = np.where(TIME < 0.3, 100.0, 0.0)
-    metrics = score(trajectory(vehicle_accel=before + np.sin(2.0 * np.pi * TIME)))
-    assert metrics.peak_jerk_m_s3 == pytest.approx(2.0 * np.pi, rel=0.01)
+@pytest.mark.parametrize('at_s', [0.65, 1.9, 2.1, 2.95])
+def test_peak_jerk_counts_from_control_start_to_the_end_of_the_run(at_s):
+    """A jolt after the score window, as that of a late lock, is as large as one within it."""
+    jolt = 0.05 * np.exp(-(((TIME - at_s) / 0.03) ** 2))
+    steady = 0.5 * TIME + np.where(TIME < 0.3, 100.0, 0.0)
+    found = score(trajectory(vehicle_accel=steady + jolt)).peak_jerk_m_s3
+    steepest = 0.05 / 0.03 * math.sqrt(2.0) * math.exp(-0.5)
+    assert found == pytest.approx(0.5 + steepest, rel=0.1)
+
+
+@pytest.mark.parametrize('control_start_s', [0.0, 0.6])
+def test_peak_jerk_of_an_even_ramp_is_its_slope_at_both_ends_too(control_start_s):
+    ramp = 7.0 - 2.5 * TIME
+    found = score(trajectory(vehicle_accel=ramp), control_start_s=control_start_s).peak_jerk_m_s3
+    assert found == pytest.approx(2.5, rel=1e-3)
+
+
+def test_peak_jerk_of_a_run_that_ends_with_its_window_is_there_and_before_it_is_not():
+    accel = np.sin(2.0 * np.pi * TIME)
+    assert score(trajectory(200, vehicle_accel=accel)).peak_jerk_m_s3 > 6.0
+    assert score(trajectory(199, vehicle_accel=accel)).peak_jerk_m_s3 is None
 
 
 def test_friction_energy_is_the_integral_of_the_magnitude_of_power():
