@@ -1,5 +1,6 @@
 """Every number that the thesis prints, held against what all packages together compute."""
 
+import csv
 import json
 import re
 from collections import defaultdict
@@ -194,6 +195,21 @@ def test_program_writes_every_number_as_json_alone(
     ]
     assert all(list(number) == keys for number in content['numbers'])
     assert {number['verdict'] for number in content['numbers']} <= {*VERDICTS}
+
+
+def test_program_writes_the_same_numbers_as_csv(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: tuple[GateRow, ...]
+) -> None:
+    assert reproduce.main(['numbers', '--csv', '-', '--json', str(tmp_path / 'n.json')]) == 0
+    found = list(csv.DictReader(capsys.readouterr().out.splitlines(keepends=True)))
+    written = json.loads((tmp_path / 'n.json').read_text())['numbers']
+    assert len(found) == len(rows) == len(written)
+    for cells, number in zip(found, written, strict=True):
+        assert cells == {k: '' if v is None else str(v) for k, v in number.items()}
+    assert reproduce.main(['numbers', '--csv', '-', '--json', '-']) == 1
+    assert 'both want standard output' in capsys.readouterr().err
+    assert reproduce.main(['numbers', '--csv', str(tmp_path / 'no' / 'n.csv')]) == 1
+    assert 'there is no folder' in capsys.readouterr().err
 
 
 def test_program_prints_the_tables(capsys: pytest.CaptureFixture[str]) -> None:

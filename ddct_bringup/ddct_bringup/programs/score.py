@@ -21,7 +21,7 @@ from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, write_json, write_text
+from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_json, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
@@ -54,8 +54,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _score(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
-    if options.json == STDOUT and options.csv == STDOUT:
-        raise DdctError('--json - and --csv - both want standard output: give one a file')
+    require_one_for_stdout(options.json, options.csv)
     limits = load_limits(options.limits)
     bags = bags_in(options.bags)
     with held(*_run_folders(options, [bag for bag, _ in bags])):

@@ -19,14 +19,26 @@ from ddct_bringup.run.options import (
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.scores.tables import table_console
 from ddct_bringup.sweep.axis import axis_of
-from ddct_bringup.sweep.sweep import Sweep, sweep_document, sweep_notes, sweep_table
+from ddct_bringup.sweep.sweep import (
+    Sweep,
+    sweep_csv,
+    sweep_document,
+    sweep_notes,
+    sweep_table,
+)
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import located
-from ddct_plant.files.output_file import STDOUT, require_place, write_json
+from ddct_plant.files.output_file import (
+    STDOUT,
+    require_one_for_stdout,
+    require_place,
+    write_json,
+    write_text,
+)
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
 from ddct_plant.program.table import Figure, drawn_by_rich
@@ -39,6 +51,7 @@ examples:
   ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi,ls8,mpc3 --figure wear.png
   ddct sweep --over vehicle.mass_kg=1200:2400:7 --controllers ls8,mine --clutch stick_slip
   ddct sweep --over controllers.pi.proportional_gain=0.05,0.1,0.2 --controllers pi --json -
+  ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi --csv wear.csv
   ddct sweep --over wear_gain=0.6:1.4:9 --over load.slope_rad=0:0.1:5 --controllers pi,ls8
 
 Runs are headless, on all cores, and judged as by `ddct score`. Values that belong together
@@ -59,14 +72,18 @@ def _sweep(argv: list[str]) -> int:
     if not options.over:
         raise ParameterError('--over is missing: give KEY=START:STOP:COUNT')
     metrics = _metrics(options.metrics)
+    require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
+    require_place('--csv', options.csv)
     if options.figure:
         _require_picture(options.figure, len(options.over))
     sweep = _planned(options)
     runs = _carried_out(sweep)
     if options.json:
         write_json(options.json, sweep_document(sweep, runs))
-    console = table_console(sys.stderr if options.json == STDOUT else sys.stdout)
+    if options.csv:
+        write_text(options.csv, sweep_csv(runs))
+    console = table_console(sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout)
     console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
     for text in sweep_notes(runs, metrics):
         console.print(Text(printable(text)), soft_wrap=True)
@@ -144,6 +161,7 @@ def _parser() -> argparse.ArgumentParser:
         help='metrics for table and figure, named as in scores.json; default: %(default)s',
     )
     parser.add_argument('--json', metavar='FILE', help="also write the rows; '-' is stdout")
+    parser.add_argument('--csv', metavar='FILE', help="also write them as CSV; '-' is stdout")
     parser.add_argument('--figure', metavar='FILE', help='also draw them: a .png or .svg file')
     add_limits_option(parser)
     add_settings_options(parser)

@@ -1,6 +1,6 @@
 """Scores and signals as CSV."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,11 @@ _OF_JOINTS = ((JOINT_STATES, JOINTS), (SENSED_JOINT_STATES, SENSED_JOINTS))
 
 def scores_csv(runs: Sequence[Entry]) -> str:
     """Return one row per run, its metrics and its verdict beside its facts."""
-    rows = [score_row(run) for run in runs]
+    return rows_csv([score_row(run) for run in runs])
+
+
+def rows_csv(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return rows of the same columns, at least one, under the names of the columns."""
     return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 

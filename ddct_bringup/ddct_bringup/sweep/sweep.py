@@ -7,7 +7,13 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from ddct_bringup.campaign.rows import RunBase, require_suitable, scored_headless
+from ddct_bringup.campaign.rows import (
+    RunBase,
+    require_suitable,
+    result_row,
+    scored_headless,
+)
+from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.scores.tables import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
@@ -97,6 +103,11 @@ def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
         'limits': sweep.limits.origin,
         'rows': list(runs),
     }
+
+
+def sweep_csv(runs: Sequence[Entry]) -> str:
+    """Return what `--csv` writes: a row per run, with the columns that a campaign's has."""
+    return rows_csv([result_row(run, run[OVER]) for run in runs])
 
 
 def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Table:

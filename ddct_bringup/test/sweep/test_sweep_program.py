@@ -1,5 +1,6 @@
 """`sweep` prints, writes and draws what the same runs alone would say."""
 
+import csv
 import json
 
 import pytest
@@ -69,6 +70,21 @@ def test_the_table_has_a_row_per_run_and_fits_a_terminal(capsys):
     assert max(map(len, table)) <= 80
 
 
+def test_the_csv_has_the_row_of_each_run_with_what_was_varied(swept, capsys):
+    over = ['--over', 'vehicle.mass_kg=1200,1800', '--controllers', 'pi,ls8']
+    assert main([*over, *SHORT, '--wear-gain', '0.9', '--csv', '-']) == 0
+    printed = capsys.readouterr()
+    rows = list(csv.DictReader(printed.out.splitlines()))
+    wanted = swept[1]['rows']
+    assert len(rows) == len(wanted) == 4
+    for row, run in zip(rows, wanted, strict=True):
+        assert row['controller'] == run['controller']
+        assert float(row['vehicle.mass_kg']) == run['over']['vehicle.mass_kg']
+        assert row['verdict_state'] == run['verdict']['state']
+        assert float(row['slip_final_rpm']) == run['metrics']['slip_final_rpm']
+    assert 'std w_sr' in printed.err, 'the table goes to standard error then'
+
+
 def test_a_run_that_fails_is_a_row_with_its_reason_and_the_exit_code_is_1(tmp_path, capsys):
     file = tmp_path / 'unstable.yaml'
     file.write_text(UNSTABLE)
@@ -108,6 +124,8 @@ BAD = {
     'no metric': (['--over', 'gear=1', '--metrics', ','], '--metrics is empty'),
     'no picture': (['--over', 'gear=1', '--figure', 'wear.pdf'], '.png or .svg'),
     'no folder': (['--over', 'gear=1', '--figure', 'no/such/wear.png'], 'no folder'),
+    'no folder for the CSV': (['--over', 'gear=1', '--csv', 'no/such/x'], 'no folder'),
+    'two on stdout': (['--over', 'gear=1', '--csv', '-', '--json', '-'], 'both want standard'),
     'no folder for rows': (['--over', 'gear=1', '--json', 'no/such/x'], 'no folder'),
     'three keys in a figure': (
         ['--over', 'gear=1', '--over', 'wear_gain=1', '--over', 'seed=1', '--figure', 'x.png'],

@@ -28,6 +28,12 @@ def require_place(option: str, target: str | None) -> None:
         raise DdctError(f'{option} {target}: cannot be written: choose another place')
 
 
+def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> None:
+    """Raise DdctError when --json and --csv both want standard output."""
+    if json_target == STDOUT and csv_target == STDOUT:
+        raise DdctError('--json - and --csv - both want standard output: give one a file')
+
+
 def write_json(target: str, content: Any, advice: str = _ADVICE) -> None:
     """Write `content` as JSON like `write_text`; NaN and infinity raise ValueError."""
     write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n', advice)

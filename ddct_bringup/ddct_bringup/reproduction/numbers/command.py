@@ -17,6 +17,14 @@ from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.csv_table import csv_text
+from ddct_plant.files.output_file import (
+    STDOUT,
+    require_one_for_stdout,
+    require_place,
+    write_json,
+    write_text,
+)
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.table import print_tables
 
@@ -40,6 +48,7 @@ examples:
   ddct reproduce numbers
   ddct reproduce numbers --json numbers.json
   ddct reproduce numbers --json -                  as JSON on standard output, alone
+  ddct reproduce numbers --csv numbers.csv         a row per number, for a spreadsheet
 
 The exit code is 0 when every claim holds. A reproduced number is within its tolerance.
 A calibrated number is too, or is listed as a miss. An erratum differs from the print
@@ -56,14 +65,23 @@ def add_parser(subparsers: Any) -> None:
         epilog=_EPILOG,
     )
     parser.add_argument('--json', metavar='FILE', help='write all numbers; - is standard output')
+    parser.add_argument('--csv', metavar='FILE', help='the same as CSV; - is standard output')
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
+    require_one_for_stdout(options.json, options.csv)
+    require_place('--json', options.json)
+    require_place('--csv', options.csv)
     rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct reproduce numbers')))
-    content = {'numbers': [row.as_dict() for row in rows]}
-    show_and_write(options.json, content, lambda: _print(rows))
+    numbers = [row.as_dict() for row in rows]
+    if options.csv:
+        write_text(options.csv, csv_text(numbers[0], [list(each.values()) for each in numbers]))
+    if options.csv != STDOUT:
+        show_and_write(options.json, {'numbers': numbers}, lambda: _print(rows))
+    elif options.json:
+        write_json(options.json, {'numbers': numbers})
     _require_all(rows)
     return 0
 
