@@ -3,7 +3,7 @@
 import csv
 import io
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,8 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.date_times import Instant, instant, is_date_time, seconds_since_first
+from ddct_plant.files.input_file import any_text, read_file
 
 COMMENT = '#'
 _DELIMITERS = ',;\t'
@@ -43,20 +44,28 @@ class CsvTable:
         return _place(self.path, int(self.lines[row]), column)
 
 
-def read_csv(path: Path, names: Iterable[str], *, most_bytes: int, most_rows: int) -> CsvTable:
+def read_csv(
+    path: Path,
+    names: Iterable[str],
+    *,
+    most_bytes: int,
+    most_rows: int,
+    date_times: Collection[str] = (),
+) -> CsvTable:
     """
     Return the columns called `names`, each once.
 
     The first line that is neither empty nor a comment (#) holds the names. Comma, semicolon or tab
     part the cells, whichever parts that line most; beside the latter two a comma may be the
-    decimal mark. Raise ParameterError that names the file, and line and column where it can.
+    decimal mark. Columns in `date_times` hold dates with times, which become s since the first
+    row. Raise ParameterError that names the file, and line and column where it can.
     """
     rows = _rows(_text(path, most_bytes))
     _, header = next(rows, (0, []))
     if not header:
         raise ParameterError(f'{path}: it is empty: give a header and rows of numbers')
     places = {name: _column(path, header, name) for name in names}
-    cells: dict[str, list[float]] = {name: [] for name in places}
+    cells: dict[str, list[Any]] = {name: [] for name in places}
     lines: list[int] = []
     for line, row in rows:
         if len(lines) == most_rows:
@@ -67,17 +76,22 @@ def read_csv(path: Path, names: Iterable[str], *, most_bytes: int, most_rows: in
             )
         lines.append(line)
         for name, place in places.items():
-            cells[name].append(_number(path, line, name, row[place]))
+            read = _instant if name in date_times else _number
+            cells[name].append(read(path, line, name, row[place]))
     if not lines:
         raise ParameterError(f'{path}: no row of numbers below the header: give at least one')
+    for name in cells.keys() & set(date_times):
+        cells[name] = _seconds(path, lines, name, cells[name])
     return CsvTable(path, np.array(lines), {name: np.array(each) for name, each in cells.items()})
 
 
 def _text(path: Path, most_bytes: int) -> str:
     try:
-        return read_text_file(path, most_bytes).removeprefix('\ufeff')
+        return any_text(read_file(path, most_bytes))
     except OSError as error:
         raise ParameterError(f'{path}: cannot be read ({error.strerror})') from error
+    except ParameterError as error:
+        raise ParameterError(f'{path}: {error}') from error
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -102,12 +116,40 @@ def _column(path: Path, header: list[str], name: str) -> int:
     return header.index(name)
 
 
+def _instant(path: Path, line: int, column: str, cell: str) -> Instant | None:
+    if cell.lower() in _EMPTY:
+        return None
+    try:
+        return instant(cell)
+    except ParameterError as error:
+        raise ParameterError(f'{_place(path, line, column)}: {error}') from None
+
+
+def _seconds(
+    path: Path, lines: Sequence[int], column: str, instants: Sequence[Instant | None]
+) -> list[float]:
+    """Return dates with times as s since the first; refuse zones in some of them alone."""
+    zones = [(line, each[2]) for line, each in zip(lines, instants, strict=True) if each]
+    for line, zoned in zones:
+        if zoned != zones[0][1]:
+            raise ParameterError(
+                f'{_place(path, line, column)}: it has {"a" if zoned else "no"} time zone, unlike '
+                f'line {zones[0][0]}: give every row one, or none'
+            )
+    return seconds_since_first(instants)
+
+
 def _number(path: Path, line: int, column: str, cell: str) -> float:
     if cell.lower() in _EMPTY:
         return math.nan
     try:
         number = float(cell)
     except ValueError:
+        if is_date_time(cell):
+            raise ParameterError(
+                f'{_place(path, line, column)}: {cell!r} is a date and time: in the column map of '
+                'a log give it the unit iso8601, elsewhere write seconds'
+            ) from None
         raise ParameterError(
             f'{_place(path, line, column)}: {cell!r} is no number: mend it, or put # before the '
             'line'

@@ -5,6 +5,7 @@ Only regular files are read, and no more than fits into memory. This is the one 
 of files and bags is read; YAML has its own module.
 """
 
+import codecs
 import errno
 import json
 import os
@@ -62,6 +63,27 @@ def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
         return read_file(path, most_bytes).decode('utf-8')
     except UnicodeDecodeError as error:
         raise OSError(errno.EILSEQ, 'it is not UTF-8 text', str(path)) from error
+
+
+def any_text(data: bytes) -> str:
+    """
+    Return the text that bytes of another tool are, in whichever usual encoding.
+
+    A mark at the start tells UTF-8 and UTF-16. Else it is UTF-8 where it can be, or Latin-1 as
+    Windows extends it. Raise ParameterError for what is no text.
+    """
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        encodings = ['utf-16']
+    else:
+        encodings = ['utf-8-sig', 'cp1252', 'latin-1']
+    for encoding in encodings:
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if '\0' not in text:
+            return text
+    raise ParameterError('it is no text: give a file of text, best in UTF-8')
 
 
 def user_text(path: Path) -> str:

@@ -14,6 +14,8 @@ from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.yaml_text import parse_yaml
 
 TIME = 'time'
+DATE_TIME = 'iso8601'
+"""Unit of a time that is written as a date with a time of day."""
 _NOTHING = np.zeros(0)
 LINEAR, HELD = BETWEEN = ('linear', 'held')
 """What a signal does between its samples: a straight line, or it keeps its value."""
@@ -114,6 +116,14 @@ def _column(name: str, content: Any) -> Column:
     found = Column(**content)
     if found.between not in BETWEEN:
         raise ParameterError(f'{key}.between is {found.between!r}: choose from linear, held')
-    with located(key):
-        si_values(_NOTHING, found.unit, QUANTITIES[name].unit)
+    if name != TIME or found.unit != DATE_TIME:
+        with located(key):
+            _require_unit(name, found.unit)
     return found
+
+
+def _require_unit(name: str, unit: str) -> None:
+    try:
+        si_values(_NOTHING, unit, QUANTITIES[name].unit)
+    except ParameterError as error:
+        raise ParameterError(f'{error}, {DATE_TIME}' if name == TIME else str(error)) from None

@@ -24,7 +24,15 @@ from ddct_plant.graph.topics import (
     VEHICLE_ACCEL,
     Topic,
 )
-from ddct_plant.measured.columns import HELD, OWN_HELD, QUANTITIES, TIME, ColumnMap
+from ddct_plant.measured.columns import (
+    DATE_TIME,
+    HELD,
+    OWN_HELD,
+    QUANTITIES,
+    TIME,
+    Column,
+    ColumnMap,
+)
 
 MOST_BYTES = 200_000_000
 MOST_ROWS = 1_000_000
@@ -94,9 +102,10 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
         if name not in columns.columns:
             raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
     names = [each.column for each in columns.columns.values()]
-    table = read_csv(path, names, most_bytes=MOST_BYTES, most_rows=MOST_ROWS)
+    dated = [each.column for each in columns.columns.values() if each.unit == DATE_TIME]
+    table = read_csv(path, names, most_bytes=MOST_BYTES, most_rows=MOST_ROWS, date_times=dated)
     signals = {
-        name: si_values(table.columns[each.column], each.unit, QUANTITIES[name].unit)
+        name: si_values(table.columns[each.column], _unit(each), QUANTITIES[name].unit)
         for name, each in columns.columns.items()
     }
     _require_rising(table, columns.columns[TIME].column, signals[TIME])
@@ -106,6 +115,11 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
     held = tuple(name for name, each in columns.columns.items() if each.between == HELD)
     time_s = signals.pop(TIME)
     return MeasuredLog(path, _digest(path), time_s, signals, held)
+
+
+def _unit(column: Column) -> str:
+    """Return the unit of the numbers of a column; dates with times have become s."""
+    return 's' if column.unit == DATE_TIME else column.unit
 
 
 def _require_rising(table: CsvTable, column: str, time_s: np.ndarray) -> None:
