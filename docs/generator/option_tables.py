@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Sequence
 
-from ddct_bringup.bag.measured_run import MeasuredRun
+from ddct_bringup.bag.measured_keys import MeasuredRun
 from ddct_controllers.mpc.costs import BASIS
 from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec

@@ -10,6 +10,7 @@ from support.documented import ROOT
 from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
+from ddct_bringup.bag.measured_run import read_measured_run
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.beside_bag import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
@@ -17,7 +18,7 @@ from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import NEEDS, score_recording
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.measured.columns import QUANTITIES
+from ddct_plant.measured.columns import QUANTITIES, load_columns
 
 OURS = """\
 columns:
@@ -72,6 +73,10 @@ def test_our_own_signals_as_a_foreign_log_have_the_figures_of_the_bag(tmp_path: 
             same = None if ours['value'] is None else pytest.approx(ours['value'], rel=1e-9)
             assert theirs['value'] == same, ours['name']
     assert found['not_computed'] == {}
+    log = read_measured_run(tmp_path / 'drive.csv', load_columns(str(tmp_path / 'map.yaml')))
+    np.testing.assert_allclose(
+        log.trajectory.joint_speed[:, 3], recording.trajectory.joint_speed[:, 3], atol=1e-9
+    )
     assert (found['mode'], found['scenario'], found['controller']) == ('measured', 'bench', 'pi')
 
 
@@ -162,6 +167,20 @@ def test_a_fast_log_is_averaged_and_a_slow_acceleration_refused(folder: Path) ->
     table = np.genfromtxt(file, delimiter=',', names=True)
     left = table['slip_speed_rad_s'] - (40.0 - 20.0 * table['time_s'])
     assert np.std(left[1:-1]) == pytest.approx(3.0 / np.sqrt(10.0), rel=0.2)
+
+
+def test_a_fast_log_is_averaged_over_the_10_ms_around_each_instant(folder: Path) -> None:
+    time_s = 0.0005 + 0.001 * np.arange(-5, 2000)  # none is on an edge of what is averaged
+    speed = 100.0 + np.random.default_rng(0).standard_normal(len(time_s))
+    rows = [f'{t:.4f},{s:.9f},60.0\n' for t, s in zip(time_s, speed, strict=True)]
+    (folder / 'fast.csv').write_text('t,m,p\n' + ''.join(rows))
+    (folder / 'map.yaml').write_text(
+        'columns:\n  time: {column: t, unit: s}\n  engine_speed: {column: m, unit: rad/s}\n'
+        '  shaft_speed: {column: p, unit: rad/s}\nrun: {start_s: 0.0}\n'
+    )
+    run = read_measured_run(folder / 'fast.csv', load_columns(str(folder / 'map.yaml')))
+    wanted = speed[:2000].reshape(-1, 10).mean(axis=1)  # from 5 ms before to 5 ms after
+    np.testing.assert_allclose(run.trajectory.joint_speed[:200, 0], wanted[:200], atol=1e-8)
 
 
 @pytest.mark.parametrize(

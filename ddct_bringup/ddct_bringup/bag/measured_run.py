@@ -2,19 +2,20 @@
 
 import argparse
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ddct_bringup.bag.measured_checks import require_no_contradiction
+from ddct_bringup.bag.measured_keys import MeasuredRun
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import OptionGroup, option, options_of, require_known
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
-from ddct_plant.files.input_file import SCHEMA_KEY
+from ddct_plant.files.input_file import SCHEMA_KEY, located
 from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
 from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.measured.log import MeasuredLog, read_log
@@ -29,44 +30,6 @@ _AVERAGED_BELOW_S = 0.5 * PERIOD_S
 _JOINT_SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed', TORSION)
 _JOINT_EFFORTS = ('engine_torque', 'clutch_torque', 'load_torque', 'driveshaft_torque')
 _SINGLE = ('vehicle_speed', 'vehicle_accel', 'engine_torque', 'load_torque', 'torque_request')
-
-
-@dataclass(frozen=True)
-class MeasuredRun(OptionGroup, prefix='run.'):
-    """What a log cannot say itself: `run` of a column map."""
-
-    controller: str = option(MEASURED, 'what tables call the controller', kind=str)
-    scenario: str = option(MEASURED, 'what tables call the drive; logs of one name compare')
-    start_s: float | None = option(
-        None, "the log's time at scenario time 0", 's', otherwise='that of the first row'
-    )
-    control_start_s: float = option(
-        0.0,
-        'scenario time at which the engagement begins, a multiple of 10 ms',
-        's',
-        at_least=0.0,
-        whole_periods=True,
-    )
-    score_window_s: tuple[float, ...] = option(
-        (),
-        '`[first, last]` sample of the figures over a window, multiples of 10 ms; none: control '
-        'start to the end',
-        's',
-        many=True,
-        at_least=0.0,
-        rising=True,
-        whole_periods=True,
-    )
-    total_ratio: float | None = option(
-        None, 'w_p over w_r with a stiff driveshaft; w_sr needs it', above=0.0
-    )
-    wear_gain: float = option(1.0, 'what tables say of the clutch', above=0.0, at_most=3.0)
-
-    def __post_init__(self) -> None:
-        """Check every option; raise ParameterError that names a bad one."""
-        super().__post_init__()
-        if self.score_window_s and len(self.score_window_s) != 2:
-            raise ParameterError('run.score_window_s: give two times, [first, last]')
 
 
 def add_columns_option(parser: argparse.ArgumentParser) -> None:
@@ -98,7 +61,8 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
 
     Samples closer than 5 ms are averaged over the 10 ms around each instant, others are read by
     what they do between samples. What the log does not have is NaN, with the reason in `absent`.
-    Raise DdctError for a log that cannot be read, is too short, or has a gap over 0.1 s.
+    Raise DdctError for a log that cannot be read, is too short, has a gap over 0.1 s, or
+    contradicts what `run` or the column map says of it.
     """
     log = read_log(path, columns, NEEDED)
     require_known(columns.run, options_of(MeasuredRun), prefix='run.')
@@ -112,6 +76,9 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
         )
     grid_s = start_s + PERIOD_S * np.arange(steps + 1)
     values = {name: _on_grid(log, name, grid_s) for name in log.signals}
+    with located(str(path)):
+        run.require_within(time_of_step(steps))
+        require_no_contradiction(run.total_ratio, values)
     absent = {}
     if run.total_ratio and 'wheel_speed' in values:
         values[TORSION] = values['shaft_speed'] / run.total_ratio - values['wheel_speed']

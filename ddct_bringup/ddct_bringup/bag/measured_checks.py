@@ -1,0 +1,188 @@
+"""
+What a log contradicts: a ratio, units and signs that its own signals show to be others.
+
+Each check is silent where the log cannot decide.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_S
+
+Values = Mapping[str, np.ndarray]
+"""(N+1,) by quantity, SI, every 10 ms."""
+
+RATIO_TOLERANCE = 0.01
+TWIST_RAD = 0.5
+"""More than a driveshaft twists with its backlash: what the angles turned may differ by."""
+_LEAST_TURNED_RAD = 5.0
+RADII_M = (0.15, 0.7)
+"""Rolling radii of the wheels of a car or truck."""
+ENGINE_INERTIAS = (0.03, 1.5)
+"""J_m of a car's engine with its flywheel, kg m^2."""
+_PER_OTHER_UNIT = {'rpm': 30.0 / np.pi, 'deg/s': 180.0 / np.pi}
+_SAME_FACTOR = 0.02
+_LOCKED_S, _LOCKED_SPREAD = 0.3, 0.05
+_WINDOW_S = 0.1
+_SURE, _SURE_OF_SLOPE = 0.9, 10.0
+"""Least coefficient of determination, and least slope over its standard deviation, to decide."""
+
+
+def require_no_contradiction(total_ratio: float | None, values: Values) -> None:
+    """Raise DdctError, in one line that names what to mend, where the log shows another car."""
+    if 'wheel_speed' in values:
+        if total_ratio is not None:
+            _require_ratio(total_ratio, values)
+        _require_radius(values)
+    _require_same_unit(values)
+    if 'clutch_torque' in values and not ('engine_torque' in values and _engine_fits(values)):
+        _require_friction(values)
+
+
+def _require_ratio(given: float, values: Values) -> None:
+    """
+    Hold the total ratio against the angles that shaft and wheels turned.
+
+    The clutch has no part in it: locked or slipping, they differ by the twist of the driveshaft.
+    """
+    shaft, wheels = (PERIOD_S * np.sum(values[name]) for name in ('shaft_speed', 'wheel_speed'))
+    if abs(wheels) < _LEAST_TURNED_RAD:
+        return
+    found = float(shaft / wheels)
+    tolerance = RATIO_TOLERANCE + TWIST_RAD / abs(wheels)
+    if abs(found / given - 1.0) > tolerance:
+        raise DdctError(
+            f'run.total_ratio is {given:g}, but in the log shaft_speed over wheel_speed is '
+            f'{found:.4g}, give or take {100.0 * tolerance:.1f} %: give the ratio of the engaged '
+            f'gear, or mend {_suspects("shaft_speed", "wheel_speed", found / given)}'
+        )
+
+
+def _suspects(first: str, second: str, factor: float) -> str:
+    """Return what may be wrong with two speeds of which one is `factor` times too large."""
+    what = f'unit or sign of {first} and {second}'
+    for unit, size in _PER_OTHER_UNIT.items():
+        if min(abs(abs(factor) / size - 1.0), abs(abs(factor) * size - 1.0)) < 3.0 * _SAME_FACTOR:
+            return f'the {what} (the factor is that of {unit} to rad/s)'
+    return f'the {what}'
+
+
+def _require_radius(values: Values) -> None:
+    """Hold V_x and A_x against the wheels: they turn at V_x over a radius that wheels have."""
+    wheels = values['wheel_speed']
+    if 'vehicle_speed' in values and abs(PERIOD_S * np.sum(wheels)) > _LEAST_TURNED_RAD:
+        _require_in(
+            float(np.sum(values['vehicle_speed']) / np.sum(wheels)),
+            RADII_M,
+            'vehicle_speed over wheel_speed gives wheels of {:.3g} m radius',
+            'vehicle_speed and wheel_speed',
+        )
+    if 'vehicle_accel' in values:
+        changes = np.column_stack([_per_window(values['vehicle_accel'], mean=True)])
+        slopes, sure = _slopes(_per_window(wheels, mean=False), changes)
+        if sure[0]:
+            _require_in(
+                float(1.0 / slopes[0]),
+                RADII_M,
+                'vehicle_accel over the change of wheel_speed gives wheels of {:.3g} m radius',
+                'vehicle_accel and wheel_speed',
+            )
+
+
+def _require_same_unit(values: Values) -> None:
+    """Refuse an engine that turns at another unit's multiple of its shaft, as if locked there."""
+    engine, shaft = values['engine_speed'], values['shaft_speed']
+    for unit, size in _PER_OTHER_UNIT.items():
+        for factor in (size, 1.0 / size):
+            there = (shaft != 0.0) & (np.abs(engine - factor * shaft) < 0.01 * np.abs(engine))
+            if np.sum(there) * PERIOD_S > _LOCKED_S and np.ptp(shaft[there]) > (
+                _LOCKED_SPREAD * np.max(np.abs(shaft))
+            ):
+                raise DdctError(
+                    f'engine_speed is {factor:.4g} times shaft_speed for '
+                    f'{np.sum(there) * PERIOD_S:.2g} s, the factor of {unit} to rad/s: mend the '
+                    'unit of one of them'
+                )
+
+
+def _engine_fits(values: Values) -> bool:
+    """
+    Hold both torques against J_m dw_m/dt = C_m - C_f, and say whether these explain the speed.
+
+    Where they do, and agree, the signs are right whatever the slip does.
+    """
+    torques = np.column_stack(
+        [_per_window(values[name], mean=True) for name in ('engine_torque', 'clutch_torque')]
+    )
+    (of_engine, of_clutch), sure = _slopes(
+        _per_window(values['engine_speed'], mean=False), torques
+    )
+    if not sure.all():
+        return False
+    for name, slope in (('engine_torque', of_engine), ('clutch_torque', -of_clutch)):
+        if slope < 0.0:
+            other = 'swap the two columns' if of_engine < 0.0 < of_clutch else 'turn its sign'
+            raise DdctError(
+                f'{name} has the wrong sign: the engine speeds up by {of_engine:.3g} rad/s^2 per '
+                f'N m of engine_torque and by {of_clutch:.3g} per N m of clutch_torque: {other}'
+            )
+        _require_in(
+            float(1.0 / slope),
+            ENGINE_INERTIAS,
+            f'{name} over the acceleration of engine_speed gives an engine of {{:.3g}} kg m^2',
+            f'{name} and engine_speed',
+        )
+    return True
+
+
+def _require_friction(values: Values) -> None:
+    """Refuse a clutch that drives: friction takes power, C_f (w_m - w_p) is above zero."""
+    power = values['clutch_torque'] * (values['engine_speed'] - values['shaft_speed'])
+    whole = float(np.sum(np.abs(power)))
+    if whole > 0.0 and np.sum(power) < -0.5 * whole:
+        raise DdctError(
+            'clutch_torque has the sign of a clutch that gives power: '
+            f'{-100.0 * np.sum(np.minimum(power, 0.0)) / whole:.0f} % of C_f (w_m - w_p) is below '
+            'zero: turn its sign, positive is towards the wheels, or mend the speeds'
+        )
+
+
+def _require_in(found: float, bounds: tuple[float, float], what: str, of: str) -> None:
+    if not bounds[0] <= found <= bounds[1]:
+        raise DdctError(
+            f'{what.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
+            f'signs of {of}'
+        )
+
+
+def _per_window(signal: np.ndarray, *, mean: bool) -> np.ndarray:
+    """Return means, or mean slopes, over the windows of 0.1 s that fit in."""
+    width = round(_WINDOW_S / PERIOD_S)
+    count = (len(signal) - 1) // width
+    if mean:
+        halves = 0.5 * (signal[1:] + signal[:-1])
+        return halves[: count * width].reshape(count, width).mean(axis=1)
+    return np.diff(signal[: count * width + 1 : width]) / _WINDOW_S
+
+
+def _slopes(rates: np.ndarray, causes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return the slopes of a least-squares fit with a constant, and of which of them one is sure.
+
+    None is sure where the causes explain too little of the rates.
+    """
+    width = causes.shape[1]
+    table = np.column_stack([causes, np.ones(len(causes))])
+    unsure = np.zeros(width), np.zeros(width, dtype=bool)
+    if len(rates) < 2 * table.shape[1] or np.linalg.matrix_rank(table) < table.shape[1]:
+        return unsure
+    slopes = np.linalg.lstsq(table, rates, rcond=None)[0]
+    left = np.sum((rates - table @ slopes) ** 2)
+    whole = np.sum((rates - rates.mean()) ** 2)
+    if not whole or left > (1.0 - _SURE) * whole:
+        return unsure
+    variance = left / (len(rates) - table.shape[1])
+    std = np.sqrt(variance * np.diag(np.linalg.inv(table.T @ table)))[:width]
+    return slopes[:width], np.abs(slopes[:width]) > _SURE_OF_SLOPE * std
