@@ -6,16 +6,18 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
+from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.output_folder import held, is_ours
 from ddct_bringup.scores.bags import bag_name, bags_in
-from ddct_bringup.scores.csv_text import scores_csv, signals_csv
+from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.scoring import (
     Entry,
     score_recording,
     scores_document,
     unreadable_entry,
 )
+from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
@@ -35,6 +37,7 @@ examples:
   ddct score runs/demo --json scores.json     also as JSON; '-' is standard output
   ddct score runs/demo --csv - | column -ts,  as CSV on standard output, table on standard error
   ddct score runs/demo --signals-csv signals  also every signal, one file per bag
+  ddct score runs/demo --signals-mat signals  the same as MAT files, for MATLAB
   ddct score runs/demo --limits mine.yaml     judged by other limits than the packaged ones
   ddct score --repair runs/broken/pi          rescue an interrupted recording, then score it
 
@@ -72,8 +75,7 @@ def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path
     """Return the folders of runs that these options write into."""
     files = (options.json, options.csv)
     folders = [Path(file).parent for file in files if file not in (None, STDOUT)]
-    if options.signals_csv is not None:
-        folders.append(options.signals_csv)
+    folders += [each for each in _signal_folders(options).values() if each is not None]
     repaired = [bag if bag.is_dir() else bag.parent for bag in bags] if options.repair else []
     return [*filter(is_ours, folders), *repaired]
 
@@ -82,10 +84,18 @@ def _scored(
     bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace, limits: Limits
 ) -> list[Entry]:
     runs = []
+    wanted = {ending: each for ending, each in _signal_folders(options).items() if each}
+    stems = signal_file_stems(bags) if wanted else {}
     columns = load_columns(options.columns) if options.columns else None
     for bag, folder in with_progress(bags, len(bags), 'scoring'):
         try:
-            runs.append(_score_one(bag, folder, options, limits, columns))
+            recording = _read(bag, options, columns)
+            name = bag_name(bag, folder)
+            for line in recording.custom_data.get('adjusted', '').splitlines():
+                complain(PROGRAM, f'{name}: {line}')
+            for ending, target in wanted.items():
+                write_signals(target, f'{stems[bag]}.{ending}', recording)
+            runs.append(score_recording(recording, name, limits))
         except DdctError as error:
             entry = unreadable_entry(bag, error, relative_to=folder)
             complain(PROGRAM, entry['reason'])
@@ -93,34 +103,17 @@ def _scored(
     return runs
 
 
-def _score_one(
-    bag: Path,
-    folder: Path | None,
-    options: argparse.Namespace,
-    limits: Limits,
-    columns: ColumnMap | None,
-) -> Entry:
+def _read(bag: Path, options: argparse.Namespace, columns: ColumnMap | None) -> Recording:
     if options.repair and not is_log(bag):
         repair = repair_bag(bag)
         if repair.original is not None:
             complain(PROGRAM, repair)
-    recording = read_recording(bag, columns)
-    name = bag_name(bag, folder)
-    for line in recording.custom_data.get('adjusted', '').splitlines():
-        complain(PROGRAM, f'{name}: {line}')
-    if options.signals_csv is not None:
-        _write_signals(options.signals_csv, name, signals_csv(recording))
-    return score_recording(recording, name, limits)
+    return read_recording(bag, columns)
 
 
-def _write_signals(folder: Path, name: str, text: str) -> None:
-    """Write one bag's signals into a file that is named after the bag."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DdctError(f'{folder}: cannot make the folder: {error.strerror}') from error
-    file = name.strip('./').replace('/', '_').removesuffix('.mcap')
-    write_text(str(folder / f'{file}.csv'), text)
+def _signal_folders(options: argparse.Namespace) -> dict[str, Path | None]:
+    """Return by the ending of their files the folders that signals go into."""
+    return {'csv': options.signals_csv, 'mat': options.signals_mat}
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -145,6 +138,12 @@ def _parser() -> argparse.ArgumentParser:
         metavar='DIR',
         type=Path,
         help='write the signals of each bag to a CSV file in DIR',
+    )
+    parser.add_argument(
+        '--signals-mat',
+        metavar='DIR',
+        type=Path,
+        help='write the same signals to MAT files, for MATLAB, Octave and scipy',
     )
     parser.add_argument(
         '--repair',

@@ -1,0 +1,71 @@
+"""Every signal of a run as a file for other tools: CSV, or MAT for MATLAB, Octave and scipy."""
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from scipy.io import savemat
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.scores.bags import bag_name
+from ddct_bringup.scores.csv_text import signal_columns, signals_csv
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_bytes
+
+_MAT_TEXT = b'MATLAB 5.0 MAT-file, written by ddct score'
+_MAT_TEXT_BYTES = 116
+
+
+def signals_mat(recording: Recording) -> bytes:
+    """
+    Return the columns of `signals_csv` as a MAT file of version 5: (N+1, 1) each, by its name.
+
+    It says no date, so the same run gives the same bytes.
+    """
+    buffer = io.BytesIO()
+    savemat(buffer, signal_columns(recording.trajectory), format='5', oned_as='column')
+    return _MAT_TEXT.ljust(_MAT_TEXT_BYTES) + buffer.getvalue()[_MAT_TEXT_BYTES:]
+
+
+SIGNAL_FILES: Mapping[str, Callable[[Recording], bytes]] = {
+    'csv': lambda recording: signals_csv(recording).encode(),
+    'mat': signals_mat,
+}
+"""What writes the signals, by the ending of the file."""
+
+
+def signal_file_stems(bags: Sequence[tuple[Path, Path | None]]) -> dict[Path, str]:
+    """
+    Return by bag the name of its file without the ending; `bags` are those of `bags_in`.
+
+    It is that of the scores, and of bags that share one, the whole path. Raise DdctError that
+    names two bags whose paths give one name too.
+    """
+    short = [_stem(bag_name(bag, folder)) for bag, folder in bags]
+    shared = {each for each in short if short.count(each) > 1}
+    stems: dict[Path, str] = {}
+    for (bag, _), stem in zip(bags, short, strict=True):
+        name = _stem(bag.as_posix()) if stem in shared else stem
+        for other, taken in stems.items():
+            if taken == name:
+                raise DdctError(
+                    f'{other} and {bag}: the signals of both would be in {name}: write them into '
+                    'two folders, one after the other'
+                )
+        stems[bag] = name
+    return stems
+
+
+def _stem(name: str) -> str:
+    plain = name.strip('./').replace('/', '_').removesuffix('.mcap')
+    return plain or Path(name).resolve().name
+
+
+def write_signals(folder: Path, file: str, recording: Recording) -> None:
+    """Write a run's signals into a file, by its ending, of a folder that is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DdctError(f'{folder}: cannot make the folder: {error.strerror}') from error
+    content = SIGNAL_FILES[file.rpartition('.')[2]](recording)
+    write_bytes(str(folder / file), content)
