@@ -19,7 +19,7 @@ from bokeh.models.annotations import BoxAnnotation, Span
 from bokeh.models.renderers import DataRenderer
 from bokeh.plotting import figure
 
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
 from ddct_bringup.report.quantities import Quantity, quantities_of
@@ -56,13 +56,14 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     """Return the Bokeh document as JSON, and per chart the id of it in there."""
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
-    sources = [_source(run.trajectory) for run in runs]
+    drawn = _drawn(runs)
+    sources = [_source(run.trajectory, of) for run, of in zip(runs, drawn, strict=True)]
     document = Document()
     roots = {}
     for quantity in charted_quantities(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs[0].facts)
-        for run, source in zip(runs, sources, strict=True):
-            if quantity in quantities_of(run.trajectory):
+        for run, source, of in zip(runs, sources, drawn, strict=True):
+            if quantity in of:
                 _line(chart, quantity, run, source)
         if quantity.key == 'w_d':
             _draw_references(chart, runs, sources)
@@ -81,13 +82,24 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
 
 def charted_quantities(runs: Sequence[ChartRun]) -> list[Quantity]:
     """Return the quantities that at least one run has, in the order of the page."""
-    return list(dict.fromkeys(each for run in runs for each in quantities_of(run.trajectory)))
+    return list(dict.fromkeys(each for of in _drawn(runs) for each in of))
 
 
-def _source(trajectory: Trajectory) -> ColumnDataSource:
+def has_reference(runs: Sequence[ChartRun]) -> bool:
+    """Say whether any run has a slip reference, which only some logs have."""
+    return any(np.isfinite(run.trajectory.slip_reference[:, 0]).any() for run in runs)
+
+
+def _drawn(runs: Sequence[ChartRun]) -> list[tuple[Quantity, ...]]:
+    """Return for each run what is drawn of it: beside a log also what a log has."""
+    with_log = any(run.facts.mode == MEASURED for run in runs)
+    return [quantities_of(run.trajectory, with_log=with_log) for run in runs]
+
+
+def _source(trajectory: Trajectory, quantities: Sequence[Quantity]) -> ColumnDataSource:
     """Return what the charts show; single precision draws the same and halves the page."""
     columns = {'t': trajectory.time_s}
-    for quantity in quantities_of(trajectory):
+    for quantity in quantities:
         columns[quantity.key] = quantity.values(trajectory)
         if quantity.limit:
             columns[quantity.limit_key] = quantity.limit(trajectory)
@@ -189,6 +201,8 @@ def _draw_references(
     """Draw each distinct slip reference once; it shows while one of its runs does."""
     groups: dict[bytes, list[int]] = {}
     for position, source in enumerate(sources):
+        if not has_reference([runs[position]]):
+            continue
         groups.setdefault(np.asarray(source.data['reference']).tobytes(), []).append(position)
     for positions in groups.values():
         members = [runs[position] for position in positions]

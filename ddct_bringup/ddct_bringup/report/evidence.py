@@ -19,6 +19,7 @@ from ddct_plant.files.input_file import parse_json, read_text_file
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""
 COMPUTED = 'computed for this page'
+OF_A_LOG = 'measured in a car, and a log does not tell the loop that was closed there'
 NOT_LINEAR = 'not linear, so without a frequency response'
 
 
@@ -41,11 +42,20 @@ class LoopEvidence:
 
 
 def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
-    """Return the evidence of every controller and wear gain of the readable runs, each once."""
+    """
+    Return the evidence of every controller and wear gain of the readable runs, each once.
+
+    A log has none, as it does not tell its loop.
+    """
     found: dict[tuple[str, float], LoopEvidence | None] = {}
     missing: dict[float, dict[str, ReportRun]] = {}
+    logs: dict[str, LoopEvidence] = {}
     for run in runs:
         if run.recording is None:
+            continue
+        if run.measured:
+            name, wear = run.recording.facts.controller, run.recording.facts.wear_gain
+            logs[name] = LoopEvidence(name, wear, None, OF_A_LOG)
             continue
         facts = run.recording.facts
         key = (facts.controller, facts.wear_gain)
@@ -56,7 +66,7 @@ def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
         for wear_gain, by_controller in missing.items()
         for each in _computed(by_controller, wear_gain)
     }
-    return [each or computed[key] for key, each in found.items()]
+    return [*(each or computed[key] for key, each in found.items()), *logs.values()]
 
 
 def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence | None:

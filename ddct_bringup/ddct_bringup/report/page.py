@@ -1,6 +1,6 @@
 """Put the page together: one HTML file that needs nothing else."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
 from typing import Any
@@ -9,7 +9,15 @@ import bokeh
 from bokeh.resources import Resources
 from markupsafe import Markup
 
-from ddct_bringup.report.charts import NEUTRAL, ChartRun, chart_document, charted_quantities
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.report.charts import (
+    NEUTRAL,
+    ChartRun,
+    chart_document,
+    charted_quantities,
+    has_reference,
+)
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
@@ -60,7 +68,7 @@ def report_page(
     quantities = charted_quantities(charted)
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
-    recordings = [run.recording for run in runs if run.recording is not None]
+    recordings = _simulated_first(runs)
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
@@ -94,12 +102,35 @@ def report_page(
         scenario_title=_scenario_title(runs),
         conditions=common_conditions([run.entry for run in runs]),
         sensors=_sensors(runs),
-        scenario_text=recordings[0].custom_data.get('scenario_yaml', ''),
+        scenario_text=''
+        if recordings[0].measured
+        else recordings[0].custom_data.get('scenario_yaml', ''),
+        has_reference=has_reference(charted),
+        other_times=_other_times(shown, recordings[0].facts),
         digest=next((run.digest for run in runs if run.digest), None),
-        commits=sorted({run['origin'].commit for run in shown if run['charted']}),
-        versions=sorted({run['origin'].version for run in shown if run['charted']}),
+        commits=sorted({run['origin'].commit for run in shown if run['simulated']}),
+        versions=sorted({run['origin'].version for run in shown if run['simulated']}),
         made_with={'ddct_bringup': package_version(), 'Bokeh': bokeh.__version__},
     )
+
+
+def _simulated_first(runs: Sequence[ReportRun]) -> list[Recording]:
+    """Return the recordings, those of logs last: they know less of the scenario."""
+    read = [run.recording for run in runs if run.recording is not None]
+    return sorted(read, key=lambda each: each.measured)
+
+
+def _other_times(
+    shown: Sequence[Mapping[str, Any]], facts: RunFacts
+) -> list[tuple[str, RunFacts]]:
+    """Return the labels and facts of runs whose control start or score window is another."""
+    of_runs = [(run['label'], run['recording'].facts) for run in shown if run['charted']]
+    times = (facts.control_start_s, facts.score_window_s)
+    return [
+        (label, each)
+        for label, each in of_runs
+        if (each.control_start_s, each.score_window_s) != times
+    ]
 
 
 def _scenario_title(runs: Sequence[ReportRun]) -> str:
@@ -132,6 +163,8 @@ def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
             'entry': run.entry,
             'recording': run.recording,
             'charted': run.recording is not None,
+            'measured': run.measured,
+            'simulated': run.recording is not None and not run.measured,
             'on': on,
             'thesis': row,
             'fallback': fallback_note(run.entry) if run.entry['fallbacks'] else '',

@@ -101,21 +101,29 @@ QUANTITIES = (
 
 
 def _capacity(run: Trajectory) -> np.ndarray:
-    """Return what the friction can carry in N m: the static capacity while it is locked."""
+    """
+    Return what the friction can carry in N m: the static capacity while it is locked.
+
+    NaN where that is not known, as of a log.
+    """
+    if run.clutch_phase is None:
+        return np.full(run.steps + 1, np.nan)
     locked = run.clutch_phase == LOCKED
     return np.where(locked, run.clutch_static_torque[:, 0], run.clutch_torque[:, 0])
 
 
+TRANSMITTED = Quantity(
+    'C_f_transmitted',
+    'Clutch torque: transmitted',
+    'C_f',
+    'N m',
+    'what passes through the plates. A thin line is what they can carry.',
+    lambda run: run.joint_effort[:, 1],
+    _capacity,
+)
+
 CLUTCH_QUANTITIES = (
-    Quantity(
-        'C_f_transmitted',
-        'Clutch torque: transmitted',
-        'C_f',
-        'N m',
-        'what passes through the plates. The thin line is what they can carry.',
-        lambda run: run.joint_effort[:, 1],
-        _capacity,
-    ),
+    TRANSMITTED,
     Quantity(
         'friction_energy',
         'Friction energy of the clutch',
@@ -149,10 +157,44 @@ SENSOR_QUANTITIES = (
 """Of runs with sensors."""
 
 
-def quantities_of(trajectory: Trajectory) -> tuple[Quantity, ...]:
-    """Return what there is to draw of a run."""
-    return (
+LOG_QUANTITIES = (
+    Quantity(
+        'w_m',
+        'Engine speed',
+        'w_m',
+        'rpm',
+        'speed of the engine.',
+        lambda run: rpm_from_rad_s(run.joint_speed[:, 0]),
+    ),
+    Quantity(
+        'V_x',
+        'Speed of the vehicle',
+        'V_x',
+        'km/h',
+        'above zero the car goes forward.',
+        lambda run: 3.6 * run.vehicle_speed,
+    ),
+    TRANSMITTED,
+    Quantity(
+        'driveshaft_torque',
+        'Torque of the driveshaft',
+        'C_s',
+        'N m',
+        'at the wheels. Above zero it drives them.',
+        lambda run: run.joint_effort[:, 3],
+    ),
+)
+"""Of logs of a car, and of the runs beside them."""
+
+
+def quantities_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[Quantity, ...]:
+    """Return what there is to draw of a run; `with_log`: of a log, or of a run beside one."""
+    possible = (
         *QUANTITIES,
         *(() if trajectory.clutch_phase is None else CLUTCH_QUANTITIES),
         *(SENSOR_QUANTITIES if trajectory.sensed else ()),
+        *(LOG_QUANTITIES if with_log else ()),
+    )
+    return tuple(
+        each for each in dict.fromkeys(possible) if np.isfinite(each.values(trajectory)).any()
     )

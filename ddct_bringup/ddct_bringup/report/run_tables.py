@@ -27,13 +27,16 @@ class RunOrigin:
 
 
 def run_origin(run: ReportRun) -> RunOrigin:
-    """Return the origin of a run, with dashes for what an unreadable bag does not tell."""
+    """Return the origin of a run, with dashes for what a log or an unreadable bag lacks."""
+    unknown = [name for name in _CONDITIONS if run.entry[name] is None]
+    if run.measured:
+        unknown.append('seed')
     conditions = tuple(
-        (name, '–' if run.entry[name] is None else str(run.entry[name])) for name in _CONDITIONS
+        (name, '–' if name in unknown else str(run.entry[name])) for name in _CONDITIONS
     )
     told = {} if run.recording is None else run.recording.run_info.get('controller', {})
     conditions += (('computed_from', told.get('computed_from', '–')),)
-    if run.recording is None:
+    if run.recording is None or run.measured:
         return RunOrigin(conditions, (), '–', '–')
     nodes = {
         node: tuple((key, value) for key, value in pairs.items() if key not in _REPEATED)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.run_facts import MEASURED
 from ddct_bringup.run.beside_bag import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scoring import (
@@ -49,6 +50,11 @@ class ReportRun:
     settings: RunSettings | None = None
     """As `Recording.settings`."""
 
+    @property
+    def measured(self) -> bool:
+        """Whether it is the log of a car."""
+        return self.recording is not None and self.recording.measured
+
     @cached_property
     def digest(self) -> str | None:
         """
@@ -76,23 +82,32 @@ def read_run(
 
 
 def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
-    """Return the runs in the order in which the registry lists their controllers."""
+    """Return the runs in the order in which the registry lists their controllers, logs last."""
     places = {name: place for place, name in enumerate(controller_names())}
-    return sorted(runs, key=lambda run: places.get(run.entry['controller'], len(places)))
+    return sorted(
+        runs, key=lambda run: (run.measured, places.get(run.entry['controller'], len(places)))
+    )
 
 
 def require_one_scenario(runs: Sequence[ReportRun]) -> None:
-    """Raise DdctError that names the scenarios when the readable runs are not all of one."""
+    """
+    Raise DdctError that names the scenarios when the readable runs are not all of one.
+
+    Simulated runs are of one when its values are. Of a log nothing but its name is known.
+    """
     bags: dict[str, list[str]] = {}
+    names = {run.entry['scenario'] for run in runs if run.recording is not None}
+    logs = [run for run in runs if run.measured]
     for run in runs:
-        if run.recording is not None:
+        if run.recording is not None and not (run.measured and len(names) == 1):
             digest = f' (digest {run.digest})' if run.digest else ''
             bags.setdefault(f'{run.entry["scenario"]}{digest}', []).append(run.entry['bag'])
     if len(bags) > 1:
-        parts = '; '.join(f'{scenario}: {", ".join(names)}' for scenario, names in bags.items())
+        parts = '; '.join(f'{scenario}: {", ".join(of)}' for scenario, of in bags.items())
+        of_logs = ', or write run.scenario in the column map of a log that was such a drive'
         raise DdctError(
             f'the runs are of {len(bags)} scenarios, which do not compare: {parts}: '
-            'make one report of each'
+            f'make one report of each{of_logs if logs else ""}'
         )
 
 
@@ -102,7 +117,7 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
 
     Where that is not enough the bag is named too. A bag that tells no controller goes by its name.
     """
-    known = [entry for entry in entries if entry['controller'] is not None]
+    known = _simulated(entries)
     differing = [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
     labels = [_label(entry, differing) for entry in entries]
     counts = Counter(labels)
@@ -114,15 +129,28 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
 
 
 def common_conditions(entries: Sequence[Entry]) -> list[str]:
-    """Return the conditions that all runs share, as a reader would say them."""
-    known = [entry for entry in entries if entry['controller'] is not None]
+    """Return the conditions that all simulated runs share, and how many logs there are."""
+    known = _simulated(entries)
     shared = [key for key in _CONDITIONS if len({entry[key] for entry in known}) == 1]
-    return [_CONDITIONS[key](known[0]) for key in shared]
+    logs = sum(map(_is_log, entries))
+    of_logs = [f'{logs} {"log" if logs == 1 else "logs"} of a car'] if logs else []
+    return [*(_CONDITIONS[key](known[0]) for key in shared), *of_logs]
+
+
+def _simulated(entries: Sequence[Entry]) -> list[Entry]:
+    """Return the entries that tell conditions: those of bags that could be read."""
+    return [each for each in entries if each['controller'] is not None and not _is_log(each)]
+
+
+def _is_log(entry: Entry) -> bool:
+    return bool(entry['mode'] == MEASURED)
 
 
 def _label(entry: Entry, differing: Sequence[str]) -> str:
     if entry['controller'] is None:
         return str(entry['bag'])
+    if _is_log(entry):
+        return f'{entry["controller"]}, {MEASURED}'
     return ', '.join([entry['controller'], *(_CONDITIONS[key](entry) for key in differing)])
 
 

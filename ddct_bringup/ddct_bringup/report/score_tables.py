@@ -13,6 +13,14 @@ from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.verdict import NO_LIMIT
 from ddct_plant.program.table import Figure
 
+_NO_PHASES = 'a log does not tell when the plates were locked'
+OF_NO_LOG = {
+    'time_to_lock': _NO_PHASES,
+    'releases_after_lock': _NO_PHASES,
+    'peak_temperature': 'a log has no temperature of the facing',
+    'deadline_misses': 'a log has no steps of the controller',
+}
+"""By criterion why no log of a car has a value."""
 NOT_JUDGED = 'the run failed or cannot be read'
 
 
@@ -110,15 +118,18 @@ class VerdictRow:
     cells: tuple[VerdictCell, ...]
 
     @property
-    def undefined(self) -> bool:
-        """Whether a run that was judged has no value."""
-        return any(cell.why_dash == self.criterion.undefined for cell in self.cells)
+    def reasons(self) -> str:
+        """Why runs that were judged have no value, empty where all have one."""
+        found = dict.fromkeys(cell.why_dash for cell in self.cells)
+        return '; '.join(each for each in found if each not in ('', NOT_JUDGED))
 
 
 def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
     """Return one row per criterion; a run that was not judged has a value in none."""
     judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
-    reasons = [run.entry.get(NOT_COMPUTED, {}) for run in runs]
+    reasons = [
+        {**(OF_NO_LOG if run.measured else {}), **run.entry.get(NOT_COMPUTED, {})} for run in runs
+    ]
     return [
         _verdict_row(
             criterion,

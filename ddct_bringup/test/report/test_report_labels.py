@@ -40,6 +40,18 @@ def test_wear_gains_and_architectures_are_named_where_runs_differ_in_them():
     assert common_conditions(entries) == ['linear clutch', 'lockstep', 'seed 0']
 
 
+def test_logs_are_called_measured_and_their_number_is_among_the_conditions():
+    log = entry('drive', architecture='measured', clutch='measured', mode='measured')
+    assert run_labels([entry(), log]) == ['pi', 'drive, measured']
+    assert run_labels([entry(), entry(wear_gain=0.7), log])[1:] == [
+        'pi, wear 0.7',
+        'drive, measured',
+    ]
+    assert common_conditions([entry(), log])[-1] == '1 log of a car'
+    assert common_conditions([entry(), log])[:2] == ['detailed', 'linear clutch']
+    assert common_conditions([log, log]) == ['2 logs of a car']
+
+
 def test_the_same_run_twice_is_told_apart_by_the_bag():
     entries = [entry(bag='new/pi'), entry(bag='old/pi'), entry('ls8')]
     assert run_labels(entries) == ['pi (new/pi)', 'pi (old/pi)', 'ls8']

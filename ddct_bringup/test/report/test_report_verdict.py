@@ -47,8 +47,8 @@ def test_a_value_beyond_its_limit_is_marked_and_the_limit_has_its_source():
 def test_every_dash_has_its_reason():
     row = row_of('judder', [run(), FAILED, run(judder=1.0)])
     assert [cell.why_dash for cell in row.cells] == [row.criterion.undefined, NOT_JUDGED, '']
-    assert row.undefined
-    assert not row_of('judder', [FAILED, run(judder=1.0)]).undefined
+    assert row.reasons == row.criterion.undefined
+    assert not row_of('judder', [FAILED, run(judder=1.0)]).reasons
 
 
 def test_large_values_keep_every_digit_before_the_point():
