@@ -26,6 +26,19 @@ def test_bringup_says_it_the_bag_keeps_it_and_score_repeats_it(
     assert f'ddct score: pi: {MOVED}' in capfd.readouterr().err
 
 
+def test_a_mass_in_tonnes_runs_and_every_program_warns_on_standard_error(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    warning = 'vehicle.mass_kg is 1.5 kg, but cars and trucks have 300 to 50000 kg'
+    light = ['--set', 'vehicle.mass_kg=1.5', '--duration', '1.8', '--headless']
+    assert bringup.main([*light, '--out', str(tmp_path / 'runs')]) == 0
+    assert warning in capfd.readouterr().err
+    assert score.main([str(tmp_path / 'runs')]) == 0
+    assert warning in capfd.readouterr().err
+    assert compare.main([*light, '--controllers', 'pi', '--out', str(tmp_path / 'both')]) == 0
+    assert warning in capfd.readouterr().err
+
+
 def test_compare_has_it_above_its_table(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert compare.main([*HEAVY, '--controllers', 'pi', '--out', str(tmp_path / 'runs')]) == 0
     table = capfd.readouterr().out

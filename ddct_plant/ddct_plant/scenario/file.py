@@ -19,6 +19,7 @@ from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.plant import require_driveline
+from ddct_plant.scenario.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
@@ -70,7 +71,7 @@ class ScenarioFile:
             content = with_points(content, Path(self.name).parent, set_keys)
             scenario = scenario_from_mapping(content)
             origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
-            scenario = consistent(scenario, origins, _number(start_before))
+            scenario = with_remarks(consistent(scenario, origins, _number(start_before)))
             require_driveline(scenario.driveline, clutch)
             return scenario
 
@@ -86,7 +87,8 @@ def load_scenario(
     They are `KEY=VALUE` as text, or values by key, dotted ones. `clutch` is that of the run: not
     every driveline can be integrated with one that sticks.
 
-    Values that belong together are kept so, as `consistency` tells.
+    Values that belong together are kept so, as `consistency` tells, and values that no car has
+    get a word in `adjusted`, as `plausible` tells.
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
     cannot be read.
     """

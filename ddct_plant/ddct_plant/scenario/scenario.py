@@ -152,7 +152,8 @@ class Scenario(OptionGroup):
     )
     adjusted: tuple[str, ...] = option(
         (),
-        'what programs have moved to agree with what was given, in words; they write it',
+        'what programs have moved to agree with what was given, and values that no car has, in '
+        'words; they write it',
         kind=str,
         many=True,
         left_out=True,

@@ -1,0 +1,36 @@
+"""Values that no car has: allowed, as a bench may try anything, but a word is due."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from operator import attrgetter
+
+from ddct_plant.scenario.scenario import Scenario
+
+RANGES: Mapping[str, tuple[float, float, str]] = {
+    'vehicle.mass_kg': (300.0, 50_000.0, 'kg'),
+    'vehicle.wheel_radius_m': (0.15, 0.7, 'm'),
+    'driveline.engine_inertia': (0.02, 5.0, 'kg m^2'),
+    'driveline.shaft_inertia': (1e-4, 1.0, 'kg m^2'),
+    'driveline.vehicle_inertia': (10.0, 20_000.0, 'kg m^2'),
+    'driveline.halfshaft_stiffness': (500.0, 500_000.0, 'N m/rad'),
+    'driveline.total_ratio': (1.5, 60.0, ''),
+}
+"""Least and most that cars and trucks have, by key. Wide: beyond them it is another unit."""
+
+
+def with_remarks(scenario: Scenario) -> Scenario:
+    """Return the scenario with a line in `adjusted` for each value that no car has."""
+    lines = [line for key in RANGES if (line := _remark(scenario, key))]
+    new = [line for line in lines if line not in scenario.adjusted]
+    return replace(scenario, adjusted=(*scenario.adjusted, *new)) if new else scenario
+
+
+def _remark(scenario: Scenario, key: str) -> str:
+    least, most, unit = RANGES[key]
+    value = float(attrgetter(key)(scenario))
+    if math.isnan(value) or least <= value <= most:
+        return ''
+    has = f'{least:g} to {most:g} {unit}'.strip()
+    given = f'{value:g} {unit}'.strip()
+    return f'{key} is {given}, but cars and trucks have {has}: is it in another unit?'
