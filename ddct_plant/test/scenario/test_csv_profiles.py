@@ -55,6 +55,21 @@ def test_a_file_that_set_names_is_relative_to_the_working_directory(folder, monk
     assert load_scenario('thesis', single).engine.torque_n_m == (100.0, 150.0)
 
 
+def test_set_names_a_file_of_the_working_directory_for_a_scenario_of_another_folder(
+    folder, tmp_path_factory, monkeypatch
+):
+    elsewhere = tmp_path_factory.mktemp('elsewhere')
+    (elsewhere / 'data').mkdir()
+    (elsewhere / 'data' / 'pedal.csv').write_text(PEDAL.replace('150.0', '170.0'))
+    monkeypatch.chdir(elsewhere)
+    assert load(folder).engine.torque_n_m == (100.0, 150.0)
+    changed = load(folder, overrides=['engine.csv=data/pedal.csv'])
+    assert changed.engine.torque_n_m == (100.0, 170.0)
+    (elsewhere / 'data' / 'pedal.csv').unlink()
+    with pytest.raises(ParameterError, match='cannot be read'):
+        load(folder, overrides=['engine.csv=data/pedal.csv'])
+
+
 def test_points_that_set_gives_replace_the_file(folder):
     changes = ['engine.time_s=[0.0]', 'engine.torque_n_m=[7.0]']
     assert load(folder, overrides=changes).engine.torque_n_m == (7.0,)

@@ -1,0 +1,50 @@
+"""What a log says of C_load is a mean over its time, however its gaps part it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ddct_plant.identification.log_fit import PARAMETERS, fit_log
+from ddct_plant.identification.log_model import Stretch, responses
+from ddct_plant.identification.log_stretches import TORQUES
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.models.parameters import DrivelineParameters
+
+RATIO = DrivelineParameters().total_ratio
+SAMPLES = (400, 80)
+LOADS_N_M = (100.0, 400.0)
+
+
+def part(start_s: float, samples: int, load_n_m: float, random: np.random.Generator) -> Stretch:
+    """Return what the model makes of random torques, with a constant load."""
+    time_s = start_s + 0.01 * np.arange(samples)
+    points = np.arange(time_s[0], time_s[-1] + 0.5, 0.2)
+    torques = [np.interp(time_s, points, random.uniform(50.0, 250.0, len(points))) for _ in 'mf']
+    table = np.column_stack([*torques, np.zeros(samples)])
+    stretch = Stretch(time_s, np.zeros((samples, 3)), time_s, table, (False, False, False), False)
+    forced, basis = responses(vars(DrivelineParameters()), stretch)
+    speeds = forced + basis @ np.array([200.0, 180.0, 180.0 / RATIO, 0.02, load_n_m])
+    noise = 1e-3 * random.standard_normal(speeds.shape)
+    return Stretch(time_s, speeds + noise, time_s, table, stretch.held, load_known=False)
+
+
+def test_a_stretch_counts_by_its_length() -> None:
+    random = np.random.default_rng(4)
+    parts = [
+        part(10.0 * index, samples, load, random)
+        for index, (samples, load) in enumerate(zip(SAMPLES, LOADS_N_M, strict=True))
+    ]
+    speeds, torques = (
+        np.vstack([getattr(each, name) for each in parts]) for name in ('speeds', 'torques')
+    )
+    signals = dict(zip(SPEEDS, speeds.T, strict=True)) | dict(
+        zip(TORQUES, torques.T[:2], strict=True)
+    )
+    log = MeasuredLog(
+        Path('drive.csv'), '', np.concatenate([each.time_s for each in parts]), signals
+    )
+    fixed = [name for name in PARAMETERS if name != 'vehicle_inertia']
+    fit = fit_log(log, DrivelineParameters(), lambda wheels: np.zeros(len(wheels)), fixed)
+    assert fit.load_torque == pytest.approx(np.average(LOADS_N_M, weights=SAMPLES), abs=2.0)
+    assert abs(fit.load_torque - np.mean(LOADS_N_M)) > 90.0
