@@ -12,9 +12,10 @@ from typing import Any
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.report.runs import ReportRun
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
-from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_controllers.workflows.evidence import Evidence, actuator_conditions, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.models.actuator import ActuatorParameters
 
 FREQUENCY_FILE = 'frequency.json'
 """What `compare` leaves beside the scores."""
@@ -76,11 +77,20 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
     conditions, entries = content.get('conditions'), content.get('controllers')
     if not isinstance(conditions, dict) or not isinstance(entries, list) or run.digest is None:
         return None
-    if conditions.get('scenario_digest') != run.digest:
+    if conditions.get('scenario_digest') != run.digest or not _has_actuator_of(run, conditions):
         return None
     ours = (each for each in entries if isinstance(each, dict))
     entry = next((each for each in ours if each.get('controller') == controller), None)
     return LoopEvidence(controller, wear_gain, entry) if _is_whole(entry, wear_gain) else None
+
+
+def _has_actuator_of(run: ReportRun, conditions: Evidence) -> bool:
+    """Say whether a file was computed with the run's actuator; older ones have the printed one."""
+    if run.settings is None:
+        return True
+    older = actuator_conditions(ActuatorParameters())
+    found = {name: conditions.get(name, value) for name, value in older.items()}
+    return found == actuator_conditions(run.settings.scenario.actuator)
 
 
 def _is_whole(entry: Any, wear_gain: float) -> bool:

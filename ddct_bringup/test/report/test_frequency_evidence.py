@@ -60,7 +60,10 @@ def test_a_small_step_of_the_slip_error_moves_the_run_as_the_sampled_loop_says(n
 
     That holds the sampling, the delay, the wear gain, every sign and unit.
     """
-    settings = RunSettings(SCENARIO, wear_gain=wear_gain)
+    require_run_as_the_loop(name, RunSettings(SCENARIO, wear_gain=wear_gain))
+
+
+def require_run_as_the_loop(name: str, settings: RunSettings) -> None:
     without, stepped = (
         run_headless(settings, SteppedError(make_controller(name, settings), step_rpm))
         for step_rpm in (0.0, STEP_RPM)
@@ -68,9 +71,16 @@ def test_a_small_step_of_the_slip_error_moves_the_run_as_the_sampled_loop_says(n
     change = stepped.slip_speed[AT_STEP:] - without.slip_speed[AT_STEP:]
     found = rpm_from_rad_s(change) / STEP_RPM
     model = make_controller(name, settings).linear_model()
-    loop = sampled_loop(model, SCENARIO.driveline, wear_gain)
+    scenario = settings.scenario
+    loop = sampled_loop(model, scenario.driveline, settings.wear_gain, scenario.actuator)
     _, expected = step_response(loop, 0.01 * (len(found) - 1))
     assert found == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize('delay_s', [0.0, 0.013, 0.04])
+def test_the_sampled_loop_has_the_actuator_of_the_run(delay_s):
+    changes = [f'actuator.delay_s={delay_s}', 'actuator.bandwidth_factor=0.8']
+    require_run_as_the_loop('ls8', RunSettings(load_scenario('thesis', changes)))
 
 
 def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
@@ -78,6 +88,7 @@ def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
     arguments = ['--controllers', 'ls8,pi', '--wear-gain', '0.8', '--headless', '--out', str(out)]
     assert compare.main(arguments) == 0
     document = json.loads((out / FREQUENCY_FILE).read_text(encoding='utf-8'))
+    assert document['conditions']['delay_s'] == 0.01
     assert [entry['controller'] for entry in document['controllers']] == ['ls8', 'pi']
     for entry in document['controllers']:
         assert entry['linear']

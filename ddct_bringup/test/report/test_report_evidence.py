@@ -10,7 +10,9 @@ from test_report_escaping import SETTINGS, recording
 from ddct_bringup.report import evidence
 from ddct_bringup.report.evidence import COMPUTED, FREQUENCY_FILE, LoopEvidence, loop_rows
 from ddct_bringup.report.runs import ReportRun
-from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
+from ddct_plant.scenario.file import load_scenario, scenario_digest
+from ddct_plant.scenario.settings import RunSettings
 
 
 @pytest.fixture(scope='module')
@@ -29,9 +31,9 @@ def remark(tmp_path, monkeypatch, whole, run):
     monkeypatch.setattr(evidence, 'frequency_evidence', lambda names, settings: whole)
     found = dataclasses.replace(run, path=tmp_path / 'pi' / 'pi_0.mcap')
 
-    def read(text: str) -> str:
+    def read(text: str, settings: RunSettings = SETTINGS) -> str:
         (tmp_path / FREQUENCY_FILE).write_text(text, encoding='utf-8')
-        (loop,) = evidence.evidence_of([ReportRun({'controller': 'pi'}, found, None, SETTINGS)])
+        (loop,) = evidence.evidence_of([ReportRun({'controller': 'pi'}, found, None, settings)])
         assert len(loop_rows([loop])) == 1
         return loop.remark
 
@@ -47,6 +49,19 @@ def test_figures_are_those_of_the_run_s_own_wear_gain(whole):
 
 def test_whole_evidence_is_taken(remark, whole):
     assert remark(json.dumps(whole)) == ''
+
+
+def test_evidence_of_an_earlier_version_is_taken_for_the_printed_actuator_alone(remark, whole):
+    """Files of earlier versions have the printed delay, whatever that of their scenario is."""
+    earlier = copy.deepcopy(whole)
+    del earlier['conditions']['bandwidth_factor']
+    assert remark(json.dumps(earlier)) == ''
+    for change in ('actuator.delay_s=0.05', 'actuator.bandwidth_factor=0.5'):
+        slow = dataclasses.replace(SETTINGS, scenario=load_scenario('thesis', [change]))
+        earlier['conditions']['scenario_digest'] = scenario_digest(slow.scenario)
+        assert remark(json.dumps(earlier), slow) == COMPUTED
+        of_the_run = earlier['conditions'] | actuator_conditions(slow.scenario.actuator)
+        assert remark(json.dumps(earlier | {'conditions': of_the_run}), slow) == ''
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,8 @@ def stability(subject: Subject) -> str:
     from ddct_controllers.design.analysis.loops import sampled_loop
     from ddct_controllers.design.analysis.margins import loop_margins
 
-    margins = loop_margins(sampled_loop(model, subject.settings.scenario.driveline))
+    scenario = subject.settings.scenario
+    margins = loop_margins(sampled_loop(model, scenario.driveline, actuator=scenario.actuator))
     if not margins.stable:
         raise CheckFailedError(
             'the sampled loop of its linear_model has a pole on or outside the unit circle: lower '

@@ -27,6 +27,7 @@ from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
@@ -45,17 +46,18 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     """
     Return `conditions` and one entry per controller, in their order.
 
-    The driveline is the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3. A
-    controller that is not linear has an entry that says so. Raise DdctError for one that cannot
+    Driveline and actuator are the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3.
+    A controller that is not linear has an entry that says so. Raise DdctError for one that cannot
     be built or whose `linear_model` cannot be used.
     """
-    corners = PlantCorners(settings.scenario.driveline)
+    scenario = settings.scenario
+    corners = PlantCorners(scenario.driveline, scenario.actuator)
     return {
         'conditions': {
-            'scenario': settings.scenario.name,
-            'scenario_digest': scenario_digest(settings.scenario),
+            'scenario': scenario.name,
+            'scenario_digest': scenario_digest(scenario),
             'period_s': PERIOD_S,
-            'delay_s': PERIOD_S,
+            **actuator_conditions(scenario.actuator),
             'wear_gain_range': [WEAR_GAINS[0], WEAR_GAINS[-1]],
             'corners': len(corners.plants),
             'corner_spread': PARAMETER_SPREAD,
@@ -65,6 +67,11 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     }
 
 
+def actuator_conditions(actuator: ActuatorParameters) -> Evidence:
+    """Return which of the `conditions` are those of the actuator."""
+    return {'delay_s': actuator.delay_s, 'bandwidth_factor': actuator.bandwidth_factor}
+
+
 def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCorners) -> Evidence:
     name = controller_label(chosen)
     controller = make_controller(chosen, settings)
@@ -72,10 +79,10 @@ def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCo
     entry: Evidence = {'controller': name, 'linear': model is not None}
     if model is None:
         return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
-    driveline = settings.scenario.driveline
+    scenario = settings.scenario
     try:
         wear = {
-            gain: loop_evidence(model, driveline, gain)
+            gain: loop_evidence(model, scenario.driveline, gain, scenario.actuator)
             for gain in sorted({*WEAR_GAINS, settings.wear_gain})
         }
         worst = _corner_evidence(model, corners)
@@ -115,10 +122,13 @@ def _unusable(name: str, controller: Controller, reason: object) -> DdctError:
 
 
 def loop_evidence(
-    controller: StateSpace, driveline: DrivelineParameters, wear_gain: float
+    controller: StateSpace,
+    driveline: DrivelineParameters,
+    wear_gain: float,
+    actuator: ActuatorParameters,
 ) -> Evidence:
     """Return margins and driveline mode of the sampled loop at one wear gain."""
-    loop = sampled_loop(controller, driveline, wear_gain)
+    loop = sampled_loop(controller, driveline, wear_gain, actuator)
     mode = driveline_mode(loop, driveline)
     return {
         'wear_gain': wear_gain,
@@ -131,7 +141,8 @@ def loop_evidence(
 
 def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> Evidence:
     found = worst_corner(controller, corners)
-    worst = loop_evidence(controller, corners.parameters[found.index], found.wear_gain)
+    driveline = corners.parameters[found.index]
+    worst = loop_evidence(controller, driveline, found.wear_gain, corners.actuator)
     return {
         'unstable': found.unstable_corners,
         'sensitivity_peak': found.sensitivity_peak,
@@ -172,11 +183,11 @@ def loop_summary(name: str, settings: RunSettings) -> list[str]:
 
 
 def _stability(model: StateSpace, settings: RunSettings) -> str:
-    driveline, wear_gain = settings.scenario.driveline, settings.wear_gain
-    loop = sampled_loop(model, driveline, wear_gain)
+    scenario, wear_gain = settings.scenario, settings.wear_gain
+    loop = sampled_loop(model, scenario.driveline, wear_gain, scenario.actuator)
     where = f'the sampled loop with its hold and delay, at wear gain {wear_gain:g},'
     if outside := unstable_poles(loop):
-        turned = sampled_loop(scaled(model, -1.0), driveline, wear_gain)
+        turned = scaled(loop, -1.0)
         hint = '' if unstable_poles(turned) else '; -G_c is stable: is the sign wrong?'
         count = 'pole' if outside == 1 else 'poles'
         return (

@@ -19,14 +19,15 @@ from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 _DESCRIPTION = """\
-Compute the margins of the sampled loop with its hold and its 10 ms delay. At one wear gain:
-gain, phase, delay and disk margins, M_s, M_t, crossover, bandwidth, and the driveline mode.
-Then the highest wear gain that is stable. Over wear gains 0.7 to 1.3 and all driveline
-parameters +-20 %: the highest M_s and the number of unstable corners."""
+Compute the margins of the sampled loop: the hold, the actuator with its delay, and the driveline,
+both of the scenario. At one wear gain: gain, phase, delay and disk margins, M_s, M_t, crossover,
+bandwidth, and the driveline mode. Then the highest wear gain that is stable. Over wear gains 0.7
+to 1.3 and all driveline parameters +-20 %: the highest M_s and the number of unstable corners."""
 _EXAMPLES = """\
 examples:
   ddct design margins
-  ddct design margins --controller ls8 --wear-gain 1.3 --json -"""
+  ddct design margins --controller ls8 --wear-gain 1.3 --json -
+  ddct design margins --controller hinf2 --set actuator.delay_s=0.05"""
 
 
 def add_parser(subparsers: Any) -> None:

@@ -108,7 +108,8 @@ def paper_tables(paper: dict[str, Any]) -> dict[str, Table]:
         ),
         'outputs': Table('C and D, likewise', ('', *columns), outputs),
         'transfer_functions': Table(
-            'Transfer functions, s in rad/s',
+            'Transfer functions, s in rad/s; a delay of '
+            f'{paper["actuator_delay_s"]:g} s before G_a',
             ('', 'from', 'to', 'function'),
             [
                 (name, each['input'], each['output'], factored_text(each))

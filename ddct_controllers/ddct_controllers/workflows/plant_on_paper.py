@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from ddct_controllers.design.state_space import factors_text
-from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -17,7 +16,6 @@ from ddct_plant.models.driveline_model import (
     engine_to_slip,
     load_to_slip,
 )
-from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.scenario import Scenario
 
@@ -42,7 +40,7 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
         'P_1': ('C_m', 'w_d', engine_to_slip(driveline)),
         'P_2': ('C_f', 'w_d', clutch_to_slip(driveline)),
         'P_3': ('C_load', 'w_d', load_to_slip(driveline)),
-        'G_a': ('C_request', 'C_actuator', ACTUATOR),
+        'G_a': ('C_request', 'C_actuator', scenario.actuator.transfer_function()),
     }
     return {
         'scenario': scenario.name,
@@ -61,7 +59,7 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
             name: {'input': source, 'output': output, **_entry(function)}
             for name, (source, output, function) in transfer_functions.items()
         },
-        'actuator_delay_s': PERIOD_S,
+        'actuator_delay_s': scenario.actuator.delay_s,
         'c_fol': {
             name: {'factor': static.torque(*row), 'unit': unit}
             for (name, unit), row in zip(

@@ -8,7 +8,8 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SCENARIO = load_scenario('thesis')
+SETTINGS = RunSettings(SCENARIO)
 HEAD = 'name: mine\nunits: {input: rpm, output: N m}\n'
 POLYNOMIAL = 'polynomial: {num: [-0.035, -0.8, -1.1], den: [1, 8, 0]}\n'
 
@@ -59,7 +60,7 @@ def test_a_stable_loop_has_the_margins_of_the_evidence(summary, tmp_path, wear_g
     settings = RunSettings(load_scenario('thesis'), wear_gain=wear_gain)
     stability = summary(POLYNOMIAL, settings)[-1]
     model = make_controller(str(tmp_path / 'any.yaml'), settings).linear_model()
-    margins = loop_evidence(model, settings.scenario.driveline, wear_gain)
+    margins = loop_evidence(model, SCENARIO.driveline, wear_gain, SCENARIO.actuator)
     assert f'at wear gain {wear_gain:g}, is stable: ' in stability
     assert f'gain margin {margins["gain_margin_db"]:.1f} dB' in stability
     assert f'phase margin {margins["phase_margin_deg"]:.0f} deg' in stability
@@ -71,6 +72,12 @@ def test_an_unstable_loop_is_said_loudly_and_a_wrong_sign_is_suspected(summary):
     assert (
         'has 1 pole on or outside the unit circle; -G_c is stable: is the sign wrong?' in stability
     )
+
+
+def test_the_loop_has_the_actuator_of_the_scenario(summary):
+    slow = RunSettings(load_scenario('thesis', ['actuator.delay_s=0.9']))
+    assert 'is stable: ' in summary(POLYNOMIAL)[-1]
+    assert 'UNSTABLE: ' in summary(POLYNOMIAL, slow)[-1]
 
 
 def test_what_is_no_transfer_function_has_no_summary():

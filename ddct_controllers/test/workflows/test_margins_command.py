@@ -121,6 +121,29 @@ def test_the_driveline_is_the_scenarios(capsys):
     assert stiff['nominal']['gain_margin_db'] != usual['nominal']['gain_margin_db']
 
 
+def test_the_actuator_is_the_scenarios(capsys):
+    """Hinf2 bears 14 ms more than the printed 10 ms; with 50 ms its slip grows in a run."""
+    delayed = ['--set', 'actuator.delay_s=0.05', '--set', 'actuator.bandwidth_factor=1.2']
+    assert run('--controller', 'hinf2', *delayed, '--json', '-') == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document['conditions']['delay_s'] == 0.05
+    assert document['conditions']['bandwidth_factor'] == 1.2
+    (entry,) = document['controllers']
+    assert not any(point['stable'] for point in entry['wear'])
+    assert entry['corners']['unstable'] == 128
+    assert entry['corners']['worst']['stable'] is False
+
+
+@pytest.mark.parametrize('delay_ms', [23, 25])
+def test_the_delay_margin_says_at_which_delay_of_the_actuator_a_loop_ends(delay_ms, capsys):
+    run('--controller', 'hinf2', '--json', '-')
+    margin = json.loads(capsys.readouterr().out)['controllers'][0]['nominal']['delay_margin_s']
+    assert 0.013 < margin < 0.015
+    run('--controller', 'hinf2', '--set', f'actuator.delay_s={1e-3 * delay_ms:g}')
+    stable = 1e-3 * delay_ms < 0.01 + margin
+    assert rows(capsys.readouterr().out)['hinf2'][0] == ('yes' if stable else 'no')
+
+
 @pytest.mark.parametrize(
     ('arguments', 'message'),
     [

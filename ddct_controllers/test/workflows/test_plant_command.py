@@ -21,6 +21,20 @@ from ddct_plant.scenario.file import load_scenario
 STIFFER = ['driveline.halfshaft_stiffness=8000']
 
 
+def test_the_actuator_is_the_scenarios(capsys: pytest.CaptureFixture[str]) -> None:
+    changes = ['actuator.delay_s=0.023', 'actuator.bandwidth_factor=1.3']
+    scenario = load_scenario('thesis', changes)
+    paper = plant_on_paper(scenario)
+    assert paper['actuator_delay_s'] == 0.023
+    function, running = paper['transfer_functions']['G_a'], scenario.actuator.dynamics()
+    w = np.logspace(-1, 3, 50)
+    ours = control.tf(function['num'], function['den'])(1j * w)
+    theirs = control.ss(running.a, running.b, running.c, running.d)(1j * w)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+    assert main(['plant', *(f'--set={each}' for each in changes)]) == 0
+    assert 'a delay of 0.023 s before G_a' in capsys.readouterr().out
+
+
 def test_the_transfer_functions_are_those_of_the_state_space() -> None:
     paper = plant_on_paper(load_scenario('thesis', STIFFER))
     space = paper['state_space']

@@ -131,6 +131,18 @@ class FactoredTransferFunction:
             self.denominator + other.denominator,
         )
 
+    def faster(self, factor: float) -> 'FactoredTransferFunction':
+        """Return G(s / factor), which is `factor` times as fast."""
+        excess = len(self.poles) - len(self.zeros)
+        sides = (
+            tuple(
+                (f[0] * factor, f[1] * factor**2) if isinstance(f, tuple) else f * factor
+                for f in side
+            )
+            for side in (self.numerator, self.denominator)
+        )
+        return FactoredTransferFunction(self.gain * factor**excess, *sides)
+
     def at(self, s: np.ndarray) -> np.ndarray:
         """Return the complex value, the shape of `s`, at points of the complex plane in rad/s."""
         s = np.asarray(s, dtype=complex)

@@ -8,7 +8,7 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
-from ddct_plant.linear.lti import StateSpace, lift_zoh_dense
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, lift_zoh_dense
 from ddct_plant.models.printed import ACTUATOR
 
 
@@ -44,6 +44,10 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
     def delay_substeps(self) -> int:
         """The delay in steps of 1 ms."""
         return round(self.delay_s / SUBSTEP_S)
+
+    def transfer_function(self) -> FactoredTransferFunction:
+        """Return G_a(s / factor) as the thesis prints it."""
+        return ACTUATOR.faster(self.bandwidth_factor)
 
     def dynamics(self) -> StateSpace:
         """Return G_a(s / factor), one input, one output."""

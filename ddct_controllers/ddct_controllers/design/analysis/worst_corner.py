@@ -12,6 +12,7 @@ from ddct_controllers.design.analysis.closed_loop import (
 )
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
+    PRINTED_ACTUATOR,
     WEAR_RANGE,
     LoopCurve,
     sampled_plant,
@@ -25,6 +26,7 @@ from ddct_controllers.design.state_space import (
 )
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
@@ -45,8 +47,13 @@ class PlantCorners:
     omega = np.geomspace(0.01, np.pi / PERIOD_S, 800)
     """Frequencies in rad/s of `responses`."""
 
-    def __init__(self, nominal: DrivelineParameters = IDENTIFIED_DRIVELINE) -> None:
-        """Sample the plant at every corner, with a new clutch."""
+    def __init__(
+        self,
+        nominal: DrivelineParameters = IDENTIFIED_DRIVELINE,
+        actuator: ActuatorParameters = PRINTED_ACTUATOR,
+    ) -> None:
+        """Sample the plant at every corner, with a new clutch and one actuator."""
+        self.actuator = actuator
         self.varied = [field.name for field in fields(nominal) if getattr(nominal, field.name)]
         """Names of the parameters that differ between corners."""
         ends = (1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD)
@@ -63,7 +70,7 @@ class PlantCorners:
             for factors in self.factors
         ]
         """Per corner: the driveline."""
-        self.plants = [sampled_plant(parameters) for parameters in self.parameters]
+        self.plants = [sampled_plant(each, actuator=actuator) for each in self.parameters]
         """Per corner: hold, delay, actuator and driveline, as `sampled_plant` gives them."""
         self.responses = np.array([frequency_response(p, self.omega) for p in self.plants])
         """(corners, frequencies), complex."""

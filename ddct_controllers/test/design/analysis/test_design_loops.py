@@ -23,7 +23,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
-from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import Driveline, InitialState
 from ddct_plant.models.parameters import VehicleParameters
@@ -34,7 +34,12 @@ BASE_TORQUE = 100.0
 """Keeps the request away from saturation; its own response is subtracted."""
 
 
-def slip_rpm_as_run(extra_torque: np.ndarray, wear_gain: float) -> np.ndarray:
+PRINTED = ActuatorParameters()
+
+
+def slip_rpm_as_run(
+    extra_torque: np.ndarray, wear_gain: float, parameters: ActuatorParameters = PRINTED
+) -> np.ndarray:
     """Return w_d in rpm at t_0..t_N through the actuator, clutch and driveline that runs use."""
 
     def slip(extra: np.ndarray) -> np.ndarray:
@@ -49,7 +54,7 @@ def slip_rpm_as_run(extra_torque: np.ndarray, wear_gain: float) -> np.ndarray:
             clutch_torque=wear_gain * BASE_TORQUE,
         )
         driveline = Driveline(IDENTIFIED_DRIVELINE, VehicleParameters(), start)
-        actuator, clutch = Actuator(BASE_TORQUE), LinearClutch(wear_gain)
+        actuator, clutch = Actuator(BASE_TORQUE, parameters), LinearClutch(wear_gain)
         speeds = []
         for torque in extra:
             speeds.append(rpm_from_rad_s(driveline.outputs().slip_speed))
@@ -59,16 +64,34 @@ def slip_rpm_as_run(extra_torque: np.ndarray, wear_gain: float) -> np.ndarray:
     return slip(extra_torque) - slip(np.zeros(len(extra_torque)))
 
 
+SWING = 10.0 * (1.0 - np.cos(2.0 * math.tau * PERIOD_S * np.arange(200)))
+"""A torque in N m that swings at 2 Hz."""
+
+
+def response(plant: StateSpace, torque: np.ndarray) -> np.ndarray:
+    """Return the output of a sampled plant at rest."""
+    state, output = np.zeros(len(plant.a)), []
+    for each in torque:
+        output.append(plant.c[0] @ state + plant.d[0, 0] * each)
+        state = plant.a @ state + plant.b[:, 0] * each
+    return np.array(output)
+
+
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
 def test_the_sampled_plant_is_the_plant_that_runs(wear_gain):
     """Within 1e-4 of the peak for a torque swinging at 2 Hz; the run's 1 ms lines cost that."""
-    swing = 10.0 * (1.0 - np.cos(2.0 * math.tau * PERIOD_S * np.arange(200)))
-    plant = sampled_plant(wear_gain=wear_gain)
-    state, expected = np.zeros(len(plant.a)), []
-    for torque in swing:
-        expected.append(plant.c[0] @ state)
-        state = plant.a @ state + plant.b[:, 0] * torque
-    found = slip_rpm_as_run(swing, wear_gain)
+    expected = response(sampled_plant(wear_gain=wear_gain), SWING)
+    found = slip_rpm_as_run(SWING, wear_gain)
+    assert found == pytest.approx(expected, abs=1e-4 * np.abs(found).max())
+
+
+@pytest.mark.parametrize('delay_s', [0.0, 0.003, 0.01, 0.013, 0.027, 0.05])
+@pytest.mark.parametrize('bandwidth_factor', [0.5, 1.0, 1.3])
+def test_the_sampled_plant_has_the_actuator_that_runs(delay_s, bandwidth_factor):
+    """Delays that are no whole number of samples too; 1 ms more is 100 times the tolerance."""
+    actuator = ActuatorParameters(delay_s, bandwidth_factor)
+    expected = response(sampled_plant(actuator=actuator), SWING)
+    found = slip_rpm_as_run(SWING, 1.0, actuator)
     assert found == pytest.approx(expected, abs=1e-4 * np.abs(found).max())
 
 

@@ -20,6 +20,7 @@ from ddct_controllers.design.state_space import frequency_response, scaled
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 pytestmark = pytest.mark.slow
@@ -44,6 +45,15 @@ def test_there_is_a_corner_for_every_combination_of_the_seven_parameters(corners
         for name in corners.varied
     }
     assert ratios == {1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD}
+
+
+def test_every_corner_has_the_actuator_that_is_given():
+    late = ActuatorParameters(delay_s=0.014)
+    corners = PlantCorners(actuator=late)
+    controller = sampled('ls8')
+    found = worst_corner(controller, corners)
+    loop = sampled_loop(controller, corners.parameters[found.index], found.wear_gain, late)
+    assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
 
 
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1', 'hinf3'])

@@ -1,0 +1,45 @@
+"""Exact sampling of a continuous system whose input is held over a period, then delayed."""
+
+import numpy as np
+
+from ddct_controllers.design.state_space import series
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
+from ddct_plant.linear.lti import StateSpace, discretise_zoh
+
+
+def sampled_behind_delay(system: StateSpace, substeps: int) -> StateSpace:
+    """
+    Return a continuous system, sampled at 10 ms, behind a hold and a delay of `substeps` ms.
+
+    A delay of 13 ms is a whole period, and within each period the earlier of two inputs acts for
+    3 ms and the later one for 7 ms, as in `ddct_plant.models.actuator`. The states are the inputs
+    that have not acted in full yet, the latest first, then those of the system.
+    """
+    periods, late = divmod(substeps, SUBSTEPS)
+    held = _changed_within_period(system, late) if late else discretise_zoh(system, PERIOD_S)
+    return series(_delay_line(periods), held) if periods else held
+
+
+def _delay_line(periods: int) -> StateSpace:
+    inputs = np.eye(periods)
+    shift = np.eye(periods, k=-1)
+    return StateSpace(shift, inputs[:, :1], inputs[-1:], np.zeros((1, 1)), PERIOD_S)
+
+
+def _changed_within_period(system: StateSpace, late: int) -> StateSpace:
+    """
+    Return the system whose input changes `late` ms after each sample.
+
+    With Phi and Gamma of the first `late` ms (1) and of the rest (2), and the earlier input u':
+    x_(k+1) = Phi_2 Phi_1 x_k + Phi_2 Gamma_1 u' + Gamma_2 u_k, y_k = c x_k + d u'.
+    """
+    first = discretise_zoh(system, late * SUBSTEP_S)
+    rest = discretise_zoh(system, (SUBSTEPS - late) * SUBSTEP_S)
+    none = np.zeros((1, 1 + len(system.a)))
+    return StateSpace(
+        np.vstack([none, np.hstack([rest.a @ first.b, rest.a @ first.a])]),
+        np.vstack([np.ones((1, 1)), rest.b]),
+        np.hstack([system.d, system.c]),
+        np.zeros((1, 1)),
+        PERIOD_S,
+    )
