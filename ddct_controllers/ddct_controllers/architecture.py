@@ -8,7 +8,7 @@ import numpy as np
 
 from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement, Status
-from ddct_controllers.places import place_of_error, place_of_method
+from ddct_controllers.places import place_of_failure, place_of_method
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError, require_finite
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
@@ -103,8 +103,7 @@ class Architecture:
                 'diverges in this scenario, or its options do not suit it'
             ) from error
         except FOREIGN_FAILURES as error:
-            package = type(self._controller).__module__.partition('.')[0]
-            place = place_of_error(error, package) or place_of_method(self._controller, 'update')
+            place = place_of_failure(self._controller, error)
             raise ForeignError(
                 f'{self._name}: it failed at step {measurement.step} ({type(error).__name__}: '
                 f'{error}, in {place}): mend the controller'

@@ -33,7 +33,8 @@ def chosen_from(controller: Any, name: str = '') -> Chosen:
         name = _free(name or type(controller).__name__)
         return replace(factory_spec(name, _same(controller), name), options={})
     if (model := _linear_system(controller, name or _LINEAR)) is not None:
-        return linear_spec(_free(name or _LINEAR), model, HOLD)
+        name = _free(name or _LINEAR)
+        return replace(linear_spec(name, model, HOLD), written_in=f'the linear system {name!r}')
     if callable(controller):
         source = getattr(controller, '__name__', type(controller).__name__)
         return factory_spec(_free(name or source), controller, source)

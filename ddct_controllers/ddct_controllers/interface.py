@@ -124,6 +124,10 @@ class Controller(ABC):
     """As `ControllerSpec` has it, from where the registry takes it."""
     digests: Mapping[str, str] = MappingProxyType({})
     """Likewise."""
+    written_in: str = ''
+    """Likewise."""
+    method_names: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """What its author calls the methods, where that is not Python: errors name these."""
     preview_steps: int = 0
     """How many steps beyond the present one the controller wants the reference for."""
     commands_engine: bool = False
@@ -217,6 +221,8 @@ class ControllerSpec(Generic[Made]):
     """
     digests: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of the files that it is made of, by their key on `run_info`."""
+    written_in: str = ''
+    """Where its author changes it, of one that is no Python: errors name that, not our code."""
 
     def __call__(self, context: ControllerContext) -> Made:
         """Make the controller; raise ParameterError for an option that it does not take."""

@@ -1,4 +1,4 @@
-"""Where in a controller's own code the cause of an error is."""
+"""Where the author of a controller finds the cause of an error: in code or files of their own."""
 
 import inspect
 import traceback
@@ -17,9 +17,24 @@ def place_of_error(error: BaseException, package: str) -> str:
 
 
 def place_of_method(controller: Controller, name: str) -> str:
-    """Return `FILE line N` where a method of a controller begins."""
+    """
+    Return `FILE line N` where a method of a controller begins.
+
+    Of one that is no Python of its author: where it comes from, such as a key of a YAML file, and
+    what the method is called there.
+    """
+    if place := controller.written_in:
+        own_name = controller.method_names.get(name)
+        return f'{own_name} of {place}' if own_name else place
     try:
         method = inspect.unwrap(getattr(controller, name))
         return f'{inspect.getsourcefile(method)} line {inspect.getsourcelines(method)[1]}'
     except (OSError, TypeError):  # no source: compiled, or typed in
         return f'{type(controller).__module__}.{type(controller).__name__}.{name}'
+
+
+def place_of_failure(controller: Controller, error: BaseException) -> str:
+    """Return where an update raised `error`: in code of the controller's author."""
+    package = type(controller).__module__.partition('.')[0]
+    line = '' if controller.written_in else place_of_error(error, package)
+    return line or place_of_method(controller, 'update')

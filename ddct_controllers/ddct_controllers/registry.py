@@ -118,6 +118,7 @@ def make_controller(
     controller.registered_name = spec.name
     controller.computed_from = spec.computed_from
     controller.digests = spec.digests
+    controller.written_in = spec.written_in
     return controller
 
 

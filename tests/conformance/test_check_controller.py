@@ -143,6 +143,22 @@ def test_stability_is_that_of_the_loop_with_the_actuator_of_the_scenario() -> No
     assert f'phase margin {margins["phase_margin_deg"]:.0f} deg' in stability.detail
 
 
+@pytest.mark.parametrize(
+    ('polynomial', 'check'),
+    [('{num: [0.05, 0.1], den: [1, 0]}', 'sign'), ('{num: [-9, -9], den: [1, 0]}', 'rate')],
+)
+def test_an_error_of_a_controller_in_yaml_is_placed_in_its_file_and_key(
+    polynomial: str, check: str, tmp_path: Path
+) -> None:
+    file = tmp_path / 'mine.yaml'
+    file.write_text(f'name: mine\nunits: {{input: rpm, output: N m}}\npolynomial: {polynomial}\n')
+    found = failed(outcomes_of(str(file)))
+    assert {check, 'stability'} <= found.keys()
+    for detail in found.values():
+        assert f'{file} line 3 (polynomial)' in detail
+        assert '.py' not in detail
+
+
 @pytest.fixture
 def from_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> tuple[Path, Path]:
     """Install a copy of a package from a folder; return its module there, and in the copy."""

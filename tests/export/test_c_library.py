@@ -1,5 +1,6 @@
 """Controllers written in C run from a file like any other; what is wrong with them is said."""
 
+import gc
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from support.exported_mpc import STRICT, compile_c, run_settings
 
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.run.headless import run_headless
+from ddct_controllers.check.checks import FAIL, check_controller
 from ddct_controllers.from_file.c_library import host
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.mpc.export.export_controller import export_controller
@@ -97,6 +99,25 @@ class Interleaved(Controller):
     def update(self, measurement):
         self._other.update(measurement)
         return self._controller.update(measurement)
+
+
+@pytest.mark.parametrize(
+    ('source', 'check'),
+    [
+        ('command->clutch_torque = 0.0 / 0.0;', 'answers'),
+        ('command->clutch_torque = -0.1 * m->engine_speed;', 'sign'),
+        ('static double x = 100.0; command->clutch_torque = x = -x;', 'rate'),
+    ],
+)
+def test_an_error_of_a_controller_in_c_is_placed_in_its_file_and_function(library, source, check):
+    file = library(command(source))
+    found = {
+        each.name: each.detail for each in check_controller(file, SETTINGS) if each.state == FAIL
+    }
+    gc.collect()  # ends the processes of all objects that were tried
+    assert f'ddct_controller_update of {file} line ' in found[check]
+    assert found[check].partition(' line ')[2].partition(')')[0].endswith('(c_library')
+    assert not [detail for detail in found.values() if '.py' in detail]
 
 
 def test_what_c_prints_and_returns_is_kept_apart_from_its_answer(library, capfd):

@@ -59,7 +59,7 @@ def own_state(subject: Subject) -> str:
     if np.array_equal(alone, played(subject.make(), subject.measured)):
         raise CheckFailedError(
             'a second object that runs beside it changes what it answers: they share an object '
-            f'or a file; keep state in self ({place_of_method(one, "__init__")})'
+            f'or a file; keep all state in the object ({place_of_method(one, "__init__")})'
         )
     return 'nothing seen that objects share'
 

@@ -115,7 +115,7 @@ def sign(subject: Subject) -> str:
         raise CheckFailedError(
             f'{found}, which drives the slip further up: change the sign in '
             f'{place_of_method(subject.sample, "update")}; the error is reference less slip, so a '
-            'positive error asks for less torque, -gain * measurement.slip_error_rpm'
+            'positive error asks for less torque: -gain * slip_error_rpm'
         )
     return found
 

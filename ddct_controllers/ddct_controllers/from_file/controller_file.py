@@ -83,6 +83,10 @@ class ControllerFile:
         self.digests[f'{kind}_sha256'] = hashlib.sha256(data).hexdigest()
         return path
 
+    def place_of(self, kind: str) -> str:
+        """Return where its author finds what is of a kind: file, line and key."""
+        return f'{self.path} line {self.lines[kind]} ({kind})'
+
     def located(self) -> AbstractContextManager[None]:
         """Put file, and line where the error names a key of it, before each DdctError within."""
         return located(f'controller file {self.path}', self.lines)

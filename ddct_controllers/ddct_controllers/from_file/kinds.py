@@ -34,7 +34,9 @@ def load_spec(file: str) -> ControllerSpec[Controller]:
     """Return how the controller in a file is made; raise DdctError that names file and line."""
     source = read_controller_file(file)
     with source.located():
-        return replace(KINDS[_kind(source)](source), digests=source.digests)
+        kind = _kind(source)
+        spec = KINDS[kind](source)
+        return replace(spec, digests=source.digests, written_in=source.place_of(kind))
 
 
 def _kind(file: ControllerFile) -> str:

@@ -9,6 +9,7 @@ import sys
 import weakref
 from operator import attrgetter
 from pathlib import Path
+from types import MappingProxyType
 
 from ddct_controllers.from_file.c_library import host
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
@@ -46,6 +47,8 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
 
 class CLibraryController(Controller):
     """Asks a process of its own, which has the library, at every step."""
+
+    method_names = MappingProxyType({name: f'ddct_controller_{name}' for name in _CALLS.values()})
 
     def __init__(self, path: Path) -> None:
         """Start the process; raise ParameterError when the library cannot be used."""
