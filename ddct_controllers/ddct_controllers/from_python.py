@@ -4,10 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ddct_controllers.factories import factory_spec
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import HOLD, Given, linear_spec
 from ddct_controllers.lti_objects import linear_system
-from ddct_controllers.registry import Chosen, controller_names, factory_spec
+from ddct_controllers.registry import Chosen, controller_names
 from ddct_plant.base.errors import ParameterError, require_name
 
 _LINEAR = 'linear'

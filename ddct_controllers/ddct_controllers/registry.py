@@ -3,15 +3,13 @@
 import importlib.metadata
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from numbers import Real
 from typing import Any
 
+from ddct_controllers.factories import factory_spec
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.interface import (
-    SCENARIO,
     THESIS,
-    UNSTATED,
     Controller,
     ControllerContext,
     ControllerSpec,
@@ -22,7 +20,6 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
-from ddct_plant.base.options import Option
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -157,85 +154,14 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
         return factory_spec(name, factory, point.value)
     if '.' in name or '/' in name:
         raise ParameterError(
-            f'{name} is no controller file: give a YAML file; for an FMU or a library in C, one '
-            'that names it (docs/controllers/fmu_controller.md, docs/controllers/c_controller.md)'
+            f'{name} is no controller file: give a Python file or a YAML file; for an FMU or a '
+            'library in C, a YAML file that names it (docs/controllers/fmu_controller.md, '
+            'docs/controllers/c_controller.md)'
         )
     choices = ', '.join(controller_names())
     raise ParameterError(
-        f'unknown controller {name!r}: choose from {choices}, or give the path of a YAML file'
-    )
-
-
-def factory_spec(
-    name: str, factory: Callable[[ControllerContext], Any], source: str
-) -> ControllerSpec[Controller]:
-    """
-    Return how the controller of somebody's class, or other factory, is made.
-
-    `source` is where the factory is. Raise DdctError for what it declares and must not.
-    """
-
-    def make(context: ControllerContext) -> Controller:
-        try:
-            return _plain(name, source, factory(context))
-        except DdctError:
-            raise
-        except FOREIGN_FAILURES as error:
-            raise DdctError(
-                f'controller {name!r}: {source} failed '
-                f'({type(error).__name__}: {error}): mend its code'
-            ) from error
-
-    computed_from = getattr(factory, 'computed_from', UNSTATED)
-    _require(
-        computed_from in (SCENARIO, THESIS, UNSTATED),
-        name,
-        f'computed_from is {computed_from!r}',
-        f'{SCENARIO!r} or {THESIS!r}',
-    )
-    options = getattr(factory, 'options', None)
-    _require(
-        options is None or _is_mapping(options, Option),
-        name,
-        f'options are {options!r}',
-        'a mapping of names to ddct_plant.base.options.Option, or None',
-    )
-    return ControllerSpec(name, make, options, computed_from)
-
-
-def _plain(name: str, source: str, controller: object) -> Controller:
-    """Return it; raise DdctError unless what the graph is built from is of the declared types."""
-    if not isinstance(controller, Controller):
-        raise DdctError(
-            f'controller {name!r}: {source} returned '
-            f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
-        )
-    preview = controller.preview_steps
-    _require(
-        type(preview) is int and preview >= 0,
-        name,
-        f'preview_steps is {preview!r}',
-        'a whole number of steps',
-    )
-    two_input = controller.commands_engine
-    _require(type(two_input) is bool, name, f'commands_engine is {two_input!r}', 'True or False')
-    gains = controller.gains()
-    _require(_is_mapping(gains, Real), name, f'gains() is {gains!r}', 'numbers by name')
-    info = controller.info(name)
-    _require(_is_mapping(info, str), name, f'info() is {info!r}', 'text by name')
-    return controller
-
-
-def _require(usable: bool, name: str, found: str, wanted: str) -> None:
-    """Raise DdctError that says what of the controller `name` was found, unless it is usable."""
-    if not usable:
-        raise DdctError(f'controller {name!r}: its {found}: give {wanted}')
-
-
-def _is_mapping(content: object, kind: type) -> bool:
-    """Say whether something maps text to values of a kind."""
-    return isinstance(content, Mapping) and all(
-        isinstance(key, str) and isinstance(value, kind) for key, value in content.items()
+        f'unknown controller {name!r}: choose from {choices}, or give the path of a controller '
+        'file, .py or .yaml'
     )
 
 

@@ -74,8 +74,9 @@ def test_an_unknown_name_lists_the_known_ones():
 
 
 @pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine.so', '/dev/fd/63'])
-def test_a_file_that_is_no_yaml_leads_to_the_one_that_is_needed(name):
-    with pytest.raises(ParameterError, match=f'{name} is no controller file: give a YAML file; '):
+def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
+    words = f'{name} is no controller file: give a Python file or a YAML file; '
+    with pytest.raises(ParameterError, match=words):
         make_controller(name, SETTINGS)
 
 

@@ -59,6 +59,7 @@ def workplace(install: Path, tmp_path: Path) -> Path:
         shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / 'install').symlink_to(install)
     install_example(tmp_path / 'site')
+    shutil.copy(tmp_path / 'site' / 'my_package' / 'control.py', tmp_path / 'proportional.py')
     return tmp_path
 
 

@@ -26,6 +26,7 @@ _EPILOG = """\
 examples:
   ddct bringup --out runs/first                          the PI of the thesis
   ddct bringup --controller ls8 --out runs/first         another one into the same folder
+  ddct bringup --controller mine.py --out runs/first     the class in a Python file
   ddct bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
   ddct bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
   ddct bringup --headless --out runs/quick               the same numbers without a graph
@@ -94,7 +95,7 @@ def _parser() -> argparse.ArgumentParser:
         '--controller',
         default='pi',
         metavar='NAME|FILE',
-        help='one of --list, or a controller file; default: %(default)s',
+        help='one of --list, or a controller file, .py or .yaml; default: %(default)s',
     )
     parser.add_argument(
         '--out', type=Path, metavar='DIR', help='the bag goes to DIR/<controller>/'

@@ -40,6 +40,7 @@ examples:
   ddct compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
   ddct compare --controllers all --wear-gain 0.7 --out runs/worn
   ddct compare --controllers pi,mine --headless --json - --out runs/mine
+  ddct compare --controllers pi,mine.py --headless --out runs/mine     the class in a file
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the

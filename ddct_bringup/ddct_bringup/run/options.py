@@ -66,7 +66,7 @@ def add_controllers_option(parser: argparse.ArgumentParser) -> None:
         '--controllers',
         default=ALL,
         metavar='A,B,...|all',
-        help='names of --list, or controller files; default: %(default)s',
+        help='names of --list, or controller files, .py or .yaml; default: %(default)s',
     )
 
 

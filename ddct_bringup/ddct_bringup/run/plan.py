@@ -20,7 +20,7 @@ class RunPlan:
 
     settings: RunSettings
     controller: Chosen
-    """In a graph a name of the registry or the path of a controller's YAML file."""
+    """In a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
     """'processes', one per node; 'single-process'; or 'headless', without any ROS graph."""
 

@@ -31,7 +31,7 @@ def entry_point(subject: Subject) -> str:
     except DdctError as error:
         raise CheckFailedError(f'{error}{_advice(subject, error)}') from error
     if not subject.points:
-        return f'{spec.name} is one of ours or a file: it needs no entry point'
+        return f'{spec.name} is one of ours or in a file: it needs no entry point'
     return f'{subject.points[0].value} can be imported'
 
 

@@ -18,7 +18,8 @@ do. The exit code is 1 when a check fails."""
 _EPILOG = """\
 examples:
   ddct check-controller mine                             a controller of an installed package
-  ddct check-controller designs/mine.yaml --json -       one in a file
+  ddct check-controller mine.py                          the class in a Python file
+  ddct check-controller designs/mine.yaml --json -       one in a YAML file
   ddct check-controller mine --set controllers.mine.gain=0.2"""
 
 
@@ -29,7 +30,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _check(argv: list[str]) -> int:
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    parser.add_argument('controller', metavar='NAME|FILE')
+    parser.add_argument('controller', metavar='NAME|FILE', help='FILE is .py or .yaml')
     add_scenario_options(parser, set_example='controllers.mine.gain=0.2')
     parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
     options = parser.parse_args(argv)

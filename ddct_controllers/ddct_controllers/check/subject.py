@@ -16,6 +16,7 @@ from ddct_controllers.check.trial import (
     step_response,
 )
 from ddct_controllers.check.watch import Printed
+from ddct_controllers.from_file.python_file import SUFFIX, module_name
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.linear import PiController
 from ddct_controllers.places import place_of_error
@@ -54,7 +55,9 @@ class Subject:
 
     @property
     def package(self) -> str:
-        """The top-level module of its code; '' for one of ours or a file."""
+        """The top-level module of its code; '' for one of ours or in YAML."""
+        if self.name.endswith(SUFFIX):
+            return module_name(self.name)
         return self.points[0].module.partition('.')[0] if self.points else ''
 
     @cached_property

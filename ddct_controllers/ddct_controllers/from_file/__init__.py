@@ -1,1 +1,1 @@
-"""Controllers that a YAML file describes: one loader for each kind."""
+"""Controllers in a file: one loader for each kind of YAML file, and one for Python."""

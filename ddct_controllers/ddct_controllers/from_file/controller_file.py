@@ -15,7 +15,7 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
 """Largest size of a library or an FMU that a controller file names."""
-SUFFIXES = ('.yaml', '.yml')
+SUFFIXES = ('.yaml', '.yml', '.py')
 FORMAT = 'ddct-linear-controller-1'
 """Value of the key `format`, where one is given."""
 COMMON = ('format', 'name', 'provenance')

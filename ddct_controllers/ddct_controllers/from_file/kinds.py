@@ -11,6 +11,7 @@ from ddct_controllers.from_file.controller_file import (
     read_controller_file,
 )
 from ddct_controllers.from_file.fmu import fmu_spec
+from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.from_file.transfer_functions import LINEAR
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
@@ -32,6 +33,8 @@ KINDS: Mapping[str, Loader] = {
 
 def load_spec(file: str) -> ControllerSpec[Controller]:
     """Return how the controller in a file is made; raise DdctError that names file and line."""
+    if file.endswith(SUFFIX):
+        return python_spec(file)
     source = read_controller_file(file)
     with source.located():
         kind = _kind(source)

@@ -1,0 +1,89 @@
+"""How the controller of somebody's class, or other factory, is made, and what it may declare."""
+
+from collections.abc import Callable, Mapping
+from numbers import Real
+from typing import Any
+
+from ddct_controllers.interface import (
+    SCENARIO,
+    THESIS,
+    UNSTATED,
+    Controller,
+    ControllerContext,
+    ControllerSpec,
+)
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.options import Option
+
+
+def factory_spec(
+    name: str, factory: Callable[[ControllerContext], Any], source: str
+) -> ControllerSpec[Controller]:
+    """
+    Return how the controller of somebody's class, or other factory, is made.
+
+    `source` is where the factory is. Raise DdctError for what it declares and must not.
+    """
+
+    def make(context: ControllerContext) -> Controller:
+        try:
+            return _plain(name, source, factory(context))
+        except DdctError:
+            raise
+        except FOREIGN_FAILURES as error:
+            raise DdctError(
+                f'controller {name!r}: {source} failed '
+                f'({type(error).__name__}: {error}): mend its code'
+            ) from error
+
+    computed_from = getattr(factory, 'computed_from', UNSTATED)
+    _require(
+        computed_from in (SCENARIO, THESIS, UNSTATED),
+        name,
+        f'computed_from is {computed_from!r}',
+        f'{SCENARIO!r} or {THESIS!r}',
+    )
+    options = getattr(factory, 'options', None)
+    _require(
+        options is None or _is_mapping(options, Option),
+        name,
+        f'options are {options!r}',
+        'a mapping of names to ddct_plant.base.options.Option, or None',
+    )
+    return ControllerSpec(name, make, options, computed_from)
+
+
+def _plain(name: str, source: str, controller: object) -> Controller:
+    """Return it; raise DdctError unless what the graph is built from is of the declared types."""
+    if not isinstance(controller, Controller):
+        raise DdctError(
+            f'controller {name!r}: {source} returned '
+            f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
+        )
+    preview = controller.preview_steps
+    _require(
+        type(preview) is int and preview >= 0,
+        name,
+        f'preview_steps is {preview!r}',
+        'a whole number of steps',
+    )
+    two_input = controller.commands_engine
+    _require(type(two_input) is bool, name, f'commands_engine is {two_input!r}', 'True or False')
+    gains = controller.gains()
+    _require(_is_mapping(gains, Real), name, f'gains() is {gains!r}', 'numbers by name')
+    info = controller.info(name)
+    _require(_is_mapping(info, str), name, f'info() is {info!r}', 'text by name')
+    return controller
+
+
+def _require(usable: bool, name: str, found: str, wanted: str) -> None:
+    """Raise DdctError that says what of the controller `name` was found, unless it is usable."""
+    if not usable:
+        raise DdctError(f'controller {name!r}: its {found}: give {wanted}')
+
+
+def _is_mapping(content: object, kind: type) -> bool:
+    """Say whether something maps text to values of a kind."""
+    return isinstance(content, Mapping) and all(
+        isinstance(key, str) and isinstance(value, kind) for key, value in content.items()
+    )

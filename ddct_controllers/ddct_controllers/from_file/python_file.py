@@ -1,0 +1,90 @@
+"""A controller in a file of Python: the one class of `Controller` that the file defines."""
+
+import hashlib
+import inspect
+import re
+import sys
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+
+from ddct_controllers.factories import factory_spec
+from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.places import place_of_error
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
+from ddct_plant.files.input_file import located, user_text
+
+SUFFIX = '.py'
+_PAGE = 'docs/controllers/writing_a_controller.md'
+
+
+def python_spec(file: str) -> ControllerSpec[Controller]:
+    """
+    Return how the controller in a file of Python is made; it is called as its class.
+
+    Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
+    define one controller.
+    """
+    path = Path(file)
+    with located(f'controller file {path}'):
+        text = user_text(path)
+        made = _the_one_controller(_module(path.resolve(), text))
+        require_name('controller name', made.__name__)
+        spec = factory_spec(made.__name__, made, str(path))
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return ControllerSpec(
+        spec.name,
+        spec.make,
+        spec.options,
+        spec.computed_from,
+        {'controller_file_sha256': digest},
+    )
+
+
+def module_name(file: str) -> str:
+    """Return what the module of a file is called: no other module has this name."""
+    path = Path(file).resolve()
+    stem, place = re.sub(r'\W', '_', path.stem), hashlib.sha256(str(path).encode()).hexdigest()
+    return f'controller_file_{stem}_{place[:8]}'
+
+
+@lru_cache(maxsize=64)
+def _module(path: Path, text: str) -> ModuleType:
+    """Run the text, as often as it was edited; modules beside the file can be imported."""
+    name = module_name(str(path))
+    module = ModuleType(name)
+    module.__file__ = str(path)
+    if (folder := str(path.parent)) not in sys.path:
+        sys.path.append(folder)  # last: a file there takes the place of no other module
+    sys.modules[name] = module
+    try:
+        exec(compile(text.encode(), str(path), 'exec', dont_inherit=True), vars(module))
+    except FOREIGN_FAILURES as error:
+        place = place_of_error(error, name)
+        where = f', in {place}' if place else ''
+        raise DdctError(
+            f'it cannot be loaded ({type(error).__name__}: {error}{where}): mend its code'
+        ) from error
+    return module
+
+
+def _the_one_controller(module: ModuleType) -> type[Controller]:
+    """Return the class; one with abstract methods counts only if there is no other."""
+    defined = [
+        value
+        for value in vars(module).values()
+        if inspect.isclass(value)
+        and issubclass(value, Controller)
+        and value.__module__ == module.__name__
+    ]
+    found = [each for each in defined if not inspect.isabstract(each)] or defined
+    if not found:
+        raise ParameterError(
+            f'it defines no class of ddct_controllers.interface.Controller: write one ({_PAGE})'
+        )
+    if len(found) > 1:
+        names = ', '.join(each.__name__ for each in found)
+        raise ParameterError(
+            f'it defines {len(found)} controllers, {names}: keep one in each file'
+        )
+    return found[0]

@@ -1,0 +1,143 @@
+"""A Python file is a controller: the one class of `Controller` that it defines."""
+
+import hashlib
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from ddct_controllers.check.checks import FAIL, PASS, check_controller
+from ddct_controllers.interface import UNSTATED
+from ddct_controllers.registry import controller_label, controller_spec, make_controller
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+HEAD = """\
+from dataclasses import dataclass
+from ddct_controllers.interface import Command, Controller
+from ddct_plant.base.options import Option
+"""
+CLASS = """
+class Mine(Controller):
+    options = {'gain': Option(0.1, 'torque per slip error', 'N m/rpm', at_least=0.0)}
+
+    def __init__(self, context):
+        self.gain = context.gains['gain']
+
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return Command(-self.gain * measurement.slip_error_rpm)
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / 'two words.v2.py'
+    path.write_text(HEAD + CLASS)
+    return path
+
+
+def test_it_is_called_as_its_class_and_takes_its_options(file: Path) -> None:
+    settings = RunSettings(load_scenario('thesis', ['controllers.Mine.gain=0.3']))
+    made = make_controller(str(file), settings)
+    assert controller_label(str(file)) == made.registered_name == 'Mine'
+    assert vars(made)['gain'] == 0.3
+    assert made.computed_from == UNSTATED
+    with pytest.raises(ParameterError, match=re.escape('controllers.Mine.gian is not a key')):
+        make_controller(
+            str(file), RunSettings(load_scenario('thesis', ['controllers.Mine.gian=1']))
+        )
+
+
+def test_it_is_known_by_the_digest_of_its_file_and_an_edit_counts_at_once(file: Path) -> None:
+    for text in (HEAD + CLASS, (HEAD + CLASS).replace('0.1', '0.2')):
+        file.write_bytes(text.replace('\n', '\r\n').encode())
+        made = make_controller(str(file), SETTINGS)
+        digest = hashlib.sha256(file.read_bytes()).hexdigest()
+        assert made.info('Mine')['controller_file_sha256'] == digest
+        assert vars(made)['gain'] == (0.1 if '0.1' in text else 0.2)
+
+
+def test_it_is_loaded_once_and_may_import_what_lies_beside_it(file: Path) -> None:
+    beside = file.parent / 'beside_mine_7.py'
+    beside.write_text('LOADED = []\n')
+    file.write_text(f'import beside_mine_7\nbeside_mine_7.LOADED.append(1)\n{HEAD}{CLASS}')
+    for _ in range(3):
+        make_controller(str(file), SETTINGS)
+    assert sys.modules['beside_mine_7'].LOADED == [1]
+
+
+@pytest.mark.parametrize(
+    'more',
+    [
+        'from ddct_controllers.linear import PiController\n',
+        '@dataclass\nclass Note:\n    text: str = ""\n',
+        'class Base(Controller):\n    def reset(self):\n        pass\n',
+        "if __name__ == '__main__':\n    raise SystemExit(3)\n",
+    ],
+    ids=['imported', 'other class', 'abstract', 'script'],
+)
+def test_the_class_is_the_one_controller_that_the_file_defines(file: Path, more: str) -> None:
+    file.write_text(f'{HEAD}{more}{CLASS}')
+    assert controller_label(str(file)) == 'Mine'
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        (HEAD, 'it defines no class of ddct_controllers.interface.Controller: write one'),
+        (
+            f'{HEAD}{CLASS}{CLASS.replace("Mine", "Other")}',
+            'it defines 2 controllers, Mine, Other: keep one in each file',
+        ),
+        ('import no_such_module\n', "(ModuleNotFoundError: No module named 'no_such_module', in "),
+        (HEAD + 'class Mine(Controller:\n', 'it cannot be loaded (SyntaxError: '),
+        ('raise SystemExit(3)\n', 'it cannot be loaded (SystemExit: 3, in '),
+    ],
+)
+def test_what_is_no_controller_says_why_in_one_line(file: Path, text: str, complaint: str) -> None:
+    file.write_text(text)
+    with pytest.raises(DdctError) as caught:
+        controller_spec(str(file))
+    assert str(caught.value).startswith(f'controller file {file}: it ')
+    assert complaint in str(caught.value)
+
+
+def test_a_name_of_another_controller_is_refused(file: Path) -> None:
+    file.write_text(HEAD + CLASS.replace('Mine', 'pi'))
+    with pytest.raises(ParameterError, match="the name 'pi' is taken by another controller"):
+        controller_spec(str(file))
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(DdctError, match=r'mine\.py: cannot be read \(No such file'):
+        controller_spec(str(tmp_path / 'mine.py'))
+
+
+def test_what_it_does_wrong_is_found_with_its_line(file: Path) -> None:
+    assert {each.state for each in check_controller(str(file), SETTINGS)} <= {PASS, 'skipped'}
+    file.write_text((HEAD + CLASS).replace('-self.gain', 'self.gain'))
+    found = {each.name: each.detail for each in check_controller(str(file), SETTINGS)}
+    assert f'change the sign in {file} line 14; ' in found['sign']
+
+
+@pytest.mark.parametrize(
+    ('wrong', 'check', 'words'),
+    [
+        ('count.append(1) or Command(-len(count))', 'state', 'count'),
+        ('Command(-self.gain * time.time())', 'determinism', 'it calls time.time in '),
+        ('Command(-1 / 0)', 'answers', 'ZeroDivisionError: division by zero, in '),
+    ],
+)
+def test_its_own_module_is_watched(file: Path, wrong: str, check: str, words: str) -> None:
+    text = CLASS.replace('Command(-self.gain * measurement.slip_error_rpm)', wrong)
+    file.write_text(f'import time\ncount = []\n{HEAD}{text}')
+    outcomes = {each.name: each for each in check_controller(str(file), SETTINGS)}
+    assert outcomes[check].state == FAIL
+    assert words in outcomes[check].detail
+    assert f'{file} line 1' in outcomes[check].detail
