@@ -11,7 +11,6 @@ import pytest
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
@@ -176,27 +175,16 @@ def test_a_controller_that_raises_is_named_with_the_step_and_the_line(measuremen
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
 
 
-def test_an_estimate_that_diverges_ends_the_run_with_the_controllers_name():
-    settings = RunSettings(load_scenario('thesis', ['driveline.total_ratio=15']))
-    controller = make_controller('mpc4_wear', settings)
-    architecture = make_architecture(settings, controller)
-    references = controller.preview_steps + 1
-    with (
-        np.errstate(all='ignore'),
-        pytest.raises(
-            DdctError, match="controller 'mpc4_wear': it cannot go on at step .*Singular"
-        ),
-    ):
-        for step in range(START, START + 200):
-            error = min(2.0 ** (step - START), 8e8)
-            architecture.update(
-                replace(
-                    ON,
-                    step=step,
-                    engine_speed=160.0 + error,
-                    shaft_speed=160.0 - error,
-                    wheel_speed=160.0 / 15.0 - error,
-                    slip_reference=[error] * references,
-                    slip_reference_rate=[0.0] * references,
-                )
-            )
+def test_numbers_that_diverge_end_the_run_with_the_controllers_name_and_the_step():
+    def update(measurement):
+        np.linalg.solve(np.zeros((2, 2)), np.ones(2))
+
+    controller = Recording()
+    controller.registered_name = 'mine'
+    controller.update = update
+    with pytest.raises(DdctError) as caught:
+        make_architecture(SETTINGS, controller).update(ON)
+    assert str(caught.value) == (
+        f"controller 'mine': it cannot go on at step {ON.step} (Singular matrix): the "
+        'loop diverges in this scenario, or its options do not suit it'
+    )

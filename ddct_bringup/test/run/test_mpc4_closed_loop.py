@@ -172,6 +172,17 @@ def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
     assert abs(trajectory.engine_torque[-1] - trajectory.torque_demand[-1]) < 5.0
 
 
+@pytest.mark.parametrize('wear_gain', [0.2, 0.33, 0.47, 0.5])
+def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_end(wear_gain):
+    """What a clutch that sticks carries has a limit, so the slip grows and the loop diverges."""
+    scenario = load_scenario('thesis', ['duration_s=6'], clutch='stick_slip')
+    settings = RunSettings(scenario, clutch='stick_slip', wear_gain=wear_gain)
+    trajectory = run_headless(settings, 'mpc4_wear')
+    assert trajectory.steps == 600
+    assert np.isfinite(trajectory.torque_request).all()
+    assert trajectory.slip_speed[-1] > 1000.0
+
+
 @pytest.mark.parametrize('name', BOTH)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_they_run_in_every_architecture_and_reset_completely(name, architecture):

@@ -32,6 +32,13 @@ LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
 """Bounds of the estimate. We take a clutch to reach 0.7 to 1.3."""
 LEAST_TORQUE_N_M = 5.0
 """Torque of the actuator below which K_usura does not drift: C_f may be wrong by as much."""
+MOST_TORQUE_N_M = MOST
+"""
+Largest request that the filter takes as the actuator's torque.
+
+No clutch carries a thousandth of it, but a loop that diverges soon asks for 1e11 N m. With so much
+known torque P loses the digits of the measurement's noise, and then has no gain.
+"""
 
 
 @dataclass(frozen=True)
@@ -154,6 +161,7 @@ class WearObserver:
     def predict(self, inputs: tuple[float, float, float]) -> None:
         """Advance by one period with the saturated request, C_m and C_load in N m."""
         request, engine_torque, load_torque = inputs
+        request = min(request, MOST_TORQUE_N_M)
         transition = self._transition
         effect = self._transmission @ self._actuator
         transition[:DRIVELINE, GAIN] = effect

@@ -9,6 +9,7 @@ from ddct_controllers.mpc.estimate.wear_observer import (
     HIGHEST_GAIN,
     LEAST_TORQUE_N_M,
     LOWEST_GAIN,
+    MOST_TORQUE_N_M,
     SIZE,
     WearNoise,
     WearObserver,
@@ -267,3 +268,25 @@ def test_gain_drift_sets_how_fast_the_estimate_may_move():
     for observer in (slow, fast):
         follow(observer, 0.7, RAMP)
     assert fast.wear_gain_deviation > 1.5 * slow.wear_gain_deviation
+
+
+def test_a_request_that_no_clutch_can_carry_leaves_the_covariance_positive():
+    """A loop that diverges asks for 1e11 N m within three seconds, and twice that 0.1 s later."""
+    observer = make_observer()
+    speeds = (500.0, 200.0, 20.0)
+    for step in range(1000):
+        observer.correct(speeds, LOAD_N_M)
+        assert np.linalg.eigvalsh(observer._covariance).min() > -1e-6
+        assert 0.0 < observer.wear_gain_deviation < 1.0
+        observer.predict((1.08**step, 1000.0, LOAD_N_M))
+
+
+def test_a_request_up_to_the_most_is_taken_as_it_is_and_above_it_as_the_most():
+    effects = []
+    for request in (0.9 * MOST_TORQUE_N_M, MOST_TORQUE_N_M, 7.0 * MOST_TORQUE_N_M):
+        observer = make_observer()
+        observer.correct((160.0, 160.0, 17.0), LOAD_N_M)
+        observer.predict((request, 0.0, LOAD_N_M))
+        effects.append(observer._actuator / MOST_TORQUE_N_M)
+    np.testing.assert_allclose(effects[0], 0.9 * effects[1], rtol=1e-12)
+    np.testing.assert_array_equal(effects[1], effects[2])
