@@ -179,7 +179,7 @@ def test_numbers_that_diverge_end_the_run_with_the_controllers_name_and_the_step
     def update(measurement):
         np.linalg.solve(np.zeros((2, 2)), np.ones(2))
 
-    controller = Recording()
+    controller: Any = Recording()
     controller.registered_name = 'mine'
     controller.update = update
     with pytest.raises(DdctError) as caught:

@@ -190,7 +190,7 @@ def test_declared_options_reach_a_third_partys_controller_checked_and_whole(add_
         ('gian=2', 'controllers.mine.gian is not a key of mine: it has gain, steps, limit_n_m'),
         ('gain=-1', 'controllers.mine.gain is -1 N m/rpm: it must be at least 0'),
         ('steps=1.5', 'controllers.mine.steps is 1.5: give a whole number'),
-        ('limit_n_m=high', "controllers.mine.limit_n_m is 'high': give a number N m"),
+        ('limit_n_m=high', "controllers.mine.limit_n_m is 'high': give a number in N m"),
     ],
 )
 def test_a_bad_option_of_a_third_partys_controller_is_named(add_entry_point, change, complaint):

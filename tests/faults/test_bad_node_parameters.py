@@ -54,7 +54,7 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
     'bad option': (
         CONTROLLER,
         ['-p', 'controller:=mpc3', '-p', 'gains.highest_torque_n_m:=high'],
-        ["gains.highest_torque_n_m is 'high'", 'give a number N m'],
+        ["gains.highest_torque_n_m is 'high'", 'give a number in N m'],
     ),
     'behind the ROS arguments': (ENGINE, ['--', 'late'], ['unknown argument late']),
     'malformed': (ENGINE, ['-p', 'wear_gain'], ['wear_gain']),

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 
 from ddct_controllers.from_file.c_library.controller import c_library_spec
 from ddct_controllers.from_file.controller_file import (
@@ -12,9 +13,10 @@ from ddct_controllers.from_file.controller_file import (
 )
 from ddct_controllers.from_file.fmu import fmu_spec
 from ddct_controllers.from_file.python_file import SUFFIX, python_spec
-from ddct_controllers.from_file.transfer_functions import LINEAR
+from ddct_controllers.from_file.transfer_functions import BESIDE_LINEAR, LINEAR
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import close_name
 
 Loader = Callable[[ControllerFile], ControllerSpec[Controller]]
 """
@@ -49,5 +51,9 @@ def _kind(file: ControllerFile) -> str:
         return str(kinds[0])
     if kinds:
         raise ParameterError(f'{kinds[1]} beside {kinds[0]}: keep one of {choices}')
-    strange = next((f'{key!r} is' for key in file.content if key not in COMMON), 'there is')
-    raise ParameterError(f'{strange} no kind of controller: give one of {choices}')
+    strange = [key for key in file.content if key not in (*COMMON, *BESIDE_LINEAR)]
+    if not strange:
+        raise ParameterError(f'there is no kind of controller: give one of {choices}')
+    near = [key for key in strange if get_close_matches(str(key), KINDS, n=1)]
+    key = (near or strange)[0]
+    raise ParameterError(f'{key!r} is no kind of controller: {close_name(key, KINDS)}')

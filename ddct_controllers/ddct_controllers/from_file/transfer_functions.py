@@ -19,6 +19,9 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 FACTORED = 'transfer_function'
 UNITS = {'input': 'rpm', 'output': 'N m'}
 """Units of the slip error and the clutch torque. No others are accepted."""
+_REQUIRED, _OPTIONAL = ('units',), ('discretisation', 'sample_time_s')
+BESIDE_LINEAR = (*_REQUIRED, *_OPTIONAL)
+"""Keys of a file of a linear controller, beside its kind."""
 FREQUENCY = {'frequency': 'rad/s'}
 """Unit of zeros and poles. A file may state it too."""
 
@@ -29,7 +32,7 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[Given, str]:
 
     Raise ParameterError for what cannot run, an improper G_c included.
     """
-    content = file.keys(kind, ('units',), ('discretisation', 'sample_time_s'))
+    content = file.keys(kind, _REQUIRED, _OPTIONAL)
     if content['units'] not in (UNITS, {**UNITS, **FREQUENCY}):
         raise ParameterError(f'units are {content["units"]!r}: convert the controller to {UNITS}')
     discretisation = content.get('discretisation', HOLD)

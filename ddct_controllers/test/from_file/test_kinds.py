@@ -21,7 +21,20 @@ CHOICES = ', '.join(KINDS)
         ('name: mine\n', f'there is no kind of controller: give one of {CHOICES}'),
         (
             'name: mine\ntransfer_funktion: {}\n',
-            f"line 2: 'transfer_funktion' is no kind of controller: give one of {CHOICES}",
+            "line 2: 'transfer_funktion' is no kind of controller: did you mean "
+            'transfer_function?',
+        ),
+        (
+            'name: mine\nunits: {input: rpm, output: N m}\nnotes: none\npolynom: {}\n',
+            "line 4: 'polynom' is no kind of controller: did you mean polynomial?",
+        ),
+        (
+            'name: mine\nunits: {input: rpm, output: N m}\nbox: {}\n',
+            f"line 3: 'box' is no kind of controller: known: {CHOICES}",
+        ),
+        (
+            'name: mine\nunits: {input: rpm, output: N m}\ndiscretisation: hold\n',
+            f'there is no kind of controller: give one of {CHOICES}',
         ),
         (
             'name: mine\npolynomial: {}\nstate_space: {}\n',

@@ -72,13 +72,13 @@ def require_number(
     `above` is an exclusive lower bound; `at_least` and `at_most` are inclusive.
     """
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ParameterError(f'{name} is {value!r}: give a number{_in(unit)}')
+        raise ParameterError(f'{name} is {value!r}: give a number{_wanted_in(unit)}')
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise ParameterError(f'{name} is {number}: give a finite number{_in(unit)}')
+        raise ParameterError(f'{name} is {number}: give a finite number{_wanted_in(unit)}')
     if above is not None and number <= above:
         raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be above {above:g}')
     if at_least is not None and number < at_least:
@@ -119,3 +119,7 @@ def require_finite(source: str, value: float) -> float:
 
 def _in(unit: str) -> str:
     return f' {unit}' if unit else ''
+
+
+def _wanted_in(unit: str) -> str:
+    return f' in {unit}' if unit else ''

@@ -33,9 +33,9 @@ class Tyre(OptionGroup, prefix='tyre.'):
     [
         ({'pressure_bar': 0.0}, 'tyre.pressure_bar is 0 bar: it must be above 0'),
         ({'pressure_bar': 9.5}, 'tyre.pressure_bar is 9.5 bar: it must be at most 9'),
-        ({'pressure_bar': math.nan}, 'tyre.pressure_bar is nan: give a finite number bar'),
-        ({'pressure_bar': '2'}, "tyre.pressure_bar is '2': give a number bar"),
-        ({'pressure_bar': True}, 'tyre.pressure_bar is True: give a number bar'),
+        ({'pressure_bar': math.nan}, 'tyre.pressure_bar is nan: give a finite number in bar'),
+        ({'pressure_bar': '2'}, "tyre.pressure_bar is '2': give a number in bar"),
+        ({'pressure_bar': True}, 'tyre.pressure_bar is True: give a number in bar'),
         ({'pressure_bar': None}, 'tyre.pressure_bar is empty: give a value'),
         ({'layers': 0}, 'tyre.layers is 0: it must be at least 1'),
         ({'layers': 1.5}, 'tyre.layers is 1.5: give a whole number'),

@@ -100,7 +100,7 @@ def test_every_profile_takes_a_file_in_its_units(folder, section, unit, cells, k
     [
         ('0.5,y', '0.0,y', 'line 4, column t: the time goes from 0 to 0 s: it must rise'),
         ('0.0,x', '0.1,x', 'line 3, column t: the profile begins at scenario time 0.1 s'),
-        ('150.0', 'nan', 'line 4, column torque is nan: give a finite number N m'),
+        ('150.0', 'nan', 'line 4, column torque is nan: give a finite number in N m'),
         ('150.0', '', 'line 4, column torque is nan'),
         ('150.0', 'inf', 'line 4, column torque: inf is not finite'),
         ('150.0', 'much', "line 4, column torque: 'much' is no number"),
@@ -136,7 +136,7 @@ def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, com
         (SPEC[8:-2].replace('N m', 'rpm') + '}', "unit 'rpm': choose from N m, Nm, kN m"),
         (SPEC[8:-2] + ', time_unit: h}', "unit 'h': choose from s, ms"),
         (SPEC[8:-2] + ', time_s: [0.0]}', 'engine has points and engine.csv: give one'),
-        (SPEC[8:-2] + ', start_s: soon}', "engine.start_s is 'soon': give a number s"),
+        (SPEC[8:-2] + ', start_s: soon}', "engine.start_s is 'soon': give a number in s"),
         (SPEC[8:-2].replace(': t,', ': 3,') + '}', 'engine.time is 3: give text'),
     ],
 )
