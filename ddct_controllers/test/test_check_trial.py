@@ -1,6 +1,15 @@
-"""A trial of check-controller is on the true signals, whatever sensors the scenario has."""
+"""What a trial of check-controller gives a controller, what it times, and what it scales."""
 
-from ddct_controllers.check.trial import closed_trial
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ddct_controllers.check.loops import update_time
+from ddct_controllers.check.subject import CheckFailedError, Subject
+from ddct_controllers.check.trial import Heard, closed_trial
+from ddct_controllers.check.watch import Printed
+from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -13,3 +22,71 @@ def slip(*changes: str) -> list[float]:
 
 def test_trials_leave_the_sensors_of_a_scenario_out():
     assert slip('sensors.engine_speed.noise_rad_s=1') == slip()
+
+
+SETTINGS = RunSettings(load_scenario('thesis'))
+QUICK_S, LATE_S = 0.001, 0.02
+"""Within the period of 10 ms and beyond it."""
+
+
+def timed(late: int, monkeypatch: pytest.MonkeyPatch) -> Subject:
+    """Return the subject of trials with 100 updates, of which so many are late."""
+    subject = Subject('pi', SETTINGS, Printed())
+    heard = Heard(update_s=[LATE_S] * late + [QUICK_S] * (100 - late))
+    monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: heard)
+    subject.closed = heard
+    return subject
+
+
+@pytest.mark.parametrize('late', [0, 1, 4])
+def test_a_twentieth_of_the_updates_may_be_late(
+    late: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = update_time(timed(late, monkeypatch))
+    assert found == 'median 1.000 ms, 95% within 1.000 ms, of 100 updates'
+
+
+@pytest.mark.parametrize('late', [6, 50, 94, 99])
+def test_more_late_updates_fail_however_quick_the_quickest_are(
+    late: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(CheckFailedError, match='95% within 20.000 ms, of 100 updates: it must be'):
+        update_time(timed(late, monkeypatch))
+
+
+class Asking(Controller):
+    """Asks for 10 N m of the clutch, and 5 N m of the engine beyond what the driver demands."""
+
+    commands_engine = True
+
+    def reset(self) -> None:
+        pass
+
+    def update(self, measurement: Any) -> Command:
+        return Command(10.0, engine_torque=measurement.engine_torque + 5.0)
+
+
+def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_demand() -> None:
+    """So a scale of 9.55 is that of a unit, and not an engine of 9.55 times the torque."""
+    controller: Any = Asking()
+    heard = closed_trial(SETTINGS, controller, scale=3.0)
+    start = SETTINGS.scenario.control_start_step
+    _, measured = heard.measured[start]
+    assert measured.engine_torque > 100.0
+    command = controller.update(measured)
+    assert command.clutch_torque == pytest.approx(30.0)
+    assert command.engine_torque == pytest.approx(measured.engine_torque + 15.0)
+    plain: Any = Asking()
+    closed_trial(SETTINGS, plain)
+    assert plain.update(measured).engine_torque == measured.engine_torque + 5.0
+
+
+def test_a_scaled_trial_of_a_controller_that_asks_nothing_is_the_driver_s_own() -> None:
+    """The plant gets the driver's demand, whatever the scale."""
+
+    class Idle(Asking):
+        def update(self, measurement: Any) -> Command:
+            return Command(0.0, engine_torque=measurement.engine_torque)
+
+    once, scaled = (closed_trial(SETTINGS, Idle(), scale=scale).slip for scale in (1.0, 9.55))
+    np.testing.assert_allclose(scaled, once, rtol=1e-12, atol=1e-9)

@@ -140,6 +140,18 @@ def test_it_asks_for_no_more_than_the_clutch_has_unless_c_fol_does(engine_torque
     assert found == pytest.approx(max(level, P.most_n_m))
 
 
+@pytest.mark.parametrize('engine_torque', [400.0, 900.0])
+def test_it_stays_closed_where_c_fol_is_more_than_the_stage_may_ask(engine_torque):
+    """What feedback may not lock a clutch with, the engine may well ask of a locked one."""
+    loaded = replace(ALIKE, engine_torque=engine_torque)
+    controller = Asking(-40.0)
+    found = answers([ALIKE] * 30 + [loaded] * 90, controller)
+    assert (found[-1].torque > P.most_n_m) == (engine_torque == 900.0)
+    assert set(states(found)[DWELL:]) <= {'closing', 'closed'}
+    assert {dict(each.status)['feedback'] for each in found[DWELL:]} == {'held off'}
+    assert len(controller.held) == 120 - DWELL
+
+
 def test_it_never_falls_below_what_feedback_had_locked_a_worn_clutch_with():
     own = 1.0 * carried(ALIKE)
     assert own > (P.margin - 1.0) * carried(ALIKE) + P.reserve_n_m

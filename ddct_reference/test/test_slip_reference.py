@@ -82,6 +82,31 @@ def test_the_preview_is_what_comes(architecture, shape):
         assert speeds[step] == coming[step : step + 5]
 
 
+@pytest.mark.parametrize('preview_steps', [0, 1, 22])
+@pytest.mark.parametrize(
+    ('shape', 'architecture'),
+    [
+        *((shape, name) for shape in ('ramp', 'tanh', 'polynomial') for name in ARCHITECTURES[:2]),
+        *((shape, 'detailed') for shape in ('ramp', 'polynomial', 'engine_speed_target')),
+    ],
+)
+def test_the_preview_has_the_length_that_was_asked_for_at_every_step(
+    shape, architecture, preview_steps
+):
+    """Now and so many steps ahead: before control starts, across its start, and after the end."""
+    changes = [f'reference.shape={shape}', 'control_start_s=0.1', 'reference.reference_end_s=0.3']
+    if shape == 'engine_speed_target':
+        changes += [
+            'engine_speed_reference.time_s=[0.0]',
+            'engine_speed_reference.speed_rad_s=[210.0]',
+        ]
+    settings = RunSettings(load_scenario('thesis', changes), architecture)
+    reference = make_reference(settings, preview_steps)
+    for step in range(60):
+        speeds, rates = reference.update(step, 20.0, 160.0)
+        assert (len(speeds), len(rates)) == (preview_steps + 1, preview_steps + 1), step
+
+
 @pytest.mark.parametrize('shape', ['tanh', 'polynomial'])
 @pytest.mark.parametrize('end_s', [0.9, 1.3, 1.6, 1.97])
 def test_a_timed_shape_reaches_exactly_zero_at_its_end_and_not_before(shape, end_s):

@@ -147,6 +147,23 @@ def test_slip_reference_is_10_ms_apart():
     assert (last.sec, last.nanosec) == (1, 490_000_000)
 
 
+@pytest.mark.parametrize('preview_steps', [0, 1, 3])
+def test_a_preview_is_read_as_far_as_the_controller_looks(preview_steps):
+    speeds, rates = [5.0, 4.0, 2.0, 1.0], [-100.0, -200.0, -100.0, -50.0]
+    message = topics.SLIP_REFERENCE.message(STAMP, speeds, rates)
+    ahead = preview_steps + 1
+    found = topics.SLIP_REFERENCE.read(message, preview_steps=preview_steps)
+    assert found == (speeds[:ahead], rates[:ahead])
+
+
+@pytest.mark.parametrize('preview_steps', [4, 22])
+def test_a_preview_that_is_too_short_says_how_long_it_must_be(preview_steps):
+    message = topics.SLIP_REFERENCE.message(STAMP, [5.0, 4.0, 3.0, 2.0], [0.0] * 4)
+    words = f'has 4 points and the controller needs {preview_steps + 1}: .*:={preview_steps}$'
+    with pytest.raises(DdctError, match=words):
+        topics.SLIP_REFERENCE.read(message, preview_steps=preview_steps)
+
+
 def test_slip_reference_is_filled_anew():
     write = topics.SLIP_REFERENCE.writer()
     first = write(STAMP, [1.0, 2.0, 3.0], [4.0, 5.0, 6.0])
