@@ -163,6 +163,20 @@ def test_a_controller_may_stand_in_many_runs_and_have_been_used():
     assert run_batch([(settings, controller)] * 3, LIMITS) == 3 * fresh
 
 
+def test_every_run_is_scored_over_its_own_window():
+    windows = ([0.2, 0.7], [0.3, 1.1], [0.2, 1.1])
+    runs = []
+    for window in windows:
+        settings = RunSettings(load_scenario('thesis', {**SHORT, 'score_window_s': window}))
+        runs.append((settings, make_controller('ls8', settings)))
+    together = run_batch(runs, LIMITS)
+    for ours, run in zip(together, runs, strict=True):
+        expected = step_by_step(*run)
+        assert_close(ours['metrics'], expected['metrics'])
+        assert_close(criteria(ours['verdict']), criteria(expected['verdict']))
+    assert len({each['metrics']['slip_rmse_rpm'] for each in together}) == len(windows)
+
+
 def test_a_run_that_grows_beyond_all_numbers_has_no_result():
     settings = RunSettings(load_scenario('thesis', SHORT))
     one = np.ones((1, 1))
