@@ -10,7 +10,8 @@ from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import ShardJob, compute_shard
+from ddct_bringup.campaign.shards import ShardJob, timed_shard
+from ddct_bringup.campaign.time_left import TimeLeft, each_controller_first
 from ddct_bringup.run.output_folder import MARKER, held, mark_folder, require_ours_or_empty
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
@@ -55,7 +56,8 @@ def carry_out(
         }
         done = manifest.runs - sum(job.last - job.first for job in missing.values())
         progress = Progress('runs', manifest.runs, done=done)
-        _Conduct(ready, progress, stopped).compute(missing, done)
+        conduct = _Conduct(ready, progress, stopped, TimeLeft(campaign.cases))
+        conduct.compute(missing, done)
         merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
     return out / RESULTS
 
@@ -109,6 +111,7 @@ class _Conduct:
     workers: Workers
     progress: Progress
     stopped: Callable[[], bool]
+    time_left: TimeLeft
 
     def compute(self, shards: Mapping[Path, ShardJob], done: int) -> None:
         """Compute shards and write each into its file; `done` runs were so before."""
@@ -120,7 +123,8 @@ class _Conduct:
                     job = missing.pop(file)
                     done += job.last - job.first
                     deaths = 0
-                    self.progress.tell(done)
+                    left_s = self.time_left.left_s(missing.values(), self.workers.count)
+                    self.progress.tell(done, left_s)
             except (BrokenExecutor, CancelledError) as error:
                 self.workers.require_alive()
                 deaths += 1
@@ -134,12 +138,12 @@ class _Conduct:
     def _written(self, shards: Mapping[Path, ShardJob]) -> Iterator[Path]:
         """Yield the file of each shard once it is written; raise what breaks an executor."""
         executor = self.workers.executor()
-        waiting = iter(tuple(shards))
-        running: dict[Future[bytes], Path] = {}
+        waiting = iter(each_controller_first(shards, self.time_left.cases))
+        running: dict[Future[tuple[bytes, float]], Path] = {}
         while True:
             free = _AHEAD * self.workers.count - len(running)
             for file in islice(waiting, max(free, 0)):
-                running[executor.submit(compute_shard, shards[file])] = file
+                running[executor.submit(timed_shard, shards[file])] = file
             if not running:
                 return
             finished = wait(running, _LOOK_S, FIRST_COMPLETED).done
@@ -148,7 +152,9 @@ class _Conduct:
                 self.workers.require_alive()
             for future in finished:
                 file = running.pop(future)
-                write_bytes(str(file), _result(future, shards[file]), RESUME)
+                rows, seconds = _result(future, shards[file])
+                write_bytes(str(file), rows, RESUME)
+                self.time_left.add(shards[file], seconds)
                 yield file
 
 
@@ -158,7 +164,7 @@ def require_going_on(stopped: Callable[[], bool]) -> None:
         raise KeyboardInterrupt(f'interrupted; {RESUME}')
 
 
-def _result(future: Future[bytes], job: ShardJob) -> bytes:
+def _result(future: Future[tuple[bytes, float]], job: ShardJob) -> tuple[bytes, float]:
     try:
         return future.result()
     except (BrokenExecutor, CancelledError):

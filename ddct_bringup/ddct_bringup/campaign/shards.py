@@ -1,5 +1,6 @@
 """The unit of work: the runs of a fixed range of indices, which become one file."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -31,6 +32,12 @@ class ShardJob:
     first: int
     last: int
     """One beyond the last index."""
+
+
+def timed_shard(job: ShardJob) -> tuple[bytes, float]:
+    """Return the file of a shard, and how many seconds it took."""
+    started = time.monotonic()
+    return compute_shard(job), time.monotonic() - started
 
 
 def compute_shard(job: ShardJob) -> bytes:

@@ -83,8 +83,27 @@ def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> N
     workers = use(OneByOne())
     assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
     assert sorted(workers.computed) == list(range(RUNS))
+    assert workers.computed[:3] == [0, 4, 1], 'a controller is measured late'
     names = sorted(path.name for path in (tmp_path / 'out').iterdir())
     assert names == ['.ddct-output', MANIFEST, RESULTS, SHARDS]
+
+
+def test_the_time_left_counts_each_controller_by_its_own_runs(
+    tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def timed(job: shards.ShardJob) -> tuple[bytes, float]:
+        return shards.compute_shard(job), 1.0 if job.first < RUNS // 2 else 100.0
+
+    left_by_shard: list[float | None] = []
+    monkeypatch.setattr(conduct, 'timed_shard', timed)
+    monkeypatch.setattr(
+        conduct.Progress, 'tell', lambda self, done, left_s=None: left_by_shard.append(left_s)
+    )
+    use(OneByOne())
+    carried_out(tmp_path / 'out')
+    left = [each for each in left_by_shard[-RUNS:] if each is not None]
+    assert left[3] == (1.0 + 3 * 100.0) / 2  # three runs of one, one of the other; two workers
+    assert left[-1] == 0.0
 
 
 def test_the_manifest_says_what_the_campaign_is(whole: Path) -> None:

@@ -37,24 +37,29 @@ class Progress:
         self._terminal = self._stream.isatty()
         self._next = self._started + QUIET_S
 
-    def tell(self, done: int) -> None:
-        """Say how far it is, if it is time to."""
+    def tell(self, done: int, left_s: float | None = None) -> None:
+        """Say how far it is, if it is time to; `left_s` as in `line`."""
         now = self._clock()
         if now < self._next:
             return
         self._next = now + _EVERY_S[self._terminal]
         start, end = ('\r\x1b[K', '') if self._terminal else ('', '\n')
-        self._stream.write(f'{start}{self.line(done)}{end}')
+        self._stream.write(f'{start}{self.line(done, left_s)}{end}')
         self._stream.flush()
 
-    def line(self, done: int) -> str:
-        """Return the line: how many of how many, the rate, the time that remains."""
+    def line(self, done: int, left_s: float | None = None) -> str:
+        """
+        Return the line: how many of how many, the rate, the time that remains.
+
+        That time follows from the rate, unless `left_s` gives it, for steps of unlike length.
+        """
         elapsed = self._clock() - self._started
         rate = (done - self._before) / elapsed if elapsed else 0.0
         text = f'{self._what}: {done} of {self._total}'
         if not rate:
             return text
-        return f'{text}, {rate:.3g} a second, {_duration((self._total - done) / rate)} left'
+        left_s = (self._total - done) / rate if left_s is None else left_s
+        return f'{text}, {rate:.3g} a second, {_duration(left_s)} left'
 
     def end(self) -> None:
         """Clear the line on a terminal."""

@@ -28,6 +28,7 @@ def test_the_rate_and_the_time_that_remains_are_told_after_two_seconds() -> None
     assert progress.line(4000) == 'runs: 4000 of 10000'
     clock.now = 7200.0
     assert progress.line(5000).endswith('10 h 0 min left')
+    assert progress.line(5000, 90.0).endswith('1 min 30 s left')
 
 
 def test_a_terminal_has_one_line_that_goes_in_the_end() -> None:
