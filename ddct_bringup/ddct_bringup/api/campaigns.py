@@ -11,7 +11,8 @@ from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
-from ddct_bringup.campaign_report.folder import read_table, results_of, write_campaign_page
+from ddct_bringup.campaign_report.folder import write_campaign_page
+from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import Summary, summary_of
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.sweep.sweep import OVER, Sweep

@@ -13,9 +13,9 @@ from ddct_bringup.campaign.rows import CRITERION_COLUMNS, METRIC_COLUMNS, SERIAL
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
 
-SCHEMA_VERSION = 1
-"""Of the columns."""
-INDEX, CONTROLLER, PATH = 'index', 'controller', 'path'
+SCHEMA_VERSION = 2
+"""Of the columns: from 2 on each row has its `seed`."""
+INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
 """Rows at least, but in the last group: each group costs a reader memory."""
@@ -25,7 +25,7 @@ _VERDICT = (
     ('verdict_state', pa.string()),
     ('verdict_limits', pa.string()),
 )
-COMPARED = (*METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
+COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
 """What a run that is made again must have as its row has it."""
 VECTORISED_RTOL = 1e-9
 """What a row of the vectorised path may differ by then, relative to the larger value."""
@@ -37,7 +37,8 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
         (INDEX, pa.int64()),
         (CONTROLLER, pa.string()),
         (PATH, pa.string()),
-        *((key, _type(spec, key)) for key in spec.keys),
+        (SEED, pa.int64()),
+        *((key, _type(spec, key)) for key in spec.keys if key != SEED),
         *((name, pa.float64()) for name in METRIC_COLUMNS),
         *_VERDICT,
         *((name, pa.float64()) for name in CRITERION_COLUMNS),
@@ -97,19 +98,27 @@ def read_row(results: Path, index: int) -> dict[str, Any]:
         raise DdctError(f'{results}: cannot be read ({error}): finish the campaign') from error
     if not rows:
         raise DdctError(f'{results}: it has no row {index}')
+    if PATH not in rows[0]:
+        raise DdctError(f'{results}: it has no column {PATH}')
     return rows[0]
+
+
+def compared_in(row: Mapping[str, Any]) -> list[str]:
+    """Return what of `COMPARED` a row has: that of another version may lack some."""
+    return [name for name in COMPARED if name in row]
 
 
 def differences(row: Mapping[str, Any], again: Mapping[str, Any]) -> list[str]:
     """
     Return in words what of a run that was made again is not what its row says.
 
-    Every metric, criterion and word of the verdict counts: of a serial row to the last bit.
+    Its seed and every metric, criterion and word of the verdict count: of a serial row to the
+    last bit.
     """
     rtol = 0.0 if row[PATH] == SERIAL else VECTORISED_RTOL
     return [
         f'{name} is {again[name]!r}, in the row {row[name]!r}'
-        for name in COMPARED
+        for name in compared_in(row)
         if not _same(row[name], again[name], rtol)
     ]
 

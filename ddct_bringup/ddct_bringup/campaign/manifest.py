@@ -75,6 +75,8 @@ class Manifest:
         try:
             content = parse_json(read_text_file(path))
             require_schema_version(content, SCHEMA_VERSION)
+            if not isinstance(content['spec'], dict):
+                raise ParameterError('its specification is no group of keys')
             return cls(**{field.name: content[field.name] for field in fields(cls)})
         except FileNotFoundError as error:
             raise DdctError(
@@ -86,6 +88,16 @@ class Manifest:
     def write(self, out: Path) -> None:
         """Write it into a campaign's folder; raise DdctError when that fails."""
         write_json(str(out / MANIFEST), asdict(self))
+
+    @property
+    def grid(self) -> tuple[str, ...]:
+        """What was varied on a grid, also by a version whose keys have other names."""
+        return _keys(self.spec.get('grid'))
+
+    @property
+    def random(self) -> tuple[str, ...]:
+        """What was drawn at random, likewise."""
+        return _keys((self.spec.get('random') or {}).get('vary'))
 
     def campaign_spec(self) -> CampaignSpec:
         """Return the specification of the campaign."""
@@ -136,6 +148,11 @@ def code_digest() -> str:
     for package in _PACKAGES:
         _add(digest, package, files(package))
     return digest.hexdigest()
+
+
+def _keys(group: Any) -> tuple[str, ...]:
+    """Return the keys of a part of a specification that may be left out."""
+    return tuple(group or ())
 
 
 def require_code(digest: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_bringup.batch.batchable import batchable
 from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.campaign.columns import INDEX, schema_of, shard_bytes
+from ddct_bringup.campaign.columns import INDEX, SEED, schema_of, shard_bytes
 from ddct_bringup.campaign.manifest import require_code
 from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
@@ -61,7 +61,8 @@ def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, 
         entry, path = found.get(run.index), VECTORISED
         if entry is None:
             entry, path = scored_headless(run.settings, run.controller, limits), SERIAL
-        rows.append({INDEX: run.index, **result_row(entry, run.varied, path)})
+        ours = {INDEX: run.index, SEED: run.settings.seed}
+        rows.append({**ours, **result_row(entry, run.varied, path)})
     return rows
 
 

@@ -1,1 +1,1 @@
-"""Out of a campaign: how often and how badly engagements fail, and where failure begins."""
+"""Out of a campaign: how often and how badly engagements fail, where, and what drives it."""

@@ -2,6 +2,19 @@
 (() => {
   const {maps: data, ramp, replay} = JSON.parse(document.getElementById('data').textContent);
   if (!data) return;
+  // A map of samples draws the points of all maps, or those at the places that it gives.
+  const part = (values, places) => (places && values ? places.map((place) => values[place]) : values);
+  data.maps.filter((map) => !map.cells).forEach((map) => {
+    map.panels = map.panels.map((places, group) => {
+      const {at, values, ...others} = data.points[group];
+      const columns = Object.entries(others).map(([name, each]) => [name, part(each, places)]);
+      return {
+        ...Object.fromEntries(columns),
+        at: map.keys.map((key) => part(at[data.numbers.indexOf(key)], places)),
+        values: Object.fromEntries(Object.entries(values).map(([key, each]) => [key, part(each, places)])),
+      };
+    });
+  });
   const SVG = 'http://www.w3.org/2000/svg';
   const HEIGHT = 300, LEFT = 62, RIGHT = 8, TOP = 6, BOTTOM = 44, LINE = 13;
   const STEP = 6;
@@ -10,7 +23,7 @@
   const choice = Object.fromEntries(['map', 'quantity'].map((name) => [name, document.getElementById(name)]));
   const places = [...document.querySelectorAll('.map')];
   const detail = document.querySelector('.detail');
-  const said = detail.textContent;
+  const advice = detail.textContent;
 
   const words = [...new Set(data.maps.flatMap((map) => map.panels.flatMap((panel) => panel.state)))]
     .filter((state) => state !== 'engaged').sort();
@@ -47,7 +60,7 @@
   }
 
   function colourOf(value, {low, high}) {
-    const place = high > low ? Math.min(Math.max((value - low) / (high - low), 0), 1) : 0;
+    const place = high > low ? Math.min(Math.max((Math.abs(value) - low) / (high - low), 0), 1) : 0;
     return ramp[Math.round(place * (ramp.length - 1))];
   }
 
@@ -70,7 +83,8 @@
     const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(value, 4)}`;
     const interval = panel.intervals?.[place].map((end) => number(100 * end, 3)).join(' to ');
     const came = runs > 1 ? `${failed} of ${runs} runs failed (95 % interval ${interval} %)${invalid ? `, ${invalid} invalid` : ''}` : spoken(state);
-    return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
+    const second = !lost && !share && state !== 'engaged' ? state : '';
+    return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', second, index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
   }
 
   function axisOf(values, start, length, cells) {
@@ -128,7 +142,7 @@
     const rect = listening(element('rect', {...box, class: 'cell', 'stroke-width': Math.min(width, height) < LINE ? 0 : 1}), cell);
     if (cell.state) return [rect, hatched(cell.state, box)];
     rect.setAttribute('fill', colourOf(cell.value, quantity));
-    return [rect];
+    return cell.second ? [rect, hatched(cell.second, box)] : [rect];
   }
 
   // The word of all neighbours in a row that share it, where there is room; rows too low for text have
@@ -155,7 +169,9 @@
   function dot(cell, quantity) {
     const {x, y} = cell;
     if (!cell.state) {
-      return [listening(element('circle', {cx: x, cy: y, r: 4.5, fill: colourOf(cell.value, quantity), class: 'cell'}), cell)];
+      const shape = {cx: x, cy: y, r: 4.5, fill: colourOf(cell.value, quantity), class: cell.second ? 'cell lost' : 'cell'};
+      const circle = listening(element('circle', shape), cell);
+      return cell.second ? [circle, hatched(cell.second, {x: x - 3, y: y - 3, width: 6, height: 6})] : [circle];
     }
     const box = {x: x - 5, y: y - 5, width: 10, height: 10};
     return [listening(element('rect', {...box, class: 'cell lost'}), cell), hatched(cell.state, box)];
@@ -178,8 +194,10 @@
   }
 
   function legend(map, quantity) {
-    const drawn = new Set(map.panels.flatMap((panel, group) => (
-      panel.index.map((_, at) => cellOf(map, {...panel, group}, at, quantity).state))));
+    const drawn = new Set(map.panels.flatMap((panel, group) => panel.index.flatMap((_, at) => {
+      const {state, second} = cellOf(map, {...panel, group}, at, quantity);
+      return [state, second];
+    })));
     document.getElementById('low').textContent = number(quantity.low, 4);
     document.getElementById('high').textContent = number(quantity.high, 4);
     document.querySelector('.ramp').style.background = `linear-gradient(to right, ${ramp.join(',')})`;
@@ -196,9 +214,9 @@
   function show() {
     const map = data.maps[choice.map.value];
     const quantity = data.quantities[choice.quantity.value];
-    detail.textContent = said;
+    detail.textContent = advice;
     const others = Object.entries(map.others).map(([key, value]) => `${key} ${number(value)}`);
-    document.getElementById('others').textContent = others.length ? `Elsewhere: ${others.join(', ')}.` : '';
+    document.getElementById('others').textContent = `Drawn: ${map.shown}${others.length ? `, those with ${others.join(', ')}` : ''}.`;
     places.forEach((place, group) => draw(place, map, {...map.panels[group], group}, quantity));
     legend(map, quantity);
   }

@@ -1,23 +1,23 @@
-"""A campaign's folder: its results are read here, its summary and its page are written here."""
+"""Write the summary and the page of a campaign into its folder."""
 
+from base64 import b64encode
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-import pyarrow as pa
-import pyarrow.parquet as parquet
 from markupsafe import Markup
 
-from ddct_bringup.campaign.columns import INDEX, SCHEMA_VERSION, schema_of
-from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
+from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.manifest import Manifest
-from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report.distributions import distributions_figure
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
+from ddct_bringup.campaign_report.outcome import FAILED
+from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import Summary, summary_of
+from ddct_bringup.campaign_report.tables import MAIN
 from ddct_bringup.report.page_parts import (
     MARKER,
     json_data,
@@ -28,17 +28,14 @@ from ddct_bringup.report.page_parts import (
 )
 from ddct_bringup.run.output_folder import held
 from ddct_bringup.verdict.metric_figures import TABLE_5_1
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.output_file import write_json, write_text
 from ddct_plant.files.yaml_text import dump_yaml
-from ddct_plant.models.clutch import LINEAR
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.differences import values_by_key
-from ddct_plant.scenario.settings import RunSettings
 
 SUMMARY, PAGE = 'summary.json', 'report.html'
-_AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
+THESIS = 'thesis'
 _ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
 _RAMP = tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))
 """Dark to light, made for colour-blind eyes (Nunez, Anderton and Renslow 2018)."""
@@ -55,71 +52,25 @@ def write_campaign_page(folder: Path) -> Summary:
     manifest = Manifest.read(folder)
     results = results_of(manifest, read_table(folder, manifest))
     summary = summary_of(results)
-    page = campaign_page(results, summary, folder.as_posix(), _facts(manifest))
+    page = campaign_page(results, summary, folder.as_posix(), facts_of(manifest))
     with held(folder):
         write_json(str(folder / SUMMARY), summary)
         write_text(str(folder / PAGE), page)
     return summary
 
 
-def read_table(folder: Path, manifest: Manifest) -> pa.Table:
-    """Return the rows of a finished campaign; raise DdctError without them."""
-    path = folder / RESULTS
-    try:
-        table = parquet.read_table(path)
-        known = table.schema.metadata or {}
-        require_schema_version(
-            {SCHEMA_KEY: int(known.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
-        )
-    except FileNotFoundError as error:
-        raise DdctError(
-            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_AGAIN}'
-        ) from error
-    except ParameterError as error:
-        raise DdctError(f'{path}: {error}') from error
-    except (OSError, ValueError, pa.ArrowException) as error:
-        why = next(iter(str(error).splitlines()), type(error).__name__)
-        raise DdctError(f'{path}: it is damaged ({why}): {_AGAIN}') from error
-    schema = schema_of(manifest.campaign_spec())
-    if not table.schema.equals(schema) or table[INDEX].to_pylist() != list(range(manifest.runs)):
-        raise DdctError(f'{path}: it is not what {folder} was started with: {_AGAIN}')
-    return table
+def scenario_of(manifest: Manifest) -> str:
+    """Return the name of the scenario of a campaign, or that it was varied."""
+    return 'varied' if SCENARIO in manifest.grid else manifest.spec.get(SCENARIO, THESIS)
 
 
-def results_of(manifest: Manifest, table: pa.Table) -> Results:
-    """Return the rows with what the manifest says of them."""
-    spec = manifest.campaign_spec()
-    columns = {name: table[name].to_numpy() for name in table.column_names}
-    return Results(columns, tuple(spec.grid), tuple(spec.vary), nominal_values(spec))
-
-
-def nominal_values(spec: CampaignSpec) -> dict[str, float]:
-    """
-    Return the numbers that a specification varies as they are without it.
-
-    That is in its scenario, the first of several; of what the scenario leaves out, by default.
-    Raise DdctError for a scenario that cannot be read any more.
-    """
-    first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
-    common = {**spec.common, **first}
-    file = spec.scenario_file(common.pop(SCENARIO))
-    scenario = file.scenario(clutch=common.get('clutch', LINEAR))
-    given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
-    found: dict[str, float] = {}
-    for key in spec.keys:
-        option = option_of(key, key)
-        value = given.get(key, option.default if option else None)
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            found[key] = float(value)
-    return found
-
-
-def _facts(manifest: Manifest) -> dict[str, Any]:
+def facts_of(manifest: Manifest) -> dict[str, Any]:
     """Return in words where a campaign is from."""
-    common = {SCENARIO: 'varied', **manifest.campaign_spec().common}
+    common = {key: manifest.spec[key] for key in COMMON if key in manifest.spec}
     limits = manifest.limits
     return {
         **common,
+        SCENARIO: scenario_of(manifest),
         'root seed': str(manifest.root_seed),
         'limits': f'{limits.get("name")}, digest {limits.get("digest")}',
         'version of the runs': manifest.version,
@@ -144,7 +95,10 @@ def campaign_page(
         chosen=_chosen(maps['quantities']) if maps else 0,
         summary=summary,
         labels=[group.label for group in results.groups],
-        numbers=results.numbers,
+        lines=results.lines,
+        distributions=_distributions(results, facts[SCENARIO]),
+        main=MAIN,
+        second_rank=len(set(results.outcomes.tolist()) - {ENGAGED, FAILED, INVALID}) > 0,
         words=words,
         value_text=value_text,
         number_text=number_text,
@@ -155,6 +109,13 @@ def campaign_page(
         facts=facts,
         version=package_version(),
     )
+
+
+def _distributions(results: Results, scenario: str) -> str:
+    """Return the figure of the distributions as a part of a data URI."""
+    with chart_style():
+        figure = distributions_figure(results, scenario)
+        return b64encode(chart_bytes(figure, 'svg')).decode()
 
 
 def _chosen(quantities: list[dict[str, Any]]) -> int:

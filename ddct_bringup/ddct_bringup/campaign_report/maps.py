@@ -6,21 +6,21 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.campaign_report.outcome import FAILED, failed_share
+from ddct_bringup.campaign_report.outcome import FAILED, count_outcomes
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
 
 FAILED_SHARE = 'failed_share'
 """The quantity that is the share of failed engagements in a cell."""
 MOST_MAPS = 10
 """That the page offers: all pairs of five numbers."""
-MOST_POINTS = 300
-"""Of a group that a map of samples shows, the first ones."""
-_TELLING = (INVALID, FAILED, ENGAGED)
+MOST_POINTS = 2500
+"""Of a group that a map of samples draws; it says so where there are more."""
+_FIRST = (INVALID, FAILED, *SUCCESSES[::-1])
 """Which outcome of several runs marks their cell: the first of these that there is."""
 _DIGITS, _PLACE_DIGITS = 4, 9
-"""Of values, and of where they are."""
+"""Of values and of coordinates."""
 
 
 def campaign_maps(results: Results) -> dict[str, Any] | None:
@@ -29,24 +29,33 @@ def campaign_maps(results: Results) -> dict[str, Any] | None:
 
     A map goes over two numbers, or over one alone. On a grid it has cells, in each the worst of
     the runs that differ in what was drawn at random; of random samples it has a point per run.
-    The grid's other numbers are at their start.
+    The points of all maps are in `points`; a map has the places of its own among them, or None
+    for all. The grid's other numbers are at their start.
     """
     numbers = results.numbers
     if not numbers:
         return None
-    pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS]
-    maps = [_map(results, keys) for keys in pairs or [numbers]]
-    repeated = any(max(panel['runs'], default=0) > 1 for each in maps for panel in each['panels'])
+    pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS] or [numbers]
+    cells = [_cells(results, keys) for keys in pairs if _on_grid(results, keys)]
+    repeated = any(max(panel['runs'], default=0) > 1 for each in cells for panel in each['panels'])
     share = {'key': FAILED_SHARE, 'title': 'share of failed engagements', 'low': 0.0, 'high': 1.0}
+    drawn, points = _points(results, [keys for keys in pairs if not _on_grid(results, keys)])
+    maps = {tuple(each['keys']): each for each in [*cells, *points]}
     return {
         'quantities': [*([share] if repeated else []), *_scales(results)],
         'groups': [group.label for group in results.groups],
-        'maps': maps,
+        'points': drawn,
+        'numbers': numbers,
+        'maps': [maps[tuple(keys)] for keys in pairs],
     }
 
 
+def _on_grid(results: Results, keys: Sequence[str]) -> bool:
+    return all(key in results.grid for key in keys)
+
+
 def _scales(results: Results) -> list[dict[str, Any]]:
-    """Return the ends of each quantity's scale of colours, that of the engaged runs of all."""
+    """Return the ends of each quantity's scale of colours: magnitudes of the engaged runs."""
     engaged = results.outcomes == ENGAGED
     found = []
     for figure in results.quantities:
@@ -58,22 +67,74 @@ def _scales(results: Results) -> list[dict[str, Any]]:
     return found
 
 
-def _map(results: Results, keys: Sequence[str]) -> dict[str, Any]:
-    cells = all(key in results.grid for key in keys)
-    others = {key: results.start_of(key) for key in results.others(keys)}
-    panels = []
-    for group in results.groups:
-        rows = results.others_nominal(group.rows, keys)
-        parts = results.alike(rows, keys) if cells else [np.array([row]) for row in rows]
-        panels.append(_panel(results, parts[: None if cells else MOST_POINTS], keys))
-    return {'keys': list(keys), 'cells': cells, 'others': others, 'panels': panels}
+def _cells(results: Results, keys: Sequence[str]) -> dict[str, Any]:
+    """Return a map over the grid."""
+    parts = [
+        results.alike(results.others_nominal(group.rows, keys), keys) for group in results.groups
+    ]
+    runs = sum(len(rows) for each in parts for rows in each)
+    return {
+        'keys': list(keys),
+        'cells': True,
+        'others': _others(results, keys),
+        'shown': _shown(runs, results.rows),
+        'panels': [_panel(results, each, keys) for each in parts],
+    }
 
 
-def _panel(results: Results, parts: Sequence[np.ndarray], keys: Sequence[str]) -> dict[str, Any]:
+def _points(
+    results: Results, pairs: Sequence[Sequence[str]]
+) -> tuple[list[dict[str, Any]] | None, list[dict[str, Any]]]:
+    """Return the points of each group that a map of samples draws, and these maps."""
+    if not pairs:
+        return None, []
+    chosen = {
+        tuple(keys): [
+            _evenly(results.others_nominal(group.rows, keys)) for group in results.groups
+        ]
+        for keys in pairs
+    }
+    drawn = [np.unique(np.concatenate(rows)) for rows in zip(*chosen.values(), strict=True)]
+    maps = [
+        {
+            'keys': list(keys),
+            'cells': False,
+            'others': _others(results, keys),
+            'shown': _shown(sum(map(len, rows)), results.rows),
+            'panels': [
+                None if len(ours) == len(every) else np.searchsorted(every, ours).tolist()
+                for ours, every in zip(rows, drawn, strict=True)
+            ],
+        }
+        for keys, rows in chosen.items()
+    ]
+    points = [_panel(results, rows[:, np.newaxis], results.numbers) for rows in drawn]
+    return points, maps
+
+
+def _evenly(rows: np.ndarray) -> np.ndarray:
+    """Return rows, or of too many as many as can be drawn, evenly spaced."""
+    if len(rows) <= MOST_POINTS:
+        return rows
+    return rows[np.arange(MOST_POINTS) * len(rows) // MOST_POINTS]
+
+
+def _others(results: Results, keys: Sequence[str]) -> dict[str, float]:
+    return {key: results.start_of(key) for key in results.others(keys)}
+
+
+def _shown(drawn: int, runs: int) -> str:
+    """Return which runs a map shows."""
+    return f'all {runs} runs' if drawn == runs else f'{drawn} of {runs} runs'
+
+
+def _panel(
+    results: Results, parts: Sequence[np.ndarray] | np.ndarray, keys: Sequence[str]
+) -> dict[str, Any]:
     """Return the cells or points of one group, column by column."""
-    counts = [failed_share(results.outcomes[rows]) for rows in parts]
+    counts = [count_outcomes(results.outcomes[rows]) for rows in parts]
     repeated = any(len(rows) > 1 for rows in parts)
-    telling = [_telling(results, rows) for rows in parts]
+    marking = [_marking(results, rows) for rows in parts]
     states, index = results.columns['verdict_state'], results.columns['index']
     worst = {figure.key: _worst(results, figure.key, parts) for figure in results.quantities}
     return {
@@ -81,9 +142,9 @@ def _panel(results: Results, parts: Sequence[np.ndarray], keys: Sequence[str]) -
         'runs': [len(rows) for rows in parts],
         'failed': [each.failed for each in counts],
         'invalid': [each.invalid for each in counts],
-        'intervals': [each.interval() for each in counts] if repeated else None,
-        'state': [str(states[row]) for row in telling],
-        'index': [int(index[row]) for row in telling],
+        'intervals': [each.failed_share.interval() for each in counts] if repeated else None,
+        'state': [str(states[row]) for row in marking],
+        'index': [int(index[row]) for row in marking],
         'values': {key: [value for value, _ in found] for key, found in worst.items()},
         'rows': {key: [row for _, row in found] for key, found in worst.items()}
         if repeated
@@ -91,27 +152,27 @@ def _panel(results: Results, parts: Sequence[np.ndarray], keys: Sequence[str]) -
     }
 
 
-def _telling(results: Results, rows: np.ndarray) -> int:
+def _marking(results: Results, rows: np.ndarray) -> int:
     """Return the run that marks a cell: the first invalid one, else the first failed one."""
-    return min(rows.tolist(), key=lambda row: _TELLING.index(results.outcomes[row]))
+    return min(rows.tolist(), key=lambda row: _FIRST.index(results.outcomes[row]))
 
 
 def _worst(
-    results: Results, key: str, parts: Sequence[np.ndarray]
+    results: Results, key: str, parts: Sequence[np.ndarray] | np.ndarray
 ) -> list[tuple[float | None, int | None]]:
-    """Return per cell the largest magnitude of its valid runs, and the index of that run."""
-    values = np.where(results.outcomes == INVALID, np.nan, np.abs(results.columns[key]))
+    """Return per cell the value of largest magnitude of its valid runs, and that run's index."""
+    values = np.where(results.outcomes == INVALID, np.nan, results.columns[key])
     found: list[tuple[float | None, int | None]] = []
     for rows in parts:
         if np.isnan(values[rows]).all():
             found.append((None, None))
         else:
-            row = rows[np.nanargmax(values[rows])]
+            row = rows[np.nanargmax(np.abs(values[rows]))]
             value = float(f'{values[row]:.{_DIGITS}g}')
             found.append((value, int(results.columns['index'][row])))
     return found
 
 
-def _places(values: np.ndarray, parts: Sequence[np.ndarray]) -> list[float]:
+def _places(values: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray) -> list[float]:
     """Return the varied number of each cell."""
     return [float(f'{values[rows[0]]:.{_PLACE_DIGITS}g}') for rows in parts]

@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from ddct_bringup.campaign.columns import CONTROLLER
+from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
 from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
 from ddct_bringup.verdict.criteria import CRITERIA
@@ -28,6 +29,18 @@ QUANTITIES = (
 
 
 @dataclass(frozen=True)
+class OtherVersion:
+    """How results differ from those that this version writes; all empty where they do not."""
+
+    absent: tuple[str, ...] = ()
+    """Columns that they lack."""
+    unknown: tuple[str, ...] = ()
+    """Columns that this version does not know."""
+    no_nominal: str = ''
+    """Why the nominal values of what was varied are not known."""
+
+
+@dataclass(frozen=True)
 class Results:
     """The columns of `results.parquet`, and what the manifest says of them."""
 
@@ -39,6 +52,7 @@ class Results:
     """Names of what was drawn at random."""
     nominal: Mapping[str, float]
     """The numbers of the scenario before it was varied, as far as it has them."""
+    other: OtherVersion = OtherVersion()
 
     @property
     def rows(self) -> int:
@@ -47,7 +61,7 @@ class Results:
 
     @cached_property
     def outcomes(self) -> np.ndarray:
-        """(n,) engaged, failed or invalid."""
+        """(n,) what each run came to."""
         return outcomes_of(self.columns['valid'], self.columns['verdict_state'])
 
     @cached_property
@@ -56,26 +70,63 @@ class Results:
         return [
             each
             for each in QUANTITIES
-            if each.key in self.columns and not np.isnan(self.columns[each.key]).all()
+            if is_number(self.columns.get(each.key)) and self._defined(each.key)
         ]
+
+    def _defined(self, key: str) -> bool:
+        return not np.isnan(self.columns[key]).all()
+
+    @cached_property
+    def cases(self) -> np.ndarray:
+        """(n,) which case each run has: all controllers have the same ones."""
+        per_controller = self.rows // len(set(self.columns[CONTROLLER].tolist()))
+        return self.columns[INDEX] % per_controller
 
     @cached_property
     def numbers(self) -> list[str]:
-        """What was varied and is a number, in more than one value; of the grid first."""
+        """
+        What was varied and is a number, in more than one value; of the grid first.
+
+        A seed is none: one that is larger is no more of anything.
+        """
         return [
             key
             for key in dict.fromkeys([*self.grid, *self.random])
-            if is_number(self.columns[key]) and len(np.unique(self.columns[key])) > 1
+            if key != SEED
+            and is_number(self.columns[key])
+            and len(np.unique(self.columns[key])) > 1
         ]
+
+    @property
+    def lines(self) -> list[str]:
+        """The numbers along which failure has a boundary: those of a grid with nothing random."""
+        random = [key for key in self.random if len(set(self.columns[key].tolist())) > 1]
+        return [] if random else [key for key in self.numbers if key in self.grid]
 
     @cached_property
     def groups(self) -> list['Group']:
         """The runs by controller, and by all else that varies and is no number."""
-        named = [key for key in (*self.grid, *self.random) if not is_number(self.columns[key])]
+        varied = (*self.grid, *self.random)
+        named = [key for key in varied if not is_number(self.columns[key])]
         keys = [CONTROLLER, *(key for key in named if len(set(self.columns[key].tolist())) > 1)]
         return [
             Group({key: str(self.columns[key][rows[0]]) for key in keys}, rows)
             for rows in self.alike(np.arange(self.rows), keys)
+        ]
+
+    @cached_property
+    def pairs(self) -> list[tuple['Group', 'Group']]:
+        """All pairs of controllers, with the cases that both have in one order."""
+        return [
+            (Group(first.names, first.rows[ours]), Group(second.names, second.rows[theirs]))
+            for first, second in combinations(self.groups, 2)
+            if first.varied == second.varied
+            for _, ours, theirs in [
+                np.intersect1d(
+                    self.cases[first.rows], self.cases[second.rows], return_indices=True
+                )
+            ]
+            if len(ours)
         ]
 
     def alike(self, rows: np.ndarray, keys: Sequence[str]) -> list[np.ndarray]:
@@ -94,15 +145,15 @@ class Results:
 
     def start_of(self, key: str) -> float:
         """
-        Return where the way out of a varied number starts: at its nominal value.
+        Return where the line over a number of the grid starts.
 
-        On a grid it is the value of the grid nearest to that, the lower of two. Where the scenario
-        has no such number, as without an optional part, zero stands for it.
+        It is the value nearest to the nominal one, the lower of two. Where the scenario
+        has no such number, as without an optional part, zero stands for it. Where nominal values
+        are not known, it is the middle of the grid.
         """
-        nominal = self.nominal.get(key, 0.0)
-        if key not in self.grid:
-            return nominal
         values = np.unique(self.columns[key])
+        unnamed = float(values[(len(values) - 1) // 2]) if self.other.no_nominal else 0.0
+        nominal = self.nominal.get(key, unnamed)
         return float(values[np.argmin(np.abs(values - nominal))])
 
     def others_nominal(self, rows: np.ndarray, keys: Sequence[str]) -> np.ndarray:
@@ -127,11 +178,16 @@ class Group:
     """(m,) positions in the columns."""
 
     @property
+    def varied(self) -> dict[str, str]:
+        """What tells it apart besides the controller."""
+        return {key: name for key, name in self.names.items() if key != CONTROLLER}
+
+    @property
     def label(self) -> str:
         """What a table calls it."""
         return ', '.join(self.names.values())
 
 
-def is_number(column: np.ndarray) -> bool:
-    """Say whether a column holds numbers; those that say yes or no are none."""
-    return bool(np.issubdtype(column.dtype, np.number))
+def is_number(column: np.ndarray | None) -> bool:
+    """Return whether there is a column and it holds numbers; booleans are none."""
+    return column is not None and bool(np.issubdtype(column.dtype, np.number))

@@ -2,26 +2,29 @@
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER
+from ddct_bringup.campaign_report import attribution, paired
+from ddct_bringup.campaign_report.boundaries import boundaries
 from ddct_bringup.campaign_report.outcome import (
     CONFIDENCE,
+    FAILED,
     METHOD,
-    ONE_IN,
-    failed_share,
-    tail_of,
-    ways_out,
+    Share,
+    count_outcomes,
 )
 from ddct_bringup.campaign_report.results import Group, Results
+from ddct_bringup.campaign_report.spread import ONE_IN, spread_of
 from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Figure
 
 Summary = dict[str, Any]
 """As the page on campaigns describes it."""
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Of `summary.json`."""
 MOST_REASONS = 5
 """That are given of why runs are invalid, the most frequent ones."""
@@ -36,36 +39,60 @@ def summary_of(results: Results) -> Summary:
         'grid': list(results.grid),
         'random': list(results.random),
         'interval': {'method': METHOD, 'confidence': CONFIDENCE},
+        'attribution_method': attribution.METHOD,
+        'difference_interval_method': paired.METHOD,
         'tail_share': 1.0 / ONE_IN,
+        'other_version': {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in asdict(results.other).items()
+        },
         'groups': [_group(results, group) for group in results.groups],
+        'pairs': [_pair(results, *pair) for pair in results.pairs],
     }
 
 
 def _group(results: Results, group: Group) -> Summary:
     return {
         'controller': group.names[CONTROLLER],
-        'varied': {key: name for key, name in group.names.items() if key != CONTROLLER},
+        'varied': group.varied,
         'failed': _failed(results, group),
-        'first_failures': [_first_failure(results, group, key) for key in results.numbers],
+        'boundaries': [_boundary(results, group, key) for key in results.lines],
+        'attribution': _attribution(results, group) if results.random else None,
         'quantities': [_quantity(results, group, figure) for figure in results.quantities],
     }
 
 
 def _failed(results: Results, group: Group) -> Summary:
-    counts = failed_share(results.outcomes[group.rows])
+    counts = count_outcomes(results.outcomes[group.rows])
     sample = results.is_sample(group)
-    states = results.columns['verdict_state'][group.rows]
     return {
         'runs': counts.runs,
         'engaged': counts.engaged,
         'failed': counts.failed,
         'invalid': counts.invalid,
-        'share': counts.share,
-        'interval': list(counts.interval()) if sample else None,
+        **_share(counts.failed_share, sample=sample),
         'no_interval': '' if sample else NO_SAMPLE,
-        'states': {state: int(np.sum(states == state)) for state in STATES if state in states},
+        'states': _states(results, group, counts.invalid, sample=sample),
         'reasons': _reasons(results, group),
     }
+
+
+def _states(results: Results, group: Group, invalid: int, *, sample: bool) -> Summary:
+    """Return how many valid runs are in each state, those of another version last."""
+    valid = group.rows[results.outcomes[group.rows] != INVALID]
+    found = Counter(results.columns['verdict_state'][valid].tolist())
+    return {
+        str(state): {
+            'runs': found[state],
+            **_share(Share(found[state], invalid, len(group.rows)), sample=sample),
+        }
+        for state in dict.fromkeys((*STATES, *found))
+        if found[state]
+    }
+
+
+def _share(share: Share, *, sample: bool) -> Summary:
+    return {'share': share.share, 'interval': list(share.interval()) if sample else None}
 
 
 def _reasons(results: Results, group: Group) -> list[Summary]:
@@ -82,43 +109,96 @@ def _reasons(results: Results, group: Group) -> list[Summary]:
     ]
 
 
-def _first_failure(results: Results, group: Group, key: str) -> Summary:
-    """Return the ways out of one varied number, the grid's other numbers being at their start."""
+def _boundary(results: Results, group: Group, key: str) -> Summary:
+    """Return the boundaries on a line over one key, the grid's other numbers at their start."""
     rows = results.others_nominal(group.rows, [key])
     start = results.start_of(key)
-    ways = ways_out(results.columns[key][rows], results.outcomes[rows], start)
+    sides = boundaries(results.columns[key][rows], results.outcomes[rows], start)
     return {
         'key': key,
         'nominal': results.nominal.get(key),
         'start': start,
         'others': {other: results.start_of(other) for other in results.others([key])},
         **{
-            side: {
-                'held_to': way.held_to,
-                'first_failure': way.first_failure,
-                'lost': way.lost,
-                'runs': way.runs,
-                **_run(results, rows, way.row),
+            name: {
+                'last_good': side.last_good,
+                'first_failure': side.first_failure,
+                'failed': side.failed,
+                'runs': side.runs,
+                'invalid': side.invalid,
+                **_run(results, rows, side.row),
             }
-            for side, way in ways.items()
+            for name, side in sides.items()
         },
     }
 
 
+def _attribution(results: Results, group: Group) -> Summary:
+    """Return which keys drive failure, or why that cannot be known."""
+    rows = group.rows[results.outcomes[group.rows] != INVALID]
+    failed = results.outcomes[rows] == FAILED
+    values = {key: results.columns[key][rows] for key in results.numbers}
+    varied = {key: each for key, each in values.items() if len(np.unique(each)) > 1}
+    found: Summary = {'runs': len(rows), 'failed': int(np.sum(failed))}
+    why = attribution.too_few(failed)
+    effects = [] if why else attribution.effects_of(varied, failed)
+    return {
+        **found,
+        'too_few': why,
+        'keys': [
+            {
+                'key': each.key,
+                'drives': each.drives,
+                'explained': each.explained,
+                'interval': list(each.interval),
+                'p_value': each.p_value,
+                'worst_part': asdict(each.worst_part),
+            }
+            for each in effects
+        ],
+    }
+
+
 def _quantity(results: Results, group: Group, figure: Figure) -> Summary:
-    """Return how bad a quantity becomes."""
+    """Return how a quantity spreads over the engaged runs, and how bad it becomes."""
     values = results.columns[figure.key][group.rows]
-    tail = tail_of(values, results.outcomes[group.rows])
+    spread = spread_of(values, results.outcomes[group.rows])
     return {
         'name': figure.key,
         'unit': figure.unit,
-        'with_value': tail.with_value,
-        'median': tail.median,
-        'cvar': tail.cvar,
-        'tail_runs': tail.runs,
-        'lacking': tail.lacking,
-        'worst_engaged': _case(results, group.rows, values, tail.worst_engaged),
-        'worst': _case(results, group.rows, values, tail.worst),
+        'engaged': spread.engaged,
+        'with_value': spread.with_value,
+        **spread.quantiles,
+        'cvar_engaged': spread.cvar,
+        'worst_engaged': _case(results, group.rows, values, spread.worst_engaged),
+        'worst': _case(results, group.rows, values, spread.worst),
+    }
+
+
+def _pair(results: Results, first: Group, second: Group) -> Summary:
+    """Return by how much the first of two controllers differs from the second, case by case."""
+    outcomes = results.outcomes[first.rows], results.outcomes[second.rows]
+    sample = results.is_sample(first)
+    differences = []
+    for figure in results.quantities:
+        column = results.columns[figure.key]
+        found = paired.difference_of(column[first.rows], column[second.rows], outcomes)
+        differences.append(
+            {
+                'name': figure.key,
+                'unit': figure.unit,
+                'cases': found.cases,
+                **found.quantiles,
+                'interval': list(found.interval) if found.interval and sample else None,
+            }
+        )
+    return {
+        'first': first.names[CONTROLLER],
+        'second': second.names[CONTROLLER],
+        'varied': first.varied,
+        **asdict(paired.together(*outcomes)),
+        'no_interval': '' if sample else NO_SAMPLE,
+        'differences': differences,
     }
 
 

@@ -1,35 +1,44 @@
-"""How page and terminal say what the summary holds: definitions, words, and tables."""
+"""Definitions and words of what the summary holds, for the page and the terminal."""
 
 import shlex
-from collections.abc import Sequence
 
+from ddct_bringup.campaign_report.attribution import FEWEST, MOST_PARTS
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
+from ddct_bringup.campaign_report.spread import ONE_IN
 from ddct_bringup.campaign_report.summary import Summary
 from ddct_bringup.report.page_parts import value_text
-from ddct_bringup.verdict.metric_figures import METRICS
-from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
+from ddct_plant.program.table import UNDEFINED
 
 RULES = {
-    'failed': 'The verdict of a valid run has another state than engaged. A criterion beyond its '
-    'limit is no failed engagement.',
+    'failed': 'The run is valid, and the state of its verdict is neither engaged nor nearly '
+    'engaged. A criterion beyond its limit is no failed engagement.',
     'invalid': 'The run does not count: it is neither engaged nor failed, and stands apart.',
-    'share': 'Failed runs among the valid ones.',
+    'share': 'Failed runs among the valid ones. Beside it are the runs of each other state.',
     'interval': f'{METHOD}, {100.0 * CONFIDENCE:g} %, of runs that are a random sample. Invalid '
     'runs count as engaged at its lower end and as failed at its upper end. Runs on a grid are no '
     'sample and have none.',
-    'nominal': 'The value of the scenario, where the way to either side begins. "from": it begins '
-    'at the nearest value of the grid. A dash: the scenario gives no value, and 0 stands for it.',
-    'first failure': 'The first value, from the nominal one outward, at which not every run is '
-    'engaged; other numbers of the grid are at the value nearest to nominal. Of random samples it '
-    'is the nearest one that is not engaged, whatever else was drawn with it.',
-    'held to': 'The last value before it: there and on the way every run is engaged.',
-    'magnitude': 'All figures are magnitudes, of which less is better.',
-    'CVaR': 'Conditional value at risk: the mean of the worst 5 % of the runs (n/20 of n; a part '
-    'of a run counts as that part). On a grid these are its points, not chances.',
-    'rank': 'A run that is not engaged or has no value ranks behind every value. Where such a run '
-    'is among the worst 5 %, CVaR has no value; where it reaches the middle, the median has none.',
-    'worst': 'The largest value of the engaged runs, and beside it of all valid runs where a '
-    'failed one has a larger one.',
+    'nominal': 'The value of the scenario. A line over one key starts at the value of the grid '
+    'that is nearest to it. A dash: the scenario gives no value, and 0 stands for it.',
+    'boundary': 'From the start of the line to each side: the last value up to which no run '
+    'failed and all are valid, and the first value at which a run failed. The other keys of '
+    'the grid stay at the values in the last column.',
+    'explained': 'The main effect of a key: the part of the variance of failure that the key '
+    f'explains by itself, 0 to 1, over at most {MOST_PARTS} parts of its range. Keys that act '
+    'together only are not found by it.',
+    'drives': 'Beyond chance: the p-value, by a permutation test and corrected for the number of '
+    f'keys (Holm), is at most {1.0 - CONFIDENCE:.2g}. Fewer than {FEWEST} failed runs say nothing '
+    'of keys.',
+    'quantiles': 'P5, P50 and P95 of the engaged runs that have a value, with their signs. Failed '
+    'runs have no place among them: their share is in the first table. On a grid these are '
+    'quantiles over its points, not chances.',
+    'CVaR': 'Conditional value at risk of the engaged runs: the mean magnitude of their worst 5 % '
+    f'(n/20 of n; a part of a run counts as that part). Fewer than {ONE_IN} runs have none.',
+    'worst': 'The largest magnitude, with its sign: of the engaged runs, and beside it of all '
+    'valid runs where a failed one has a larger one.',
+    'difference': 'Magnitude of the first controller less that of the second in the same case, '
+    'only over the cases in which both engaged. Below zero the first one is better.',
+    'difference interval': f'Of the median, by the sign test, {100.0 * CONFIDENCE:g} %. '
+    'It does not cover zero where one of the two is better in the middle.',
 }
 """Definitions by what they define."""
 
@@ -39,39 +48,73 @@ def replay_command(folder: str, index: int | str) -> str:
     return f'ddct campaign replay {shlex.quote(folder)} --index {index} --out replay-{index}'
 
 
-def share_text(failed: Summary) -> str:
-    """Return the share of failed engagements in percent."""
-    return UNDEFINED if failed['share'] is None else f'{100.0 * failed["share"]:.1f} %'
+def share_text(share: float | None) -> str:
+    """Return a share in percent."""
+    return UNDEFINED if share is None else f'{100.0 * share:.1f} %'
 
 
-def interval_text(failed: Summary) -> str:
-    """Return the ends of its interval, or a dash."""
-    if failed['interval'] is None:
+def interval_text(interval: list[float] | None) -> str:
+    """Return the ends of the interval of a share, or a dash."""
+    if interval is None:
         return UNDEFINED
-    lower, upper = (100.0 * end for end in failed['interval'])
+    lower, upper = (100.0 * end for end in interval)
     return f'{lower:.1f} to {upper:.1f} %'
 
 
 def states_text(failed: Summary) -> str:
-    """Return how many runs are in which state, those that are not engaged."""
-    states = failed['states'].items()
-    return ', '.join(f'{count} {spoken(name)}' for name, count in states if name != 'engaged')
+    """Return how many runs are in which state other than engaged, with the shares of a sample."""
+    return ', '.join(
+        f'{found["runs"]} {spoken(state)}'
+        + (f' ({interval_text(found["interval"])})' if found['interval'] else '')
+        for state, found in failed['states'].items()
+        if state != 'engaged'
+    )
 
 
-def way_text(way: Summary) -> str:
-    """Return where engagement fails first on a way out."""
-    held, first = way['held_to'], way['first_failure']
-    if first is None:
-        return 'no run on this side' if held is None else 'none in the range'
-    several = f', {way["lost"]} of {way["runs"]} runs' if way['runs'] > 1 else ''
-    return f'{value_text(first)} ({spoken(way["state"])}, run {way["index"]}{several})'
+def boundary_text(side: Summary) -> str:
+    """Return the first failure on one side of a line."""
+    if side['first_failure'] is None:
+        return 'no run on this side' if side['last_good'] is None else 'none in the range'
+    several = f', {side["failed"]} of {side["runs"]} runs' if side['runs'] > 1 else ''
+    first = _apart(side['first_failure'], side['last_good'])
+    return f'{first} ({spoken(side["state"])}, run {side["index"]}{several})'
 
 
-def held_text(way: Summary) -> str:
-    """Return up to which value it held."""
-    if way['held_to'] is None:
-        return 'nothing held' if way['first_failure'] is not None else ''
-    return f'held to {value_text(way["held_to"])}'
+def good_text(side: Summary) -> str:
+    """Return the last good value on one side of a line, and how many runs do not count."""
+    invalid = f', {side["invalid"]} invalid on the way' if side['invalid'] else ''
+    if side['last_good'] is None:
+        return f'no good value before{invalid}' if side['first_failure'] is not None else ''
+    return f'good to {_apart(side["last_good"], side["first_failure"])}{invalid}'
+
+
+def _apart(value: float, other: float | None) -> str:
+    """Return a value with as many digits as it takes to differ from another one."""
+    if other is None or value_text(value) != value_text(other):
+        return value_text(value)
+    return next(
+        (
+            f'{value:.{digits}g}'
+            for digits in range(5, 17)
+            if f'{value:.{digits}g}' != f'{other:.{digits}g}'
+        ),
+        repr(value),
+    )
+
+
+def range_text(low: float, high: float) -> str:
+    """Return the ends of an interval or a range."""
+    return value_text(low) if low == high else f'{value_text(low)} to {value_text(high)}'
+
+
+def p_text(p_value: float) -> str:
+    """Return a p-value."""
+    return '< 0.001' if p_value < 0.001 else f'{p_value:.3f}'
+
+
+def part_text(part: Summary) -> str:
+    """Return in which part of a key's range failure is most frequent."""
+    return f'{part["failed"]} of {part["runs"]} at {range_text(part["low"], part["high"])}'
 
 
 def spoken(state: str) -> str:
@@ -79,69 +122,43 @@ def spoken(state: str) -> str:
     return state.replace('_', ' ')
 
 
-def summary_tables(summary: Summary) -> list[Table]:
-    """Return how often, where failure begins, and how badly."""
-    return [_failed(summary), *_first_failures(summary), _quantities(summary)]
-
-
 def label_of(group: Summary) -> str:
     """Return what a table calls a group of a summary."""
     return ', '.join([group['controller'], *group['varied'].values()])
 
 
-def _failed(summary: Summary) -> Table:
-    rows = [
-        (
-            label_of(group),
-            share_text(failed),
-            interval_text(failed),
-            *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
-            states_text(failed) or UNDEFINED,
-        )
-        for group in summary['groups']
-        for failed in [group['failed']]
-    ]
-    headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
-    return Table('How often engagement fails', headers, rows, numbers=[False, *[True] * 6])
+def pair_label(pair: Summary) -> str:
+    """Return what a table calls a pair of controllers."""
+    return ', '.join([f'{pair["first"]} less {pair["second"]}', *pair['varied'].values()])
 
 
-def _first_failures(summary: Summary) -> list[Table]:
-    rows = [
-        (
-            found['key'],
-            label_of(group),
-            UNDEFINED if found['nominal'] is None else value_text(found['nominal']),
-            *(text(found[side]) for side in ('below', 'above') for text in (way_text, held_text)),
-        )
-        for place in range(len(summary['groups'][0]['first_failures']))
-        for group in summary['groups']
-        for found in [group['first_failures'][place]]
-    ]
-    headers = 'varied', 'controller', 'nominal', 'fails below at', '', 'fails above at', ''
-    return [Table('Where failure begins', headers, rows)] if rows else []
-
-
-def _quantities(summary: Summary) -> Table:
-    """Return the metrics; the page has the other criteria too."""
-    rows = [
-        _quantity(label_of(group), group['quantities'][place])
-        for place in range(len(summary['groups'][0]['quantities']))
-        for group in summary['groups']
-        if group['quantities'][place]['name'] in METRICS
-    ]
-    headers = 'quantity', 'controller', 'median', 'CVaR', 'worst engaged', 'run', 'worst', 'run'
-    return Table('How bad it becomes', headers, rows, numbers=[False, False, *[True] * 5])
-
-
-def _quantity(label: str, found: Summary) -> Sequence[str]:
-    figure = METRICS[found['name']]
-    worst = found['worst']
+def together_text(pair: Summary) -> str:
+    """Return in how many cases which of two controllers engaged."""
     return (
-        figure.heading,
-        label,
-        *(text_or_dash(found[name], figure.form) for name in ('median', 'cvar')),
-        text_or_dash(found['worst_engaged']['value'], figure.form),
-        text_or_dash(found['worst_engaged']['index'], 'd'),
-        text_or_dash(worst['value'], figure.form),
-        UNDEFINED if worst['index'] is None else f'{worst["index"]} ({spoken(worst["state"])})',
+        f'{pair["both"]} of {pair["cases"]} cases (only {pair["first"]} {pair["first_only"]}, '
+        f'only {pair["second"]} {pair["second_only"]}, neither {pair["neither"]})'
     )
+
+
+def notes_of(summary: Summary) -> list[str]:
+    """Return what a reader has to know beside the tables, a line each."""
+    other = summary['other_version']
+    found = [
+        f'no interval: {reason}'
+        for reason in dict.fromkeys(each['failed']['no_interval'] for each in summary['groups'])
+        if reason
+    ]
+    found += [
+        f'{label_of(group)}: {group["attribution"]["too_few"]}'
+        for group in summary['groups']
+        if group['attribution'] and group['attribution']['too_few']
+    ]
+    if other['absent']:
+        found.append(f'results of another version, without {", ".join(other["absent"])}')
+    if other['unknown']:
+        found.append(
+            f'results of another version, also with {", ".join(other["unknown"])}: in --csv only'
+        )
+    if other['no_nominal']:
+        found.append(f'the nominal values are not known: {other["no_nominal"]}')
+    return found

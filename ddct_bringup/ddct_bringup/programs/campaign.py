@@ -8,6 +8,7 @@ from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
+from ddct_bringup.campaign_report.tables import print_summary
 from ddct_bringup.programs import campaign_folder
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
@@ -53,7 +54,7 @@ def _campaign(argv: list[str]) -> int:
             resume=options.resume,
             stopped=lambda: bool(stops),
         )
-    write_campaign_page(options.out)
+    print_summary(write_campaign_page(options.out), str(options.out))
     print(results)
     print(options.out / PAGE, flush=True)
     return 0

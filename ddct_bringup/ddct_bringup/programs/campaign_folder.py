@@ -11,17 +11,21 @@ import pyarrow.csv as arrow_csv
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.campaign.columns import (
-    COMPARED,
     PATH,
+    SEED,
     VECTORISED_RTOL,
+    compared_in,
     differences,
     read_row,
 )
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import Manifest, code_digest
 from ddct_bringup.campaign.rows import SERIAL, result_row
-from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, read_table, write_campaign_page
-from ddct_bringup.campaign_report.words import RULES, replay_command, summary_tables
+from ddct_bringup.campaign_report.distributions import require_picture, write_distributions
+from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
+from ddct_bringup.campaign_report.reading import read_table, results_of
+from ddct_bringup.campaign_report.tables import print_summary
+from ddct_bringup.campaign_report.words import RULES
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
@@ -31,7 +35,6 @@ from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import ProgramParser, complain
-from ddct_plant.program.table import print_tables
 
 _REPLAY = 'ddct campaign replay'
 _REPLAY_EPILOG = """\
@@ -47,9 +50,11 @@ examples:
   ddct campaign show campaigns/wear                      tables, and {PAGE} anew
   ddct campaign show campaigns/wear --json summary.json  also the summary; '-' is standard output
   ddct campaign show campaigns/wear --csv rows.csv       also every row as CSV
+  ddct campaign show campaigns/wear --figure wear.png    also the distributions of the metrics
 
 Writes {SUMMARY} and {PAGE} into DIR.
-{fill(f'CVaR: {RULES["CVaR"]} {RULES["rank"]}', 96)}
+{fill(f'P5, P50, P95: {RULES["quantiles"]}', 96)}
+{fill(f'CVaR: {RULES["CVaR"]}', 96)}
 """
 
 
@@ -79,6 +84,9 @@ def add_parser(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
     add_limits_option(replay)
     show.add_argument('--json', metavar='FILE', help=f"write {SUMMARY} to FILE; '-': stdout")
     show.add_argument('--csv', metavar='FILE', help="write the rows as CSV to FILE; '-': stdout")
+    show.add_argument(
+        '--figure', metavar='FILE', help='draw the distributions as FILE.png or FILE.svg'
+    )
 
 
 def _replay(options: argparse.Namespace) -> int:
@@ -94,7 +102,7 @@ def _replay(options: argparse.Namespace) -> int:
     plan = RunPlan(run.settings, campaign.chosen(options.index), options.layout)
     with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
         entry = _made_again(plan, folder, row, limits)
-    found = differences(row, result_row(entry, run.varied))
+    found = differences(row, {SEED: run.settings.seed, **result_row(entry, run.varied)})
     if options.json:
         report = {'index': options.index, 'path': row[PATH], 'differences': found}
         write_json(options.json, report)
@@ -103,8 +111,8 @@ def _replay(options: argparse.Namespace) -> int:
     if not found:
         how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
         print(
-            f'{_REPLAY}: run {options.index}: its {len(COMPARED)} figures and words are those of '
-            f'the row, {how}',
+            f'{_REPLAY}: run {options.index}: its {len(compared_in(row))} figures and words are '
+            f'those of the row, {how}',
             file=sys.stderr,
         )
     return 1 if found else 0
@@ -128,19 +136,21 @@ def _made_again(plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits
 def _show(options: argparse.Namespace) -> int:
     if options.json == STDOUT and options.csv == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
-    for option in ('json', 'csv'):
+    for option in ('json', 'csv', 'figure'):
         require_place(f'--{option}', getattr(options, option))
+    if options.figure:
+        require_picture(options.figure)
     summary = write_campaign_page(options.folder)
     if options.json:
         write_json(options.json, summary)
     if options.csv:
         write_text(options.csv, _csv(options.folder))
+    if options.figure:
+        manifest = Manifest.read(options.folder)
+        results = results_of(manifest, read_table(options.folder, manifest))
+        write_distributions(results, scenario_of(manifest), Path(options.figure))
     if STDOUT not in (options.json, options.csv):
-        print_tables(summary_tables(summary))
-        for reason in dict.fromkeys(each['failed']['no_interval'] for each in summary['groups']):
-            if reason:
-                print(f'no interval: {reason}')
-        print(f'the bag of a run: {replay_command(str(options.folder), "I")}')
+        print_summary(summary, str(options.folder))
         print(options.folder / PAGE)
     return 0
 

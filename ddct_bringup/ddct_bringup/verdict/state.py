@@ -23,6 +23,8 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 ENGAGED, NOT_ENGAGED, OSCILLATING = 'engaged', 'not_engaged', 'oscillating'
 RUNAWAY, INVALID = 'runaway', 'invalid'
+SUCCESSES = (ENGAGED,)
+"""The states in which an engagement has not failed, the best first."""
 STATES = (ENGAGED, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
 _ENGINE = 0
 """Its place among the joints."""

@@ -71,8 +71,8 @@ def test_a_row_holds_the_run_its_values_and_its_scores(whole: Path) -> None:
     assert table['controller'].tolist() == ['pi'] * 4 + ['ls8'] * 4
     assert table['wear_gain'].tolist() == [0.7, 0.7, 1.0, 1.0] * 2
     varied = ['wear_gain', 'duration_s', 'vehicle.mass_kg']
-    assert list(table)[: 3 + len(varied)] == ['index', 'controller', 'path', *varied]
-    assert list(table)[6:] == list(COMPARED)
+    assert list(table)[: 4 + len(varied)] == ['index', 'controller', 'path', 'seed', *varied]
+    assert ['seed', *list(table)[7:]] == list(COMPARED)
     assert table['valid'].all()
     assert (table['reason'] == '').all()
     assert (table['steps'] == 70.0).all()

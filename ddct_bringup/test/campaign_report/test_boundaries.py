@@ -1,17 +1,19 @@
-"""Where failure begins, on the way out from the nominal value to both sides."""
+"""Where failure begins on a grid: along one line, from its start to both sides."""
 
 import numpy as np
+import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.outcome import WayOut, ways_out
+from ddct_bringup.campaign_report.boundaries import Boundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.words import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]
 
 
 def found(outcomes, start=1.0, values=WEAR):
-    return ways_out(np.array(values), np.array(outcomes, dtype=object), start)
+    return boundaries(np.array(values), np.array(outcomes, dtype=object), start)
 
 
 def by_mark(marks):
@@ -19,44 +21,53 @@ def by_mark(marks):
     return [{'e': ENGAGED, 'f': 'failed', 'i': INVALID}[mark] for mark in marks]
 
 
-def test_the_first_failure_is_the_one_next_to_what_held_and_not_the_last():
-    ways = found(by_mark('efeeeeff'))
-    assert ways['below'] == WayOut(held_to=0.8, first_failure=0.7, row=1, lost=1, runs=1)
-    assert ways['above'] == WayOut(held_to=1.1, first_failure=1.2, row=6, lost=1, runs=1)
+def test_the_first_failure_is_the_one_next_to_the_last_good_value_and_not_the_last():
+    sides = found(by_mark('efeeeeff'))
+    assert sides['below'] == Boundary(last_good=0.8, first_failure=0.7, row=1, failed=1, runs=1)
+    assert sides['above'] == Boundary(last_good=1.1, first_failure=1.2, row=6, failed=1, runs=1)
 
 
-def test_without_a_failure_it_held_to_the_ends_of_the_range():
-    ways = found(by_mark('eeeeeeee'))
-    assert (ways['below'].held_to, ways['below'].first_failure) == (0.6, None)
-    assert (ways['above'].held_to, ways['above'].first_failure) == (1.3, None)
+def test_without_a_failure_all_is_good_to_the_ends_of_the_range():
+    sides = found(by_mark('eeeeeeee'))
+    assert (sides['below'].last_good, sides['below'].first_failure) == (0.6, None)
+    assert (sides['above'].last_good, sides['above'].first_failure) == (1.3, None)
 
 
-def test_a_start_that_fails_is_the_first_failure_of_both_ways():
-    ways = found(by_mark('eeeefeee'))
-    assert ways['below'] == ways['above'] == WayOut(None, 1.0, 4, 1, 1)
+def test_a_start_that_fails_is_the_first_failure_of_both_sides_and_no_value_is_good():
+    sides = found(by_mark('eeeefeee'))
+    assert sides['below'] == sides['above'] == Boundary(None, 1.0, 4, 1, 1)
 
 
-def test_where_all_fail_nothing_held():
-    assert found(by_mark('ffffffff'))['below'] == WayOut(None, 1.0, 4, 1, 1)
+def test_a_run_that_does_not_count_is_no_failure_and_no_good_value():
+    above = found(by_mark('eeeeeief'))['above']
+    assert above == Boundary(1.0, 1.3, 7, 1, 1, invalid=1)
+    assert found(by_mark('eeeeeiee'))['above'] == Boundary(1.0, None, None, invalid=1)
 
 
-def test_an_invalid_run_holds_nothing():
-    assert found(by_mark('eeeeeiee'))['above'] == WayOut(1.0, 1.1, 5, 1, 1)
-
-
-def test_a_value_with_several_runs_fails_with_one_and_a_failed_run_is_named_first():
-    ways = found(by_mark('eeeif'), 1.0, [1.0, 1.0, 1.0, 1.1, 1.1])
-    assert ways['above'] == WayOut(1.0, 1.1, 4, 2, 2)
-
-
-def test_a_start_between_samples_takes_each_side_by_itself():
-    ways = found(by_mark('eefe'), 1.0, [0.7, 0.9, 1.05, 1.2])
-    assert (ways['below'].held_to, ways['below'].first_failure) == (0.7, None)
-    assert ways['above'] == WayOut(None, 1.05, 2, 1, 1)
+def test_a_value_with_several_runs_fails_with_one_of_them():
+    sides = found(by_mark('eeeif'), 1.0, [1.0, 1.0, 1.0, 1.1, 1.1])
+    assert sides['above'] == Boundary(1.0, 1.1, 4, 1, 2, invalid=1)
 
 
 def test_one_run_is_enough():
-    assert found([ENGAGED], values=[1.0])['below'] == WayOut(1.0, None, None)
+    assert found([ENGAGED], values=[1.0])['below'] == Boundary(1.0, None, None)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
+    random = np.random.default_rng(seed)
+    marks = random.choice(list('eeefi'), size=24)
+    values = np.repeat(WEAR, 3)
+    for side in found(by_mark(marks), 1.0, values).values():
+        assert side.last_good is None or side.last_good != side.first_failure
+
+
+@pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
+def test_their_texts_have_the_digits_that_tell_them_apart(good, bad):
+    side = {'last_good': good, 'first_failure': bad, 'runs': 1, 'failed': 1, 'invalid': 0}
+    side |= {'index': 3, 'state': 'stalled'}
+    assert float(boundary_text(side).split()[0]) == bad
+    assert good_text(side) == f'good to {good}'
 
 
 def summary_over_wear_and_mass(states):
@@ -68,40 +79,49 @@ def summary_over_wear_and_mass(states):
 
 def test_on_a_grid_the_others_are_at_the_value_nearest_to_nominal():
     states = [ENGAGED] * 9
-    states[0] = 'stalled'  # wear 0.8 at 1000 kg, on no way out
+    states[0] = 'stalled'  # wear 0.8 at 1000 kg, on no line
     states[4] = 'runaway'  # wear 0.9 at 1400 kg
     states[8] = 'not_engaged'  # 1800 kg at wear 1
-    wear, mass = summary_over_wear_and_mass(states)['first_failures']
+    wear, mass = summary_over_wear_and_mass(states)['boundaries']
     assert (wear['start'], wear['others']) == (1.0, {'vehicle.mass_kg': 1400.0})
     assert wear['below'] == {
-        'held_to': 1.0,
+        'last_good': 1.0,
         'first_failure': 0.9,
-        'lost': 1,
+        'failed': 1,
         'runs': 1,
+        'invalid': 0,
         'index': 4,
         'state': 'runaway',
     }
     assert wear['above']['first_failure'] is None
     assert (mass['nominal'], mass['start']) == (1500.0, 1400.0)
-    assert (mass['above']['first_failure'], mass['above']['held_to']) == (1800.0, 1400.0)
-    assert (mass['below']['first_failure'], mass['below']['held_to']) == (None, 1000.0)
+    assert (mass['above']['first_failure'], mass['above']['last_good']) == (1800.0, 1400.0)
+    assert (mass['below']['first_failure'], mass['below']['last_good']) == (None, 1000.0)
 
 
-def test_of_random_samples_the_way_starts_at_the_nominal_value():
-    results = made_results(
-        [ENGAGED, 'stalled', ENGAGED],
-        {'wear_gain': [0.95, 0.8, 1.2]},
-        random=['wear_gain'],
-        nominal={'wear_gain': 1.0},
+def test_random_samples_have_no_boundary():
+    wear = [0.95, 0.8, 1.2]
+    states = [ENGAGED, 'stalled', ENGAGED]
+    results = made_results(states, {'wear_gain': wear}, random=['wear_gain'])
+    (group,) = summary_of(results)['groups']
+    assert group['boundaries'] == []
+    mixed = made_results(
+        states, {'gear': [1.0, 2.0, 2.0], 'wear_gain': wear}, random=['wear_gain']
     )
-    (wear,) = summary_of(results)['groups'][0]['first_failures']
-    assert wear['start'] == 1.0
-    assert (wear['below']['held_to'], wear['below']['first_failure']) == (0.95, 0.8)
-    assert (wear['above']['held_to'], wear['above']['first_failure']) == (1.2, None)
+    assert summary_of(mixed)['groups'][0]['boundaries'] == []
 
 
 def test_a_number_that_the_scenario_has_not_starts_at_the_value_nearest_to_zero():
     results = made_results([ENGAGED, 'runaway'], {'sensors.delay_s': [0.01, 0.02]})
-    (delay,) = summary_of(results)['groups'][0]['first_failures']
+    (delay,) = summary_of(results)['groups'][0]['boundaries']
     assert (delay['nominal'], delay['start']) == (None, 0.01)
     assert delay['above']['first_failure'] == 0.02
+
+
+def test_a_seed_is_no_number_that_failure_begins_at():
+    varied = {'seed': [1, 2, 1, 2], 'wear_gain': [0.8, 0.8, 1.0, 1.0]}
+    states = [ENGAGED, 'stalled', ENGAGED, ENGAGED]
+    found = summary_of(made_results(states, varied, nominal={'seed': 0.0, 'wear_gain': 1.0}))
+    (wear,) = found['groups'][0]['boundaries']
+    assert wear['key'] == 'wear_gain'
+    assert (wear['below']['failed'], wear['below']['runs']) == (1, 2)

@@ -11,7 +11,8 @@ from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, nominal_values
+from ddct_bringup.campaign_report.folder import PAGE, SUMMARY
+from ddct_bringup.campaign_report.reading import nominal_values
 from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -49,6 +50,8 @@ def test_show_prints_the_tables_and_writes_summary_and_page(
     printed = capsys.readouterr().out
     assert '33.3 %' in printed
     assert '0.8 (not engaged, run 1)' in printed
+    assert 'vehicle.mass_kg 1500' in printed
+    assert 'pi less ls8' in printed
     assert f'ddct campaign replay {folder} --index I' in printed
     assert (folder / PAGE).is_file()
     assert json.loads((folder / SUMMARY).read_text())['runs'] == 12
@@ -61,8 +64,23 @@ def test_show_writes_json_and_csv_and_then_no_table_to_standard_output(
     assert json.loads(capsys.readouterr().out) == json.loads((folder / SUMMARY).read_text())
     assert main(['show', str(folder), '--csv', '-']) == 0
     header, *rows = capsys.readouterr().out.splitlines()
-    assert header.startswith('"index","controller","path","wear_gain"')
+    assert header.startswith('"index","controller","path","seed","wear_gain"')
     assert len(rows) == 12
+
+
+@pytest.mark.parametrize('name', ['wear.png', 'wear.svg'])
+def test_show_draws_the_distributions(folder: Path, tmp_path: Path, name: str) -> None:
+    file = tmp_path / name
+    assert main(['show', str(folder), '--figure', str(file)]) == 0
+    assert file.read_bytes()[:5] in (b'\x89PNG\r', b'<?xml')
+
+
+def test_a_figure_of_another_kind_is_refused_before_anything_is_written(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(['show', str(folder), '--figure', 'wear.txt']) == 1
+    assert 'wear.txt: name a file that ends in .png or .svg' in capsys.readouterr().err
+    assert not (folder / PAGE).exists()
 
 
 def test_words_of_a_row_cannot_control_the_terminal(
@@ -141,16 +159,16 @@ def test_results_that_lack_a_row_are_not_those_of_the_manifest(
 ) -> None:
     table = parquet.read_table(folder / RESULTS)
     parquet.write_table(table.slice(0, 11), folder / RESULTS)
-    assert 'not what' in complaint(folder, capsys)
+    assert 'its rows are not the 12 runs' in complaint(folder, capsys)
 
 
 def test_a_newer_version_of_the_results_or_the_manifest_is_named(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = parquet.read_table(folder / RESULTS)
-    newer = table.replace_schema_metadata({'schema_version': '2'})
+    newer = table.replace_schema_metadata({'schema_version': '3'})
     parquet.write_table(newer, folder / RESULTS)
-    assert 'schema_version is 2, this version reads up to 1' in complaint(folder, capsys)
+    assert 'schema_version is 3, this version reads up to 2' in complaint(folder, capsys)
     manifest = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps({**manifest, 'schema_version': 9}))
     assert 'schema_version is 9' in complaint(folder, capsys)

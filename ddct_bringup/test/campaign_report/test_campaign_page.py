@@ -2,6 +2,7 @@
 
 import json
 import re
+from base64 import b64decode
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -74,13 +75,17 @@ def test_every_number_of_the_summary_is_on_the_page(folder: Path, page: Elements
     for group in summary['groups']:
         wanted.append(group['failed']['share'])
         for found in group['quantities']:
-            wanted += [found['median'], found['cvar'], found['worst_engaged']['value']]
+            wanted += [found[name] for name in ('p5', 'p50', 'p95', 'cvar_engaged')]
+            wanted.append(found['worst_engaged']['value'])
     assert {value for value in wanted if value is not None} <= set(page.numbers)
     assert len([value for value in wanted if value is not None]) > 20
     for group in summary['groups']:
-        for found in group['first_failures']:
-            for way in (found['below'], found['above']):
-                assert way['first_failure'] is None or f'run {way["index"]}' in page.text
+        for found in group['boundaries']:
+            for side in (found['below'], found['above']):
+                assert side['first_failure'] is None or f'run {side["index"]}' in page.text
+    for pair in summary['pairs']:
+        wanted = [found['p50'] for found in pair['differences'] if found['p50'] is not None]
+        assert set(wanted) <= set(page.numbers)
 
 
 def test_the_summary_says_what_failed(folder: Path) -> None:
@@ -92,8 +97,8 @@ def test_the_summary_says_what_failed(folder: Path) -> None:
         1 / 3,
     )
     assert (ls8['failed']['failed'], ls8['failed']['invalid']) == (2, 1)
-    below = pi['first_failures'][0]['below']
-    assert (below['first_failure'], below['held_to'], below['index']) == (0.8, 1.0, 1)
+    below = pi['boundaries'][0]['below']
+    assert (below['first_failure'], below['last_good'], below['index']) == (0.8, 1.0, 1)
 
 
 def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) -> None:
@@ -105,6 +110,31 @@ def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) ->
     states = [state for panel in data['maps']['maps'][0]['panels'] for state in panel['state']]
     assert (states.count('not_engaged'), states.count(INVALID), len(states)) == (4, 1, 12)
     assert 'ddct campaign replay' in data['replay']
+
+
+def test_the_figure_of_the_distributions_is_on_the_page(folder: Path) -> None:
+    html = (folder / PAGE).read_text(encoding='utf-8')
+    (encoded,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', html)
+    assert b'</svg>' in b64decode(encoded)
+
+
+def test_the_keys_that_drive_failure_are_on_the_page_of_random_samples(tmp_path: Path) -> None:
+    vary = {
+        'wear_gain': {'distribution': 'uniform', 'low': 0.6, 'high': 1.4},
+        'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1200, 'high': 1800},
+    }
+    content = {'controllers': ['pi'], 'random': {'samples': 60, 'vary': vary}}
+
+    def state(run):
+        return 'not_engaged' if run.varied['wear_gain'] < 0.8 else ENGAGED
+
+    made = make_campaign(tmp_path / 'random', content, state)
+    (group,) = write_campaign_page(made)['groups']
+    page = Elements((made / PAGE).read_text(encoding='utf-8'))
+    assert [each['drives'] for each in group['attribution']['keys']] == [True, False]
+    assert {each['explained'] for each in group['attribution']['keys']} <= set(page.numbers)
+    assert 'Which keys drive failure' in page.text
+    assert 'Where failure begins' not in page.text
 
 
 def test_the_page_needs_nothing_else(folder: Path) -> None:

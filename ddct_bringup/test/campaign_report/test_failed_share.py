@@ -5,15 +5,36 @@ import pytest
 from made_results import made_results
 from scipy.stats import binomtest
 
-from ddct_bringup.campaign_report.outcome import FailedShare, failed_share, outcomes_of
+from ddct_bringup.campaign_report import outcome
+from ddct_bringup.campaign_report.outcome import Share, count_outcomes, outcomes_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES
+from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES, SUCCESSES
 
 
-def test_every_state_but_engaged_and_invalid_is_a_failed_engagement():
+def test_every_state_but_a_success_and_invalid_is_a_failed_engagement():
     outcomes = outcomes_of(np.ones(len(STATES), dtype=bool), np.array(STATES))
-    wanted = [state if state in (ENGAGED, INVALID) else 'failed' for state in STATES]
+    wanted = [state if state in (*SUCCESSES, INVALID) else 'failed' for state in STATES]
     assert outcomes.tolist() == wanted
+    assert 'failed' in wanted
+
+
+def test_a_success_of_second_rank_is_no_failure_and_not_engaged(monkeypatch):
+    monkeypatch.setattr(outcome, 'SUCCESSES', (ENGAGED, 'nearly_engaged'))
+    states = [ENGAGED, 'nearly_engaged', 'nearly_engaged', 'not_engaged']
+    results = made_results(states, {'wear_gain': [0.7, 0.8, 0.9, 1.0]}, random=['wear_gain'])
+    failed = summary_of(results)['groups'][0]['failed']
+    assert (failed['engaged'], failed['failed'], failed['share']) == (1, 1, 0.25)
+    nearly = failed['states']['nearly_engaged']
+    assert (nearly['runs'], nearly['share']) == (2, 0.5)
+    exact = binomtest(2, 4).proportion_ci(method='exact')
+    assert nearly['interval'] == pytest.approx([exact.low, exact.high], rel=1e-9)
+
+
+def test_a_state_of_another_version_is_a_failure_and_is_named():
+    results = made_results([ENGAGED, 'crumbled'], {'wear_gain': [0.7, 1.0]})
+    failed = summary_of(results)['groups'][0]['failed']
+    assert failed['failed'] == 1
+    assert failed['states']['crumbled']['runs'] == 1
 
 
 def test_a_run_that_does_not_count_is_invalid_whatever_state_it_has():
@@ -25,28 +46,28 @@ def test_a_run_that_does_not_count_is_invalid_whatever_state_it_has():
 )
 def test_the_interval_is_that_of_scipy(failed, runs):
     exact = binomtest(failed, runs).proportion_ci(confidence_level=0.95, method='exact')
-    found = FailedShare(runs, runs - failed, failed, 0).interval()
+    found = Share(failed, 0, runs).interval()
     assert found == pytest.approx((exact.low, exact.high), abs=4e-12)  # scipy searches: xtol 2e-12
 
 
 def test_none_of_n_failed_leaves_up_to_the_closed_form():
-    upper = FailedShare(60, 60, 0, 0).interval()[1]
+    upper = Share(0, 0, 60).interval()[1]
     assert upper == pytest.approx(1.0 - 0.025 ** (1 / 60), rel=1e-12)
 
 
 def test_invalid_runs_are_in_no_share_and_widen_the_interval_to_both_sides():
-    counts = failed_share(np.array([ENGAGED] * 6 + ['failed'] * 2 + [INVALID] * 2))
+    counts = count_outcomes(np.array([ENGAGED] * 6 + ['failed'] * 2 + [INVALID] * 2))
     assert (counts.runs, counts.engaged, counts.failed, counts.invalid) == (10, 6, 2, 2)
-    assert counts.share == 2 / 8
+    assert counts.failed_share.share == 2 / 8
     lowest = binomtest(2, 10).proportion_ci(method='exact').low
     highest = binomtest(4, 10).proportion_ci(method='exact').high
-    assert counts.interval() == pytest.approx((lowest, highest), rel=1e-12)
+    assert counts.failed_share.interval() == pytest.approx((lowest, highest), rel=1e-12)
 
 
 def test_of_invalid_runs_alone_there_is_no_share():
-    counts = failed_share(np.array([INVALID] * 3))
-    assert counts.share is None
-    assert counts.interval() == (0.0, 1.0)
+    share = count_outcomes(np.array([INVALID] * 3)).failed_share
+    assert share.share is None
+    assert share.interval() == (0.0, 1.0)
 
 
 def test_runs_on_a_grid_have_a_share_but_no_interval_and_it_is_said_why():
@@ -80,7 +101,9 @@ def test_a_varied_word_makes_groups_of_its_own():
         ('ls8', 'stick_slip'),
     ]
     assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
-    assert groups[1]['failed']['states'] == {'stalled': 1}
+    assert groups[1]['failed']['states'] == {
+        'stalled': {'runs': 1, 'share': 1.0, 'interval': None}
+    }
 
 
 def test_invalid_runs_say_why_the_most_frequent_reason_first():

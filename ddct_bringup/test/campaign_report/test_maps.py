@@ -2,8 +2,11 @@
 
 from typing import Any
 
+import numpy as np
+import pytest
 from made_results import made_results
 
+from ddct_bringup.campaign_report import maps, outcome
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -27,7 +30,8 @@ def test_every_cell_of_the_grid_is_there_with_its_state_value_and_index():
     (panel,) = drawn['panels']
     assert panel['at'] == [[0.8, 0.8, 1.0, 1.0], [1300.0, 1500.0, 1300.0, 1500.0]]
     assert panel['state'] == states
-    assert panel['values'][JERK] == [4.0, 90.0, None, 6.0]
+    assert panel['values'][JERK] == [4.0, 90.0, None, -6.0]
+    assert drawn['shown'] == 'all 4 runs'
     assert panel['index'] == [0, 1, 2, 3]
 
 
@@ -41,7 +45,7 @@ def test_the_scale_is_one_for_all_controllers_and_that_of_engaged_runs():
     found = maps_of(results)
     assert [(each['low'], each['high']) for each in found['quantities']] == [(4.0, 9.0)]
     assert found['groups'] == ['pi', 'ls8']
-    assert [panel['values'][JERK] for panel in found['maps'][0]['panels']] == [[4, 7], [9, 500]]
+    assert [panel['values'][JERK] for panel in found['maps'][0]['panels']] == [[4, 7], [-9, 500]]
 
 
 def test_a_cell_of_several_samples_counts_them_and_shows_the_worst():
@@ -80,15 +84,68 @@ def test_the_other_numbers_of_the_grid_are_at_the_value_nearest_to_nominal():
     assert [each['keys'] for each in found['maps']] == [[WEAR, MASS], [WEAR, SLOPE], [MASS, SLOPE]]
     assert found['maps'][2]['others'] == {WEAR: 1.0}
     assert found['maps'][2]['panels'][0]['index'] == [4, 5, 6, 7]
+    assert found['maps'][2]['shown'] == '4 of 8 runs'
 
 
-def test_random_samples_are_points_and_no_more_than_a_page_can_show():
-    runs = MOST_POINTS + 5
-    varied = {WEAR: [1.0 + 0.001 * run for run in range(runs)]}
-    results = made_results([ENGAGED] * runs, varied, {JERK: [1.0] * runs}, random=[WEAR])
-    (drawn,) = maps_of(results)['maps']
-    assert (drawn['keys'], drawn['cells']) == ([WEAR], False)
-    assert drawn['panels'][0]['index'] == list(range(MOST_POINTS))
+def sampled(runs: int) -> Results:
+    """Return runs over three keys that were drawn at random; the last tenth of them fails."""
+    places = np.arange(runs)
+    varied = {WEAR: 1.0 + 0.001 * places, MASS: places % 7.0, SLOPE: places % 5.0}
+    states = [ENGAGED if run < 0.9 * runs else 'stalled' for run in range(runs)]
+    return made_results(
+        states,
+        {key: values.tolist() for key, values in varied.items()},
+        {JERK: places.tolist()},
+        random=[*varied],
+    )
+
+
+def test_a_map_of_random_samples_has_all_of_them() -> None:
+    found = maps_of(sampled(1250))
+    assert [each['keys'] for each in found['maps']] == [[WEAR, MASS], [WEAR, SLOPE], [MASS, SLOPE]]
+    assert {each['shown'] for each in found['maps']} == {'all 1250 runs'}
+    assert [each['panels'] for each in found['maps']] == [[None]] * 3
+    assert not any(each['cells'] for each in found['maps'])
+    (points,) = found['points']
+    assert points['index'] == list(range(1250))
+    assert found['numbers'] == [WEAR, MASS, SLOPE]
+    assert points['at'][1][:8] == [0, 1, 2, 3, 4, 5, 6, 0]
+
+
+def test_more_samples_than_a_page_can_hold_are_drawn_in_part_from_first_to_last() -> None:
+    runs = 2 * MOST_POINTS + 500
+    found = maps_of(sampled(runs))
+    assert {each['shown'] for each in found['maps']} == {f'{MOST_POINTS} of {runs} runs'}
+    (points,) = found['points']
+    assert len(points['index']) == MOST_POINTS
+    assert points['index'][0] == 0
+    assert points['index'][-1] > runs - 4
+    assert points['state'].count('stalled') == pytest.approx(MOST_POINTS / 10, abs=2)
+
+
+def test_samples_at_points_of_a_grid_are_drawn_where_the_grid_is_at_its_start() -> None:
+    varied = {MASS: [1.0, 1.0, 2.0, 2.0], WEAR: [0.7, 0.8, 0.9, 1.0], SLOPE: [0.1, 0.2, 0.3, 0.4]}
+    results = made_results(
+        [ENGAGED] * 4, varied, {JERK: [1.0] * 4}, random=[WEAR, SLOPE], nominal={MASS: 2.0}
+    )
+    found = maps_of(results)
+    by_keys = {tuple(each['keys']): each for each in found['maps']}
+    assert by_keys[MASS, WEAR]['panels'] == [None]
+    part = by_keys[WEAR, SLOPE]
+    assert (part['others'], part['shown']) == ({MASS: 2.0}, '2 of 4 runs')
+    assert part['panels'] == [[2, 3]]
+
+
+def test_a_success_of_second_rank_is_no_failed_cell(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (outcome, maps):
+        monkeypatch.setattr(module, 'SUCCESSES', (ENGAGED, 'nearly_engaged'))
+    monkeypatch.setattr(maps, '_FIRST', (INVALID, 'failed', 'nearly_engaged', ENGAGED))
+    varied = {WEAR: [0.8, 0.8, 1.0, 1.0], SLOPE: [0.0, 0.1, 0.0, 0.1]}
+    states = [ENGAGED, 'nearly_engaged', ENGAGED, ENGAGED]
+    results = made_results(states, varied, {JERK: [1.0] * 4}, random=[SLOPE])
+    results.columns[MASS] = results.columns[WEAR] * 1000.0
+    (panel,) = maps_of(Results(results.columns, [WEAR, MASS], [SLOPE], {}))['maps'][0]['panels']
+    assert (panel['failed'], panel['state']) == ([0, 0], ['nearly_engaged', ENGAGED])
 
 
 def test_nothing_is_drawn_over_what_does_not_vary():

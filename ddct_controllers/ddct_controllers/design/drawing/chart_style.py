@@ -108,13 +108,18 @@ def save_chart(figure: Figure, path: Path) -> None:
 
     Symbols such as w_sr or W_s^-1 come out typeset. Raise DdctError when it cannot be written.
     """
+    write_bytes(str(path), chart_bytes(figure, path.suffix.removeprefix('.')))
+
+
+def chart_bytes(figure: Figure, kind: str) -> bytes:
+    """Return the figure as a file of a kind, `png` or `svg`, with its symbols typeset."""
     for text in figure.findobj(Text):
         text.set_text(typeset(text.get_text()))
     content = io.BytesIO()
     # Without the date the same figure is the same file.
-    metadata = {'Date': None} if path.suffix == '.svg' else None
-    figure.savefig(content, format=path.suffix.removeprefix('.'), metadata=metadata)
-    write_bytes(str(path), content.getvalue())
+    metadata = {'Date': None} if kind == 'svg' else None
+    figure.savefig(content, format=kind, metadata=metadata)
+    return content.getvalue()
 
 
 def typeset(text: str) -> str:

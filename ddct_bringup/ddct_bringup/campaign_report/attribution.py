@@ -1,0 +1,176 @@
+"""
+Which of several keys that were drawn independently drive failure.
+
+The measure is the main effect of a key, the first-order sensitivity index (Saltelli et al. 2008,
+Section 1.2.3): the part of the variance of failure that the key explains by itself,
+
+    S = Var(E[failed | key]) / Var(failed), 0 to 1
+
+It is estimated from the runs as they are, over parts of the key's range with equally many runs
+(Plischke, Borgonovo and Smith 2013), and freed from what chance explains (Kelley's epsilon
+squared). It needs no direction: a key of which too much and too little fails counts too. It misses
+a key that acts through another alone, and is less than S where failure begins within a part.
+
+Whether a key drives failure is tested by permutation: failures are dealt out at random among the
+runs. The p-values are Holm's, so that among all keys of a controller a false one is named in less
+than 5 % of the campaigns. The interval of S is a bootstrap over the runs, by its pivot.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.campaign_report.outcome import CONFIDENCE
+
+METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
+FEWEST = 5
+"""Failed runs, and runs that did not fail, that say anything of keys."""
+MOST_PARTS = 10
+_RUNS_IN_PART = 10
+_DEALS = 5000
+_RESAMPLES = 2000
+_SEED = 0
+"""So that the same runs give the same figures."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """Runs in a part of a key's range."""
+
+    low: float
+    """Least and largest value that was drawn in it."""
+    high: float
+    runs: int
+    failed: int
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one key has to do with failure."""
+
+    key: str
+    explained: float
+    """Its main effect on failure, 0 to 1."""
+    interval: tuple[float, float]
+    """Of the main effect, at `CONFIDENCE`."""
+    p_value: float
+    """That chance alone explains so much, corrected for the number of keys."""
+    parts: tuple[Part, ...]
+
+    @property
+    def drives(self) -> bool:
+        """Whether the key drives failure beyond chance."""
+        return self.p_value <= 1.0 - CONFIDENCE
+
+    @property
+    def worst_part(self) -> Part:
+        """The part of the range with the largest share of failed runs, the first of equals."""
+        return max(self.parts, key=lambda part: part.failed / part.runs)
+
+
+def too_few(failed: np.ndarray) -> str:
+    """Return why (n,) failures say nothing of keys, empty if they do."""
+    failures, others = int(np.sum(failed)), int(np.sum(~failed))
+    if min(failures, others) >= FEWEST:
+        return ''
+    what = 'failed' if failures <= others else 'did not fail'
+    return (
+        f'{min(failures, others)} of {len(failed)} valid runs {what}: too few to say which keys '
+        f'drive failure (at least {FEWEST})'
+    )
+
+
+def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Effect]:
+    """
+    Return the effect of each key, the largest first.
+
+    `values` has by key the (n,) numbers of the runs, `failed` is (n,) and not `too_few`.
+    """
+    random = np.random.default_rng(_SEED)
+    tables = {key: _parts(each, failed) for key, each in values.items()}
+    chances = {key: _chance(random, parts) for key, parts in tables.items()}
+    corrected = _holm(chances)
+    found = [
+        Effect(key, *_explained_with_interval(random, parts), corrected[key], parts)
+        for key, parts in tables.items()
+    ]
+    return sorted(found, key=lambda each: (each.p_value, -each.explained))
+
+
+def _parts(values: np.ndarray, failed: np.ndarray) -> tuple[Part, ...]:
+    """Return the parts of a key's range: of few values each by itself, else of equal size."""
+    distinct = np.unique(values)
+    count = min(MOST_PARTS, max(2, len(values) // _RUNS_IN_PART))
+    edges = distinct
+    if len(distinct) > count:
+        edges = np.unique(np.quantile(values, np.arange(count) / count))
+    place = np.searchsorted(edges, values, side='right')
+    chosen = [place == each for each in np.unique(place)]
+    return tuple(
+        Part(
+            float(values[rows].min()),
+            float(values[rows].max()),
+            int(np.sum(rows)),
+            int(np.sum(failed[rows])),
+        )
+        for rows in chosen
+    )
+
+
+def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many runs and how many failed ones are in each part, (parts,) each."""
+    return np.array([part.runs for part in parts]), np.array([part.failed for part in parts])
+
+
+def _ratio(runs: np.ndarray, failed: np.ndarray) -> np.ndarray:
+    """Return the part of the variance of failure between parts, (...,), of (..., parts) counts."""
+    total = runs.sum(axis=-1)
+    mean = failed.sum(axis=-1) / total
+    with np.errstate(all='ignore'):
+        within = np.where(runs > 0, failed**2 / runs, 0.0).sum(axis=-1)
+        ratio = (within / total - mean**2) / (mean * (1.0 - mean))
+    return np.nan_to_num(ratio, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _without_chance(ratio: np.ndarray | float, runs: int, parts: int) -> np.ndarray | float:
+    """Return epsilon squared of a ratio: what so many parts explain by chance is zero."""
+    return 1.0 - (1.0 - ratio) * (runs - 1) / (runs - parts)
+
+
+def _chance(random: np.random.Generator, parts: tuple[Part, ...]) -> float:
+    """Return how often failures dealt out at random are as unequal as these, 0 to 1."""
+    runs, failed = _counts(parts)
+    dealt = random.multivariate_hypergeometric(
+        runs, int(failed.sum()), size=_DEALS, method='marginals'
+    )
+    as_unequal = np.sum(_ratio(runs, dealt) >= _ratio(runs, failed) * (1.0 - 1e-12))
+    return float((1 + as_unequal) / (1 + _DEALS))
+
+
+def _explained_with_interval(
+    random: np.random.Generator, parts: tuple[Part, ...]
+) -> tuple[float, tuple[float, float]]:
+    """Return the main effect and the ends of its interval, each within 0 to 1."""
+    runs, failed = _counts(parts)
+    total, count = int(runs.sum()), len(parts)
+    ratio = float(_ratio(runs, failed))
+    explained = float(_without_chance(ratio, total, count))
+    cells = np.concatenate([failed, runs - failed])
+    drawn = random.multinomial(total, cells / total, size=_RESAMPLES)
+    again_failed = drawn[:, :count]
+    again = _without_chance(_ratio(again_failed + drawn[:, count:], again_failed), total, count)
+    outside = (1.0 - CONFIDENCE) / 2.0
+    low, high = np.quantile(again, [outside, 1.0 - outside]) - ratio
+    ends = np.clip([explained - high, explained - low], 0.0, 1.0)
+    return min(max(explained, 0.0), 1.0), (float(ends[0]), float(ends[1]))
+
+
+def _holm(chances: Mapping[str, float]) -> dict[str, float]:
+    """Return p-values by key corrected for their number (Holm 1979)."""
+    corrected: dict[str, float] = {}
+    largest = 0.0
+    for place, key in enumerate(sorted(chances, key=lambda key: chances[key])):
+        largest = max(largest, min(1.0, (len(chances) - place) * chances[key]))
+        corrected[key] = largest
+    return corrected

@@ -1,0 +1,59 @@
+"""Where failure begins on a grid: the first failure along a line from its start outward."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.campaign_report.outcome import FAILED
+from ddct_bringup.verdict.state import INVALID
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """What happens along a line from its start to one end."""
+
+    last_good: float | None
+    """The last value up to which no run failed and all are valid; None where the start is none."""
+    first_failure: float | None
+    """The first value at which a run failed; None where none did."""
+    row: int | None
+    """Position of the first failed run there."""
+    failed: int = 0
+    """How many runs failed there."""
+    runs: int = 0
+    """How many runs there are at that value."""
+    invalid: int = 0
+    """How many runs up to there, or to the end of the line, do not count."""
+
+
+def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[str, Boundary]:
+    """
+    Return the boundaries `below` and `above` the start of a line.
+
+    `values` and `outcomes` of the runs on the line are (n,); `start` is one of the values.
+    """
+    return {
+        'below': _boundary(values, outcomes, start - values),
+        'above': _boundary(values, outcomes, values - start),
+    }
+
+
+def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) -> Boundary:
+    """Return the boundary along (n,) distances from the start; below zero is the other side."""
+    ahead = distance >= 0.0
+    failure = _least(distance, ahead & (outcomes == FAILED))
+    doubt = _least(distance, ahead & (outcomes == INVALID))
+    good = ahead & (distance < min(failure, doubt))
+    last_good = float(values[np.argmax(np.where(good, distance, -1.0))]) if good.any() else None
+    invalid = int(np.sum(ahead & (distance <= failure) & (outcomes == INVALID)))
+    if np.isinf(failure):
+        return Boundary(last_good, None, None, invalid=invalid)
+    there = distance == failure
+    failed = np.flatnonzero(there & (outcomes == FAILED))
+    first = float(values[failed[0]])
+    return Boundary(last_good, first, int(failed[0]), len(failed), int(np.sum(there)), invalid)
+
+
+def _least(distance: np.ndarray, chosen: np.ndarray) -> float:
+    """Return the least of the chosen distances, infinite without one."""
+    return float(np.min(distance, where=chosen, initial=np.inf))

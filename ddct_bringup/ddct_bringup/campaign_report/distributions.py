@@ -1,0 +1,103 @@
+"""The figure of a campaign: how the main metrics are distributed, a curve for each controller."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from ddct_bringup.campaign_report.results import Group, Results
+from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_controllers.design.drawing.chart_style import chart_style, look_style, save_chart
+from ddct_controllers.design.drawing.line_looks import looks_of
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.table import Figure
+
+PICTURES = ('.png', '.svg')
+_DRAWN = (
+    *(figure.key for figure in TABLE_5_1),
+    *('slip_rmse_rpm', 'peak_jerk_m_s3', 'friction_energy_j'),
+)
+_ACROSS = 3
+_WIDTH_IN, _PANEL_IN, _LINE_IN = 11.0, 2.7, 0.25
+_LEGEND_COLUMNS = 5
+_TITLE_CHARACTERS = 120
+"""In a line."""
+_MOST_STEPS = 500
+"""Of a curve: more cannot be told apart."""
+
+
+def require_picture(target: str) -> None:
+    """Raise ParameterError unless a file's ending is that of a picture."""
+    if Path(target).suffix not in PICTURES:
+        raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
+
+
+def write_distributions(results: Results, scenario: str, path: Path) -> None:
+    """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
+    with chart_style():
+        save_chart(distributions_figure(results, scenario), path)
+
+
+def distributions_figure(results: Results, scenario: str) -> Drawing:
+    """
+    Return the figure: a panel for each main metric, a curve for each controller.
+
+    A curve is the share of the valid runs that engaged with at most this value. So it ends at the
+    share of the runs that engaged and have a value; what is missing to 1 did not, or has none.
+    """
+    metrics = [each for each in (*TABLE_5_1, *FURTHER) if each.key in _DRAWN]
+    metrics = [each for each in metrics if each in results.quantities]
+    rows = max(1, -(-len(metrics) // _ACROSS))
+    legend = -(-len(results.groups) // _LEGEND_COLUMNS)
+    drawing = Drawing(figsize=(_WIDTH_IN, _PANEL_IN * rows + _LINE_IN * legend + 1.1))
+    drawing.suptitle(f'{_title(results, scenario)}\n{_conditions(results)}', fontsize=11)
+    panels = drawing.subplots(rows, _ACROSS, squeeze=False, sharey=True)
+    looks = looks_of(group.names['controller'] for group in results.groups)
+    for axes, figure in zip(panels.flat, metrics, strict=False):
+        for group, look in zip(results.groups, looks, strict=True):
+            _draw(axes, results, group, figure, look_style(look))
+        axes.set_xlabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
+        axes.set_ylim(0.0, 1.02)
+    for axes in panels[:, 0]:
+        axes.set_ylabel('share of valid runs')
+    for axes in panels.flat[len(metrics) :]:
+        axes.set_axis_off()
+    if metrics:
+        lines = panels[0, 0].get_legend_handles_labels()
+        drawing.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside lower center')
+    return drawing
+
+
+def _title(results: Results, scenario: str) -> str:
+    varied = ', '.join([*results.grid, *results.random])
+    return fill(f'Scenario {scenario}: {results.rows} runs over {varied}', _TITLE_CHARACTERS)
+
+
+def _conditions(results: Results) -> str:
+    kind = 'random samples' if results.random else 'points of a grid, not chances'
+    return f'share of the valid runs that engaged with at most this value ({kind})'
+
+
+def _draw(
+    axes: Axes, results: Results, group: Group, figure: Figure, style: Mapping[str, Any]
+) -> None:
+    """Draw one curve; a controller without an engaged run has a line at zero."""
+    outcomes = results.outcomes[group.rows]
+    values = results.columns[figure.key][group.rows]
+    taken = np.sort(values[(outcomes == ENGAGED) & ~np.isnan(values)])
+    valid = max(int(np.sum(outcomes != INVALID)), 1)
+    if not len(taken):
+        axes.plot([], [], label=group.label, **style)
+        return
+    shares = np.arange(1, len(taken) + 1) / valid
+    if len(taken) > _MOST_STEPS:
+        kept = np.unique(np.linspace(0, len(taken) - 1, _MOST_STEPS).round().astype(int))
+        taken, shares = taken[kept], shares[kept]
+    steps = np.concatenate([taken[:1], taken]), np.concatenate([[0.0], shares])
+    axes.plot(*steps, drawstyle='steps-post', label=group.label, **style)

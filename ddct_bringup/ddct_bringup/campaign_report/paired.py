@@ -1,0 +1,73 @@
+"""Differences of two controllers on the same cases."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from ddct_bringup.campaign_report.outcome import CONFIDENCE
+from ddct_bringup.campaign_report.spread import quantiles_of
+from ddct_bringup.verdict.state import ENGAGED
+
+METHOD = 'sign test'
+
+
+@dataclass(frozen=True)
+class Together:
+    """In how many cases which of two controllers engaged."""
+
+    cases: int
+    both: int
+    first_only: int
+    second_only: int
+    neither: int
+
+
+def together(first: np.ndarray, second: np.ndarray) -> Together:
+    """Return the counts of (n,) outcomes of two controllers, case by case."""
+    ours, theirs = first == ENGAGED, second == ENGAGED
+    counts = (ours & theirs, ours & ~theirs, ~ours & theirs, ~ours & ~theirs)
+    return Together(len(first), *(int(np.sum(each)) for each in counts))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """By how much the first of two controllers is above the second in one quantity."""
+
+    cases: int
+    """In which both engaged and have a value."""
+    quantiles: dict[str, float | None]
+    """P5, P50, P95 of the difference of magnitudes."""
+    interval: tuple[float, float] | None
+    """Of the median, for cases that are a random sample; None of fewer than six."""
+
+
+def difference_of(
+    first: np.ndarray, second: np.ndarray, outcomes: tuple[np.ndarray, np.ndarray]
+) -> Difference:
+    """
+    Return the difference of magnitudes over the cases in which both engaged and have a value.
+
+    `first` and `second` are the (n,) values of both controllers, NaN where there is none.
+    Below zero the first controller is the better one: of each quantity less is better.
+    """
+    both = (outcomes[0] == ENGAGED) & (outcomes[1] == ENGAGED)
+    differences = (np.abs(first) - np.abs(second))[both]
+    differences = differences[~np.isnan(differences)]
+    return Difference(len(differences), quantiles_of(differences), median_interval(differences))
+
+
+def median_interval(values: np.ndarray) -> tuple[float, float] | None:
+    """
+    Return the interval of the median that the sign test gives, whatever the distribution.
+
+    Its ends are the values of rank k and n + 1 - k, with the largest k for which
+    P(Binomial(n, 1/2) < k) is at most 2.5 %. Fewer than six values have none.
+    """
+    outside = (1.0 - CONFIDENCE) / 2.0
+    runs = len(values)
+    rank = int(scipy.stats.binom.ppf(outside, runs, 0.5)) if runs else 0
+    if rank < 1:
+        return None
+    ordered = np.sort(values)
+    return float(ordered[rank - 1]), float(ordered[runs - rank])

@@ -1,0 +1,93 @@
+"""Read the results of a campaign, of this version or another, for what they have."""
+
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign_report.results import OtherVersion, Results
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
+from ddct_plant.models.clutch import LINEAR
+from ddct_plant.scenario.differences import values_by_key
+from ddct_plant.scenario.settings import RunSettings
+
+REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', 'verdict_state')
+"""Columns without which nothing can be counted, besides those of what was varied."""
+_AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
+
+
+def read_table(folder: Path, manifest: Manifest) -> pa.Table:
+    """
+    Return the rows of a finished campaign, with the columns that its file has.
+
+    A version with fewer metrics, or with others, is read too. Raise DdctError without the rows,
+    or without a column that is needed.
+    """
+    path = folder / RESULTS
+    try:
+        table = parquet.read_table(path)
+        known = table.schema.metadata or {}
+        require_schema_version(
+            {SCHEMA_KEY: int(known.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
+        )
+    except FileNotFoundError as error:
+        raise DdctError(
+            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_AGAIN}'
+        ) from error
+    except ParameterError as error:
+        raise DdctError(f'{path}: {error}') from error
+    except (OSError, ValueError, pa.ArrowException) as error:
+        why = next(iter(str(error).splitlines()), type(error).__name__)
+        raise DdctError(f'{path}: it is damaged ({why}): {_AGAIN}') from error
+    for name in (*REQUIRED, *manifest.grid, *manifest.random):
+        if name not in table.column_names:
+            raise DdctError(f'{path}: it has no column {name}: {_AGAIN}')
+    if table[INDEX].to_pylist() != list(range(manifest.runs)):
+        raise DdctError(
+            f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '
+            f'{_AGAIN}'
+        )
+    return table
+
+
+def results_of(manifest: Manifest, table: pa.Table) -> Results:
+    """Return the rows with what the manifest says of them."""
+    columns = {name: table[name].to_numpy() for name in table.column_names}
+    ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
+    absent = tuple(name for name in COMPARED if name not in columns)
+    unknown = tuple(name for name in columns if name not in ours)
+    nominal: dict[str, float] = {}
+    why = ''
+    try:
+        nominal = nominal_values(manifest.campaign_spec())
+    except DdctError as error:  # a key or a scenario of another version, or a file that is gone
+        why = str(error)
+    other = OtherVersion(absent, unknown, why)
+    return Results(columns, manifest.grid, manifest.random, nominal, other)
+
+
+def nominal_values(spec: CampaignSpec) -> dict[str, float]:
+    """
+    Return the numbers that a specification varies as they are without it.
+
+    That is in its scenario, the first of several; of what the scenario leaves out, by default.
+    Raise DdctError for a scenario that cannot be read any more.
+    """
+    first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
+    common = {**spec.common, **first}
+    file = spec.scenario_file(common.pop(SCENARIO))
+    scenario = file.scenario(clutch=common.get('clutch', LINEAR))
+    given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
+    found: dict[str, float] = {}
+    for key in spec.keys:
+        option = option_of(key, key)
+        value = given.get(key, option.default if option else None)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            found[key] = float(value)
+    return found

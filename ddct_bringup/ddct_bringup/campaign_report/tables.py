@@ -1,0 +1,163 @@
+"""The tables of a campaign as the terminal prints them."""
+
+from collections.abc import Iterator, Sequence
+
+from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report.summary import Summary
+from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
+from ddct_plant.base.errors import printable
+from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
+
+_QUANTILES = ('p5', 'p50', 'p95')
+MAIN = (*(figure.key for figure in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
+"""The metrics whose differences and distributions come first."""
+
+
+def summary_tables(summary: Summary) -> list[Table]:
+    """Return how often, where failure begins or what drives it, how badly, and differences."""
+    return [
+        _failed(summary),
+        *_boundaries(summary),
+        *_attribution(summary),
+        _quantities(summary),
+        *_differences(summary),
+    ]
+
+
+def print_summary(summary: Summary, folder: str) -> None:
+    """Print what came out of the campaign in a folder."""
+    print_tables(summary_tables(summary))
+    for note in words.notes_of(summary):
+        print(printable(note))
+    print(f'the bag of a run: {words.replay_command(folder, "I")}')
+
+
+def _failed(summary: Summary) -> Table:
+    rows = [
+        (
+            words.label_of(group),
+            words.share_text(failed['share']),
+            words.interval_text(failed['interval']),
+            *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
+            words.states_text(failed) or UNDEFINED,
+        )
+        for group in summary['groups']
+        for failed in [group['failed']]
+    ]
+    method = summary['interval']['method']
+    headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
+    title = f'How often engagement fails (intervals: {method})'
+    return Table(title, headers, rows, numbers=[False, *[True] * 6])
+
+
+def _boundaries(summary: Summary) -> Iterator[Table]:
+    rows = [
+        (
+            found['key'],
+            words.label_of(group),
+            words.value_text(found['start']),
+            *(
+                text(found[side])
+                for side in ('below', 'above')
+                for text in (words.good_text, words.boundary_text)
+            ),
+            ', '.join(f'{key} {words.value_text(at)}' for key, at in found['others'].items())
+            or UNDEFINED,
+        )
+        for group, found in _by_place(summary, 'boundaries')
+    ]
+    headers = 'varied', 'controller', 'from', 'below', 'fails at', 'above', 'fails at', 'others at'
+    if rows:
+        yield Table('Where failure begins, along lines of the grid', headers, rows)
+
+
+def _attribution(summary: Summary) -> Iterator[Table]:
+    rows = [
+        (
+            words.label_of(group),
+            each['key'],
+            'yes' if each['drives'] else 'no evidence',
+            f'{each["explained"]:.2f}',
+            '{:.2f} to {:.2f}'.format(*each['interval']),
+            words.p_text(each['p_value']),
+            words.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
+        )
+        for group in summary['groups']
+        if group['attribution']
+        for each in group['attribution']['keys']
+    ]
+    headers = (
+        *('controller', 'key', 'drives failure', 'explains', '95 % interval', 'p'),
+        'most failures',
+    )
+    if rows:
+        yield Table('Which keys drive failure', headers, rows)
+
+
+def _by_place(summary: Summary, name: str) -> Iterator[tuple[Summary, Summary]]:
+    """Yield the entries of all groups: the first of each, then the second of each."""
+    for place in range(len(summary['groups'][0][name])):
+        for group in summary['groups']:
+            yield group, group[name][place]
+
+
+def _quantities(summary: Summary) -> Table:
+    """Return the metrics; the page has the other criteria too."""
+    rows = [
+        _quantity(words.label_of(group), found)
+        for group, found in _by_place(summary, 'quantities')
+        if found['name'] in METRICS
+    ]
+    headers = (
+        *('quantity', 'controller', 'n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run'),
+        *('worst', 'run'),
+    )
+    title = 'Engaged runs: quantiles with sign, CVaR and worst by magnitude'
+    return Table(title, headers, rows, numbers=[False, False, *[True] * 9])
+
+
+def _quantity(label: str, found: Summary) -> Sequence[str]:
+    figure = METRICS[found['name']]
+    worst = found['worst']
+    engaged = found['worst_engaged']
+    return (
+        figure.heading,
+        label,
+        str(found['with_value']),
+        *(text_or_dash(found[name], figure.form) for name in ('p5', 'p50', 'p95')),
+        text_or_dash(found['cvar_engaged'], figure.form),
+        text_or_dash(engaged['value'], figure.form),
+        text_or_dash(engaged['index'], 'd'),
+        text_or_dash(worst['value'], figure.form),
+        UNDEFINED
+        if worst['index'] is None
+        else f'{worst["index"]} ({words.spoken(worst["state"])})',
+    )
+
+
+def _differences(summary: Summary) -> Iterator[Table]:
+    """Yield how the other controllers differ from the first in the main metrics."""
+    if not summary['pairs']:
+        return
+    first = summary['pairs'][0]['first']
+    pairs = [pair for pair in summary['pairs'] if pair['first'] == first]
+    rows = [
+        (
+            METRICS[found['name']].heading,
+            words.pair_label(pair),
+            str(found['cases']),
+            *(text_or_dash(found[name], METRICS[found['name']].form) for name in _QUANTILES),
+            UNDEFINED
+            if found['interval'] is None
+            else ' to '.join(f'{end:{METRICS[found["name"]].form}}' for end in found['interval']),
+        )
+        for name in MAIN
+        for pair in pairs
+        for found in pair['differences']
+        if found['name'] == name
+    ]
+    headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
+    title = 'Differences on the same cases, where both engaged (interval: sign test)'
+    yield Table(title, headers, rows, numbers=[False, False, *[True] * 4])
+    both = [(words.pair_label(pair), words.together_text(pair)) for pair in pairs]
+    yield Table('Cases of these differences', ('controllers', 'both engaged'), both)

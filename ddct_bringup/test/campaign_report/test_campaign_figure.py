@@ -1,0 +1,61 @@
+"""The figure of a campaign: curves that end at the share of engaged runs, with title and scale."""
+
+import numpy as np
+import pytest
+from made_results import made_results
+
+from ddct_bringup.campaign_report.distributions import distributions_figure
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+
+JERK = 'peak_jerk_m_s3'
+
+
+def curves(results):
+    """Return the curves of the only panel by label."""
+    figure = distributions_figure(results, 'thesis')
+    axes = figure.axes[0]
+    return {line.get_label(): line.get_xydata() for line in axes.get_lines()}, figure
+
+
+def test_a_curve_rises_by_a_run_at_its_value_and_ends_at_the_share_of_engaged_runs():
+    results = made_results(
+        [ENGAGED, ENGAGED, 'stalled', INVALID],
+        {'wear_gain': [0.7, 0.8, 0.9, 1.0]},
+        {JERK: [9.0, 4.0, 1.0, 2.0]},
+    )
+    drawn, figure = curves(results)
+    assert drawn['pi'].tolist() == [[4.0, 0.0], [4.0, 1 / 3], [9.0, 2 / 3]]
+    assert figure.axes[0].get_xlabel() == 'peak jerk, m/s\u00b3'
+    title = figure.get_suptitle()
+    assert 'Scenario thesis: 4 runs over wear_gain' in title
+    assert 'points of a grid, not chances' in title
+
+
+def test_each_controller_has_a_curve_also_one_that_never_engaged():
+    results = made_results(
+        [ENGAGED, 'stalled'],
+        {'wear_gain': [1.0, 1.0]},
+        {JERK: [4.0, 5.0]},
+        controllers=['pi', 'ls8'],
+        random=['wear_gain'],
+    )
+    drawn, figure = curves(results)
+    assert sorted(drawn) == ['ls8', 'pi']
+    assert len(drawn['ls8']) == 0
+    assert 'random samples' in figure.get_suptitle()
+
+
+def test_a_curve_of_very_many_runs_keeps_its_ends():
+    runs = 3000
+    values = np.random.default_rng(0).normal(size=runs)
+    results = made_results(
+        [ENGAGED] * runs,
+        {'wear_gain': np.arange(runs).tolist()},
+        {JERK: values.tolist()},
+        random=['wear_gain'],
+    )
+    drawn, _ = curves(results)
+    curve = drawn['pi']
+    assert len(curve) < 600
+    assert (curve[0, 0], curve[-1, 0]) == (values.min(), values.max())
+    assert curve[-1, 1] == pytest.approx(1.0)
