@@ -216,7 +216,7 @@
     const quantity = data.quantities[choice.quantity.value];
     detail.textContent = advice;
     const others = Object.entries(map.others).map(([key, value]) => `${key} ${number(value)}`);
-    document.getElementById('others').textContent = `Drawn: ${map.shown}${others.length ? `, those with ${others.join(', ')}` : ''}.`;
+    document.getElementById('others').textContent = `Drawn: ${map.extent}${others.length ? `, those with ${others.join(', ')}` : ''}.`;
     places.forEach((place, group) => draw(place, map, {...map.panels[group], group}, quantity));
     legend(map, quantity);
   }

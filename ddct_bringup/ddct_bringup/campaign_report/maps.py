@@ -77,7 +77,7 @@ def _cells(results: Results, keys: Sequence[str]) -> dict[str, Any]:
         'keys': list(keys),
         'cells': True,
         'others': _others(results, keys),
-        'shown': _shown(runs, results.rows),
+        'extent': _extent(runs, results.rows),
         'panels': [_panel(results, each, keys) for each in parts],
     }
 
@@ -100,7 +100,7 @@ def _points(
             'keys': list(keys),
             'cells': False,
             'others': _others(results, keys),
-            'shown': _shown(sum(map(len, rows)), results.rows),
+            'extent': _extent(sum(map(len, rows)), results.rows),
             'panels': [
                 None if len(ours) == len(every) else np.searchsorted(every, ours).tolist()
                 for ours, every in zip(rows, drawn, strict=True)
@@ -123,7 +123,7 @@ def _others(results: Results, keys: Sequence[str]) -> dict[str, float]:
     return {key: results.start_of(key) for key in results.others(keys)}
 
 
-def _shown(drawn: int, runs: int) -> str:
+def _extent(drawn: int, runs: int) -> str:
     """Return which runs a map shows."""
     return f'all {runs} runs' if drawn == runs else f'{drawn} of {runs} runs'
 

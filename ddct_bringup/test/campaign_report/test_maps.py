@@ -31,7 +31,7 @@ def test_every_cell_of_the_grid_is_there_with_its_state_value_and_index():
     assert panel['at'] == [[0.8, 0.8, 1.0, 1.0], [1300.0, 1500.0, 1300.0, 1500.0]]
     assert panel['state'] == states
     assert panel['values'][JERK] == [4.0, 90.0, None, -6.0]
-    assert drawn['shown'] == 'all 4 runs'
+    assert drawn['extent'] == 'all 4 runs'
     assert panel['index'] == [0, 1, 2, 3]
 
 
@@ -84,7 +84,7 @@ def test_the_other_numbers_of_the_grid_are_at_the_value_nearest_to_nominal():
     assert [each['keys'] for each in found['maps']] == [[WEAR, MASS], [WEAR, SLOPE], [MASS, SLOPE]]
     assert found['maps'][2]['others'] == {WEAR: 1.0}
     assert found['maps'][2]['panels'][0]['index'] == [4, 5, 6, 7]
-    assert found['maps'][2]['shown'] == '4 of 8 runs'
+    assert found['maps'][2]['extent'] == '4 of 8 runs'
 
 
 def sampled(runs: int) -> Results:
@@ -103,7 +103,7 @@ def sampled(runs: int) -> Results:
 def test_a_map_of_random_samples_has_all_of_them() -> None:
     found = maps_of(sampled(1250))
     assert [each['keys'] for each in found['maps']] == [[WEAR, MASS], [WEAR, SLOPE], [MASS, SLOPE]]
-    assert {each['shown'] for each in found['maps']} == {'all 1250 runs'}
+    assert {each['extent'] for each in found['maps']} == {'all 1250 runs'}
     assert [each['panels'] for each in found['maps']] == [[None]] * 3
     assert not any(each['cells'] for each in found['maps'])
     (points,) = found['points']
@@ -115,7 +115,7 @@ def test_a_map_of_random_samples_has_all_of_them() -> None:
 def test_more_samples_than_a_page_can_hold_are_drawn_in_part_from_first_to_last() -> None:
     runs = 2 * MOST_POINTS + 500
     found = maps_of(sampled(runs))
-    assert {each['shown'] for each in found['maps']} == {f'{MOST_POINTS} of {runs} runs'}
+    assert {each['extent'] for each in found['maps']} == {f'{MOST_POINTS} of {runs} runs'}
     (points,) = found['points']
     assert len(points['index']) == MOST_POINTS
     assert points['index'][0] == 0
@@ -132,7 +132,7 @@ def test_samples_at_points_of_a_grid_are_drawn_where_the_grid_is_at_its_start() 
     by_keys = {tuple(each['keys']): each for each in found['maps']}
     assert by_keys[MASS, WEAR]['panels'] == [None]
     part = by_keys[WEAR, SLOPE]
-    assert (part['others'], part['shown']) == ({MASS: 2.0}, '2 of 4 runs')
+    assert (part['others'], part['extent']) == ({MASS: 2.0}, '2 of 4 runs')
     assert part['panels'] == [[2, 3]]
 
 

@@ -1,0 +1,30 @@
+"""A campaign ends with its tables in the terminal, and with the paths of its files."""
+
+from pathlib import Path
+
+import pytest
+from in_this_process import in_this_process
+
+from ddct_bringup.programs.campaign import main
+
+SPEC = """\
+controllers: [pi, ls8]
+grid: {wear_gain: [0.8, 1.0], duration_s: [0.7]}
+"""
+
+
+def test_the_summary_is_printed_at_the_end_and_the_paths_last(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'spec.yaml').write_text(SPEC, encoding='utf-8')
+    out = tmp_path / 'out'
+    with in_this_process():
+        assert main([str(tmp_path / 'spec.yaml'), '--out', str(out)]) == 0
+    printed = capsys.readouterr().out
+    *_, results, page = printed.splitlines()
+    assert (results, page) == (str(out / 'results.parquet'), str(out / 'report.html'))
+    assert main(['show', str(out)]) == 0
+    tables = capsys.readouterr().out.rpartition('the bag of a run')[0]
+    assert tables
+    assert printed.startswith(tables)
+    assert 'How often engagement fails' in tables
