@@ -168,13 +168,12 @@
 
   function dot(cell, quantity) {
     const {x, y} = cell;
-    if (!cell.state) {
-      const shape = {cx: x, cy: y, r: 4.5, fill: colourOf(cell.value, quantity), class: cell.second ? 'cell lost' : 'cell'};
-      const circle = listening(element('circle', shape), cell);
-      return cell.second ? [circle, hatched(cell.second, {x: x - 3, y: y - 3, width: 6, height: 6})] : [circle];
+    if (!cell.state && !cell.second) {
+      return [listening(element('circle', {cx: x, cy: y, r: 4.5, fill: colourOf(cell.value, quantity), class: 'cell'}), cell)];
     }
     const box = {x: x - 5, y: y - 5, width: 10, height: 10};
-    return [listening(element('rect', {...box, class: 'cell lost'}), cell), hatched(cell.state, box)];
+    const fill = cell.second ? {fill: colourOf(cell.value, quantity)} : {};
+    return [listening(element('rect', {...box, ...fill, class: 'cell lost'}), cell), hatched(cell.state || cell.second, box)];
   }
 
   function axes(svg, map, x, upward, up, width, height) {

@@ -27,8 +27,9 @@ examples:
   ddct campaign replay campaigns/wear --index 17 --out runs/again
 
 Prints what came out, and writes it as DIR/report.html and DIR/summary.json, beside
-DIR/results.parquet, a row per run, and DIR/manifest.json. Shards of it are written while it runs; after an interruption --resume
-computes what is missing, with the same result. SPEC.yaml is described in docs/use/campaigns.md.
+DIR/results.parquet, a row per run, and DIR/manifest.json. Shards of it are written while it runs;
+after an interruption --resume computes what is missing, with the same result. SPEC.yaml is
+described in docs/use/campaigns.md.
 """
 
 
