@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 from ddct_bringup.reproduction.values.orders import SLIP_WORDS, WORN
-from ddct_bringup.verdict.state import ENGAGED, INVALID, RUNAWAY
+from ddct_bringup.verdict.state import ENGAGED, INVALID, NEARLY_ENGAGED, RUNAWAY
 from ddct_plant.program.table import UNDEFINED, Table
 from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
 
@@ -100,14 +100,20 @@ def _share_table(found: StateMap) -> Table:
     rows = []
     for architecture, clutch, name in _loops(found):
         states = [state for line in found.plane(name, architecture, clutch) for state in line]
-        engaged, driven_apart = (
-            sum(state in those for state in states) for those in ((ENGAGED,), (RUNAWAY, INVALID))
+        engaged, nearly, driven_apart = (
+            sum(state in those for state in states)
+            for those in ((ENGAGED,), (NEARLY_ENGAGED,), (RUNAWAY, INVALID))
         )
-        others = len(states) - engaged - driven_apart
-        counts = (engaged, others, driven_apart)
+        others = len(states) - engaged - nearly - driven_apart
+        counts = (engaged, nearly, others, driven_apart)
         shares = (f'{100.0 * count / len(states):.0f}' for count in counts)
         rows.append((architecture, PLANTS[clutch], name, *shares))
-    headers = ('engaged %', 'not engaged or oscillating %', 'runaway or invalid %')
+    headers = (
+        'engaged %',
+        'nearly engaged %',
+        'not engaged or oscillating %',
+        'runaway or invalid %',
+    )
     return Table('', (ARCHITECTURE, 'plant', 'controller', *headers), rows)
 
 

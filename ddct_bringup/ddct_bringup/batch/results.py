@@ -15,6 +15,7 @@ from ddct_bringup.scores.scoring import METRIC_NAMES, Entry
 from ddct_bringup.verdict.criteria import raw_criteria
 from ddct_bringup.verdict.judged_run import JudgedRun, Values, step_at
 from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_bringup.verdict.verdict import verdict_of
 from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, at_rest, band_pass
@@ -48,7 +49,8 @@ def stacked_results(
     by_criterion = _rows(raw_criteria(judged), len(runs))
     results = []
     for index, run in enumerate(runs):
-        state = slip_state(one_or_more(trajectory, index), start, limits.rules)
+        plant = JudgedPlant.of(run)
+        state = slip_state(one_or_more(trajectory, index), start, limits.rules, plant)
         verdict = verdict_of(state, by_criterion[index], limits, run.scenario.name)
         counts = {'valid': True, 'reason': ''}
         results.append({'metrics': by_metric[index], 'verdict': verdict, **counts})

@@ -57,6 +57,10 @@ _THESIS = (
 )
 _STATES = (
     Definition('engaged', 'the plates turn as one at the end, or never parted.'),
+    Definition(
+        'nearly engaged',
+        'plates that stick keep within 10 rpm of zero at the end, but are not locked.',
+    ),
     Definition('not engaged', 'the plates do not turn as one, and none of the following holds.'),
     Definition('oscillating', 'the slip swings to and fro and has not settled.'),
     Definition('runaway', 'the plates are driven apart.'),

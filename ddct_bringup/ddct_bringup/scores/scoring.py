@@ -1,6 +1,5 @@
 """Score bags: from a recording to its entry in `scores.json`."""
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -18,6 +17,7 @@ from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
 from ddct_bringup.verdict.criteria import criterion_values
 from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, slip_state
 from ddct_bringup.verdict.verdict import Verdict, verdict_of, verdict_of_unreadable
 from ddct_plant.base.errors import DdctError
@@ -166,13 +166,12 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
 def _verdict(
     recording: Recording, metrics: dict[str, Any], limits: Limits, *, valid: bool
 ) -> Verdict:
-    facts, trajectory, settings = recording.facts, recording.trajectory, recording.settings
-    rules = limits.rules
+    facts, trajectory, rules = recording.facts, recording.trajectory, limits.rules
+    plant = JudgedPlant.of(recording.settings)
     start = steps_in('control_start_s', facts.control_start_s)
     state = engine_end(recording) if valid else INVALID
     if state is None:
-        cut_speed = settings.scenario.cut_speed if settings else math.inf
-        state = slip_state(trajectory, start, rules, cut_speed)
+        state = slip_state(trajectory, start, rules, plant)
     run = JudgedRun(trajectory, start, facts.score_window_s, metrics, rules.engagements_a_day)
     return verdict_of(state, criterion_values(run), limits, facts.scenario)
 

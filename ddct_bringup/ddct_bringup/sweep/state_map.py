@@ -14,6 +14,7 @@ from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
     ENGAGED,
     INVALID,
+    NEARLY_ENGAGED,
     NOT_ENGAGED,
     OSCILLATING,
     RUNAWAY,
@@ -24,6 +25,7 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 STATE_COLOURS: Mapping[str, str] = {
     ENGAGED: '#d3e8f5',
+    NEARLY_ENGAGED: '#86b8dc',
     NOT_ENGAGED: ORANGE,
     OSCILLATING: PURPLE,
     RUNAWAY: VERMILLION,
@@ -31,7 +33,7 @@ STATE_COLOURS: Mapping[str, str] = {
     OVER_REVVED: '#7a0019',
     INVALID: BLACK,
 }
-"""Pale where the clutch engaged, the darker the worse."""
+"""Blue where the plates are together, pale where they are locked; the darker the worse."""
 _MOST_TICKS, _MOST_COLUMNS = 8, 5
 
 

@@ -1,15 +1,17 @@
 """
 The state that a run reached: one word, by the rules of the limits file.
 
-    engaged       the plates turn as one at the end, or never parted
-    not_engaged   they do not, but nothing worse
-    oscillating   the slip goes to and fro and has not settled
-    runaway       the plates are driven apart
+    engaged          the plates turn as one at the end, or never parted
+    nearly_engaged   plates that stick hardly slip at the end, but are not locked
+    not_engaged      neither, but nothing worse
+    oscillating      the slip goes to and fro and has not settled
+    runaway          the plates are driven apart
     stalled, over_revved   the engine left its limits, which ends the run
-    invalid       the run does not count
+    invalid          the run does not count
+
+The first two are successes, of first and of second rank; all others are failures.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,15 +19,17 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
 from ddct_bringup.verdict.meeting import LOCKED
+from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_bringup.verdict.swings import cycle_of, free_turns
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
-ENGAGED, NOT_ENGAGED, OSCILLATING = 'engaged', 'not_engaged', 'oscillating'
-RUNAWAY, INVALID = 'runaway', 'invalid'
-SUCCESSES = (ENGAGED,)
+ENGAGED, NEARLY_ENGAGED, NOT_ENGAGED = 'engaged', 'nearly_engaged', 'not_engaged'
+OSCILLATING, RUNAWAY, INVALID = 'oscillating', 'runaway', 'invalid'
+SUCCESSES = (ENGAGED, NEARLY_ENGAGED)
 """The states in which an engagement has not failed, the best first."""
-STATES = (ENGAGED, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
+STATES = (*SUCCESSES, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
 _ENGINE = 0
 """Its place among the joints."""
 FEWEST_SWINGS = 4
@@ -35,88 +39,57 @@ DOUBT = 2.0
 
 
 def slip_state(
-    trajectory: Trajectory, control_start: int, rules: Rules, cut_speed: float = math.inf
+    trajectory: Trajectory, control_start: int, rules: Rules, plant: JudgedPlant | None = None
 ) -> str:
     """
     Return the state of a run that counts, whose engine kept its limits.
 
     `control_start` is the step at which feedback starts. Only what comes after it counts, but for
-    RUNAWAY by the magnitude of the slip. `cut_speed` is that of the rev limiter in rad/s.
+    RUNAWAY by the magnitude of the slip. Of a plant that is not known no swing counts as forced,
+    and the engine has no rev limiter.
     """
     whole = rpm_from_rad_s(trajectory.slip_speed)
     if np.max(np.abs(whole)) > rules.runaway_slip:
         return RUNAWAY
     slip = whole[control_start:]
-    turns = turns_of(slip, 2.0 * rules.engaged_slip)
-    cycle = _cycle(slip, turns, rules)
-    if _together(trajectory.clutch_phase, slip, cycle, rules):
-        return ENGAGED
+    turns = free_turns(trajectory, control_start, rules, plant)
+    cycle = cycle_of(slip, turns, rules)
+    if success := _success(trajectory.clutch_phase, slip, cycle, rules):
+        return success
     asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
     apart = _driven_apart(slip, rules) if cycle is None else _swings_apart(slip, turns, rules)
-    at_limiter = trajectory.joint_speed[-1 - _window(rules) :, _ENGINE].max() >= cut_speed
-    apart = apart or (at_limiter and _stays_grown(slip, rules))
+    if plant is not None:
+        fastest = trajectory.joint_speed[-1 - _window(rules) :, _ENGINE].max()
+        apart = apart or (fastest >= plant.cut_speed and _stays_grown(slip, rules))
     if apart and asked <= rules.engaged_slip:
         return RUNAWAY
     return NOT_ENGAGED if cycle is None else OSCILLATING
 
 
-def turns_of(values: np.ndarray, swing: float) -> list[int]:
-    """Return where the (n,) values turn: extremes from which they move back by `swing` or more."""
-    turns: list[int] = []
-    low = high = 0
-    direction = 0
-    numbers = values.tolist()
-    for index, value in enumerate(numbers):
-        if value > numbers[high]:
-            high = index
-        if value < numbers[low]:
-            low = index
-        if direction >= 0 and numbers[high] - value >= swing:
-            if direction > 0 or high > 0:
-                turns.append(high)
-            direction, low = -1, index
-        elif direction <= 0 and value - numbers[low] >= swing:
-            if direction < 0 or low > 0:
-                turns.append(low)
-            direction, high = 1, index
-    return turns
-
-
-def _cycle(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> float | None:
-    """
-    Return the longest half in s of the last two cycles of a slip that goes to and fro, else None.
-
-    It does when it has turned often enough and goes on. It has died down when it has not turned
-    for that long and since then moved less than half as far as in the swing before, or when it has
-    not turned for twice that long. What lies between its first turns may be the engagement itself
-    and is no half of a cycle; a bump halves a cycle, so one alone does not tell.
-    """
-    if len(turns) < rules.oscillation_turns:
-        return None
-    longest_half = max(np.diff(turns[1:])[-4:])
-    since = len(slip) - 1 - turns[-1]
-    swing, moved = abs(slip[turns[-1]] - slip[turns[-2]]), np.ptp(slip[turns[-1] :])
-    if since > (2 if moved >= swing / 2.0 else 1) * longest_half:
-        return None
-    return float(longest_half * PERIOD_S)
-
-
-def _together(
+def _success(
     phase: np.ndarray | None, slip: np.ndarray, cycle: float | None, rules: Rules
-) -> bool:
+) -> str | None:
     """
-    Say whether the plates turn as one at the end.
+    Return whether the plates are together at the end: ENGAGED, NEARLY_ENGAGED or None.
 
-    Those of a clutch that sticks do when they are locked, at once. A linear clutch cannot lock: it
-    runs through zero, where such plates would stay, and its slip may come back from beyond.
+    Those of a clutch that sticks are when they are locked, at once; what keeps as near to zero as
+    a lock, without one, nearly is. A linear clutch cannot lock: it runs through zero, where such
+    plates would stay, and its slip may come back from beyond.
     """
-    locked = phase is not None and phase[-1] == LOCKED
-    band = rules.engaged_slip if phase is None else rules.locked_slip
+    if phase is None:
+        settled = _keeps_within(rules.engaged_slip, rules.settled_time, slip, cycle)
+        return ENGAGED if settled or (cycle is None and _comes_back(slip, rules)) else None
+    locked = phase[-1] == LOCKED
+    least_s = 0.0 if locked else rules.settled_time
+    if not _keeps_within(rules.locked_slip, least_s, slip, cycle):
+        return None
+    return ENGAGED if locked else NEARLY_ENGAGED
+
+
+def _keeps_within(band: float, least_s: float, slip: np.ndarray, cycle: float | None) -> bool:
+    """Say whether the slip keeps within a band for so long at the end, and for half a cycle."""
     # A cycle leaves the band again before the longest half of it is over.
-    needed = max(0.0 if locked else rules.settled_time, cycle or 0.0)
-    if _time_within(slip, band) >= needed:
-        return True
-    return phase is None and cycle is None and _comes_back(slip, rules)
+    return _time_within(slip, band) >= max(least_s, cycle or 0.0)
 
 
 def _time_within(slip: np.ndarray, band: float) -> float:

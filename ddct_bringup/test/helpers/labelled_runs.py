@@ -9,6 +9,7 @@ import yaml
 
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
@@ -68,8 +69,8 @@ class LabelledRun:
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        rules, limiter = packaged_limits().rules, scenario.cut_speed
-        return slip_state(trajectory, scenario.control_start_step, rules, limiter)
+        rules, plant = packaged_limits().rules, JudgedPlant.of(settings)
+        return slip_state(trajectory, scenario.control_start_step, rules, plant)
 
 
 @cache

@@ -94,7 +94,9 @@ def cells(axes: Any) -> list[list[str]]:
 
 def test_the_lanes_show_every_state_in_its_own_colour():
     states = [*STATES, *reversed(STATES)]
-    figure = drawn(['wear_gain=0.6:1.2:7'], ['pi', 'ls8'], [(state, 1.0) for state in states])
+    figure = drawn(
+        [f'wear_gain=0.6:1.2:{len(STATES)}'], ['pi', 'ls8'], [(state, 1.0) for state in states]
+    )
     assert cells(figure.axes[-1]) == [list(STATES), list(reversed(STATES))]
     legend = [text.get_text() for text in figure.legends[-1].get_texts()]
     states_said = [state.replace('_', ' ') for state in STATES]

@@ -3,9 +3,12 @@
 import dataclasses
 
 import pytest
+from labelled_runs import Spoiled
 
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
@@ -40,6 +43,16 @@ def state(trajectory):
     return slip_state(trajectory, THESIS.control_start_step, packaged_limits().rules)
 
 
+def state_of(controller, settings, end_s=None, gain=1.0, delay_steps=0):
+    """Return the state of a run, of a spoiled controller on request, as if it ended at `end_s`."""
+    made = make_controller(controller, settings)
+    whole = run_headless(settings, Spoiled(made, gain, delay_steps) if gain != 1.0 else made)
+    rows = None if end_s is None else round(100 * end_s) + 1
+    trajectory = Trajectory({name: values[:rows] for name, values in whole.signals.items()})
+    start = settings.scenario.control_start_step
+    return slip_state(trajectory, start, packaged_limits().rules, JudgedPlant.of(settings))
+
+
 def test_the_pi_of_the_thesis_engages():
     assert state(run()) == 'engaged'
 
@@ -70,3 +83,27 @@ def test_plates_that_stick_at_wear_1_3_never_part_and_are_engaged():
 
 def test_a_worn_clutch_that_sticks_does_not_engage_under_the_pi_in_time():
     assert state(run(wear_gain=0.7, clutch='stick_slip')) == 'not_engaged'
+
+
+@pytest.mark.parametrize('controller', ['ls8', 'pi', 'hinf1'])
+def test_a_drive_whose_torque_steps_part_the_plates_for_a_while_ends_engaged(controller):
+    changes = (
+        'duration_s=6',
+        'engine.time_s=[0,0.5,1.8,2.1,3,3.2,4.2,4.4,6]',
+        'engine.torque_n_m=[5,260,260,100,100,220,220,60,60]',
+    )
+    settings = RunSettings(load_scenario('thesis', changes), clutch='stick_slip')
+    assert state_of(controller, settings) == 'engaged'
+
+
+@pytest.mark.parametrize('end_s', [3.0, 3.2, 3.55, 3.63, 3.64, 3.65])
+def test_a_limit_cycle_of_1400_rpm_oscillates_though_the_plates_lock_in_between(end_s):
+    scenario = load_scenario('launch_hot', ['closing=null', 'duration_s=4'])
+    settings = RunSettings(scenario, clutch='stick_slip', wear_gain=0.6)
+    assert state_of('ls6', settings, end_s, gain=6.1, delay_steps=1) == 'oscillating'
+
+
+@pytest.mark.parametrize('controller', ['mpc3', 'mpc4', 'pedal_mpc'])
+def test_a_predictive_controller_that_leaves_a_little_slip_is_nearly_engaged(controller):
+    settings = RunSettings(THESIS, clutch='stick_slip')
+    assert state_of(controller, settings) == 'nearly_engaged'

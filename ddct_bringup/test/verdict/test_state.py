@@ -6,7 +6,10 @@ from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
-from ddct_bringup.verdict.state import slip_state, turns_of
+from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_bringup.verdict.state import slip_state
+from ddct_bringup.verdict.swings import turns_of
+from ddct_plant.models.parameters import DrivelineParameters
 
 T = times()
 
@@ -56,7 +59,23 @@ def test_plates_that_lock_are_engaged_at_once(end_s):
 def test_a_small_slip_that_stays_is_engaged_only_where_plates_cannot_lock():
     assert state(falling(700.0, lowest_rpm=35.0)) == 'engaged'
     assert sticking(falling(700.0, lowest_rpm=35.0)) == 'not_engaged'
-    assert sticking(falling(700.0, lowest_rpm=5.0)) == 'engaged'
+    assert sticking(falling(700.0, lowest_rpm=5.0)) == 'nearly_engaged'
+
+
+@pytest.mark.parametrize('end_s', [1.6, 1.9, 3.0])
+def test_plates_that_hardly_slip_are_nearly_engaged_and_engaged_once_they_lock(end_s):
+    slip = falling(700.0, lowest_rpm=5.0)[: round(100 * end_s) + 1]
+    assert sticking(slip) == ('nearly_engaged' if end_s > 1.8 else 'not_engaged')
+    slip[-1] = 0.0
+    assert sticking(slip) == 'engaged'
+
+
+def test_plates_that_part_again_at_the_end_by_little_are_nearly_engaged():
+    slip = falling(700.0)
+    slip[-3:] = 2.0
+    assert sticking(slip) == 'nearly_engaged'
+    slip[-3:] = 11.0
+    assert sticking(slip) == 'not_engaged'
 
 
 def test_plates_that_lock_for_less_than_they_slip_in_a_cycle_oscillate():
@@ -104,7 +123,8 @@ def held(slip_rpm, engine_rpm, cut_rpm=6500.0):
     speeds = np.zeros((len(slip_rpm), 4))
     speeds[:, 0] = engine_rpm * RAD_S_PER_RPM
     run = made_run(slip_rpm, joint_speed=speeds)
-    return slip_state(run, CONTROL_START, packaged_limits().rules, cut_rpm * RAD_S_PER_RPM)
+    plant = JudgedPlant.of_driveline(DrivelineParameters(), cut_rpm * RAD_S_PER_RPM)
+    return slip_state(run, CONTROL_START, packaged_limits().rules, plant)
 
 
 @pytest.mark.parametrize('ripple_rpm', [20.0, 120.0])
@@ -241,6 +261,60 @@ def test_an_oscillation_that_grows_beyond_all_before_is_a_runaway():
     t = times(2.95)
     grows = 20.0 * np.exp(2.0 * t) * np.sin(2 * np.pi * (t - 0.6))
     assert state(grows[:283]) == 'runaway'
+
+
+STEPS = np.interp(T, [0.0, 1.8, 1.9, 2.4, 2.5, 3.0], [200, 200, 80, 80, 200, 200])
+"""A demand in N m that falls and rises again."""
+ANSWERS = np.interp(
+    T, [0.0, 0.7, 1.2, 1.8, 1.9, 2.2, 2.4, 2.5, 2.65], [0, 600, 0, 0, 150, 0, 0, 150, 0]
+)
+"""A slip in rpm that parts with each change of that demand, and comes back."""
+
+
+def driven(slip, **signals):
+    """Return the state of a run with the driveline of the thesis."""
+    plant = JudgedPlant.of_driveline(DrivelineParameters())
+    return slip_state(made_run(slip, **signals), CONTROL_START, packaged_limits().rules, plant)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_swings_that_changes_of_the_demand_cause_are_no_oscillation(sign):
+    assert driven(sign * ANSWERS, torque_demand=STEPS) == 'engaged'
+    # The same swings by themselves are one, and so they are where nobody knows the demand.
+    assert driven(sign * ANSWERS, torque_demand=np.full(len(T), 200.0)) == 'oscillating'
+    assert driven(sign * ANSWERS, torque_demand=np.full(len(T), np.nan)) == 'oscillating'
+    assert driven(sign * ANSWERS) == state(sign * ANSWERS, torque_demand=STEPS) == 'oscillating'
+
+
+def test_swings_that_a_changing_slope_causes_are_no_oscillation():
+    # 10 % of slope is 470 N m at the wheels of a car of 1500 kg.
+    slip = np.interp(T, [0.0, 0.7, 1.2, 1.5, 2.0, 2.2], [0, 600, 0, 0, 110, 0])[:261]
+    demand, load = np.full(261, 200.0), np.interp(T, [1.4, 1.6], [60.0, 530.0])[:261]
+    assert driven(slip, torque_demand=demand, load_torque=load) == 'engaged'
+    assert driven(slip, torque_demand=demand, load_torque=np.full(261, 60.0)) == 'oscillating'
+
+
+def test_a_change_of_the_demand_that_explains_less_than_half_of_a_swing_forces_none():
+    # Within 0.1 s, 10 N m more turn an engine of 0.25 kg m2 by 38 rpm.
+    step = np.where(T < 1.81, 200.0, 210.0)[:251]
+    slip = np.interp(T, [0.0, 0.7, 1.2, 1.8, 1.9, 2.1], [0, 600, 0, 0, 110, 0])[:251]
+    assert driven(slip, torque_demand=step) == 'oscillating'
+    assert driven(slip, torque_demand=200.0 + 2.0 * (step - 200.0)) == 'engaged'
+
+
+def test_a_cycle_that_goes_on_after_a_change_of_the_demand_oscillates():
+    swing = 270.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
+    for at in (1.0, 1.4, 1.8, 2.2):
+        assert driven(swing, torque_demand=np.where(at > T, 100.0, 250.0)) == 'oscillating', at
+
+
+@pytest.mark.parametrize('longer', range(8))
+def test_plates_that_stay_locked_a_little_longer_before_the_next_swing_oscillate(longer):
+    # Each swing takes 12 samples; the plates stay locked for 16 before it, at last for more.
+    swing, lock = 1400.0 * np.sin(np.pi * np.arange(1, 12) / 12.0), np.zeros(17)
+    cycle = np.concatenate([np.zeros(60), *[swing, lock] * 6, swing, lock, np.zeros(longer)])
+    for part in range(2, 12):
+        assert sticking(np.concatenate([cycle, swing[:part]])) == 'oscillating', part
 
 
 def test_turns_are_extremes_from_which_the_values_move_back():

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 from labelled_runs import labelled_runs
 
+from ddct_bringup.verdict.state import ENGAGED, NEARLY_ENGAGED
+
 PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict_by_eye.md'
 AGREED = {
     'development': (45, 47),
-    'first_check': (186, 195),
+    'first_check': (187, 196),
     'held_out': (77, 84),
     'rev_limiter': (39, 41),
 }
@@ -20,7 +22,12 @@ AGREED = {
 @pytest.mark.filterwarnings('ignore::RuntimeWarning')  # a slip of 1e6 rpm
 @pytest.mark.parametrize('part', AGREED)
 def test_as_many_states_as_the_page_says_are_those_by_eye(part):
-    judged = [(run, run.state_by_rules()) for run in labelled_runs(part)]
+    # A chart does not tell the eye whether plates that hardly slip are locked.
+    judged = [
+        (run, state.replace(NEARLY_ENGAGED, ENGAGED))
+        for run in labelled_runs(part)
+        for state in [run.state_by_rules()]
+    ]
     agreed = sum(state == run.state for run, state in judged)
     accepted = sum(state in (run.state, run.second) for run, state in judged)
     assert agreed >= AGREED[part][0]

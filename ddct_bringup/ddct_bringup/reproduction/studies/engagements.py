@@ -20,7 +20,7 @@ from ddct_bringup.reproduction.studies.study import (
     friction_kj,
     headers,
 )
-from ddct_bringup.verdict.state import ENGAGED
+from ddct_bringup.verdict.state import SUCCESSES
 from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
@@ -146,8 +146,9 @@ def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
 
 
 def _range(slips: Sequence[Slip]) -> tuple[float, float]:
-    """Return the rpm that the panels show: those of the engaged runs, of all if none is."""
-    shown = [slip.rpm for slip in slips if slip.state == ENGAGED] or [slip.rpm for slip in slips]
+    """Return the rpm that the panels show: of runs that (nearly) engage, of all if none does."""
+    together = [slip.rpm for slip in slips if slip.state in SUCCESSES]
+    shown = together or [slip.rpm for slip in slips]
     low, high = min(rpm.min() for rpm in shown), max(rpm.max() for rpm in shown)
     margin = MARGIN * (high - low)
     return float(low - margin), float(high + margin)

@@ -16,7 +16,7 @@ from ddct_bringup.reproduction.values.orders import (
     rows_of_table_5_2,
     words_of,
 )
-from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
+from ddct_bringup.verdict.state import NOT_ENGAGED, SUCCESSES
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
 
@@ -73,7 +73,7 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
 def _with_states(row: Row, states: Mapping[str, str]) -> Row:
     """Return the figures, infinite for a run that got out of hand: however small, none is good."""
     return {
-        name: figure if states[name] in (ENGAGED, NOT_ENGAGED) else math.inf
+        name: figure if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
         for name, figure in row.items()
     }
 
