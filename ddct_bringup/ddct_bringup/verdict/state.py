@@ -20,7 +20,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
 from ddct_bringup.verdict.meeting import LOCKED
 from ddct_bringup.verdict.plant import JudgedPlant
-from ddct_bringup.verdict.swings import cycle_of, free_turns
+from ddct_bringup.verdict.swings import FEWEST_SWINGS, cycle_of, free_turns
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
@@ -32,8 +32,6 @@ SUCCESSES = (ENGAGED, NEARLY_ENGAGED)
 STATES = (*SUCCESSES, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
 _ENGINE = 0
 """Its place among the joints."""
-FEWEST_SWINGS = 4
-"""Through whose middles a line says something: two cycles."""
 DOUBT = 2.0
 """Standard errors of a slope: 95 % of what chance makes."""
 

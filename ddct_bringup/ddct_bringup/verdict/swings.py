@@ -11,6 +11,10 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 
 
+FEWEST_SWINGS = 4
+"""Two cycles: the fewest that show a slip to swing by itself, and where its middle goes."""
+
+
 def turns_of(values: np.ndarray, swing: float) -> list[int]:
     """Return where the (n,) values turn: extremes from which they move back by `swing` or more."""
     turns: list[int] = []
@@ -40,8 +44,9 @@ def free_turns(
     Return the turns of the slip after control start, from the end of the last forced swing on.
 
     A forced swing is the answer to another drive and begins another engagement, so what was before
-    it and what comes after are not one oscillation. Where the plant or the demand is not known no
-    swing is forced.
+    it and what comes after are not one oscillation; but where two cycles of free swings go on, a
+    change of the drive ends none of them. Where the plant or the demand is not known no swing is
+    forced.
     """
     slip = rpm_from_rad_s(trajectory.slip_speed[control_start:])
     turns = turns_of(slip, 2.0 * rules.engaged_slip)
@@ -50,8 +55,11 @@ def free_turns(
     imposed = _imposed_acceleration(trajectory, plant)[control_start:]
     begin = 0
     for place in range(1, len(turns)):
-        swing = slice(turns[place - 1], turns[place] + 1)
-        if _forced(slip[swing], imposed[swing], rules.locked_slip):
+        first, last = turns[place - 1], turns[place] + 1
+        goes_on = place - begin > FEWEST_SWINGS and cycle_of(
+            slip[: first + 1], turns[begin:place], rules
+        )
+        if not goes_on and _forced(slip[first:last], imposed[first:last], rules.locked_slip):
             begin = place
     return turns[begin:]
 
