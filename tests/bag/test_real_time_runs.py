@@ -63,7 +63,7 @@ def test_bringup_ends_with_misses_lateness_and_safe_state(leave, tmp_path, capsy
     assert printed.out == f'{out / "pi"}\n'
     assert printed.err.splitlines()[-2:] == [
         'ddct bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
-        'ddct bringup: state not_engaged, limits beyond',
+        'ddct bringup: state not_engaged, limits failed',
     ]
 
 
@@ -115,7 +115,7 @@ def test_compare_fails_and_its_table_and_scores_say_why(leave, tmp_path, capsys)
     metrics = entry['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (7, 1234.0)
     row = next(line for line in printed.err.splitlines() if line.lstrip().startswith('pi '))
-    cells = ['7', '1.23', 'actuator', 'at', '0.4', 's', 'invalid', 'beyond', 'NO']
+    cells = ['7', '1.23', 'actuator', 'at', '0.4', 's', 'invalid', 'failed', 'NO']
     assert row.split()[-9:] == cells
     assert f'warnings are in {tmp_path / "runs.partial" / "pi" / "work"}' in printed.err
 

@@ -77,7 +77,7 @@ def runs_in(text):
 
     document = json.loads(text, parse_constant=refuse)
     assert list(document) == ['schema_version', 'limits', 'runs']
-    assert document['schema_version'] == 2
+    assert document['schema_version'] == 3
     return document['runs']
 
 

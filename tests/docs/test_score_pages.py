@@ -9,7 +9,7 @@ from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import entry_without_score
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.state import STATES
-from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, WITHIN
+from ddct_bringup.verdict.verdict import BEYOND, FAILED, NO_LIMIT, WITHIN
 from ddct_controllers.registry import controller_names
 
 USE = ROOT / 'docs' / 'use'
@@ -32,9 +32,9 @@ def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
 def test_every_state_and_every_word_on_limits_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
     assert named(page, 'States') == list(STATES)
-    assert sorted(named(page, 'Words on limits')) == sorted([BEYOND, WITHIN, NO_LIMIT])
+    assert sorted(named(page, 'Words on limits')) == sorted([BEYOND, WITHIN, NO_LIMIT, FAILED])
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    assert all(f'`{word}`' in readme for word in (*STATES, BEYOND, WITHIN, NO_LIMIT))
+    assert all(f'`{word}`' in readme for word in (*STATES, BEYOND, WITHIN, NO_LIMIT, FAILED))
 
 
 def test_the_numbers_of_controllers_and_criteria_are_right() -> None:

@@ -153,7 +153,12 @@ def test_a_run_that_failed_after_a_whole_recording_has_no_score(
     assert (out / 'ls8' / 'ls8_0.mcap').is_file()
     _, bad = _scores(out)
     assert (bad['valid'], bad['reason']) == (False, 'node clutch was killed by SIGKILL')
-    assert bad['verdict'] == {'state': 'invalid', 'limits': 'no_limit', 'criteria': []}
+    assert bad['verdict'] == {
+        'state': 'invalid',
+        'limits': 'failed',
+        'criteria': [],
+        'traction': None,
+    }
     assert set(bad['metrics'].values()) == {None}
     page = (out / 'report.html').read_text()
     assert page.count('class="chip"') == 2, 'its signals can be looked at'

@@ -17,7 +17,7 @@ from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_descent
 
 RAMP = 'ramp'
-_ROWS = 13
+_ROWS = 14
 """Signals per step, each joint's for itself."""
 OpenLoops = Callable[[int, np.ndarray], np.ndarray]
 """Returns the torques in N m, (R,), that do not depend on the slip, for step and C_load."""
@@ -47,6 +47,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
             *now.joint_speed,
             *now.joint_effort,
             *(now.slip_speed, now.vehicle_accel, load, reference, request),
+            plants.engine_torque[step],
         ]
         plants.advance(step, load, request)
     return _trajectory(record)
@@ -84,6 +85,7 @@ def _trajectory(record: np.ndarray) -> Trajectory:
             'load_torque': signals[10],
             'slip_reference': signals[11, :, :, np.newaxis],
             'torque_request': signals[12],
+            'torque_demand': signals[13],
         }
     )
 

@@ -10,14 +10,16 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.batch.columns import stacked
 from ddct_bringup.scores.metrics import metric_values
 from ddct_bringup.scores.scoring import METRIC_NAMES, Entry
-from ddct_bringup.verdict.criteria import raw_criteria
+from ddct_bringup.verdict.criteria import existing, finite, raw_criteria
 from ddct_bringup.verdict.judged_run import JudgedRun, Values, step_at
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
-from ddct_bringup.verdict.verdict import verdict_of
+from ddct_bringup.verdict.traction import driving_acceleration
+from ddct_bringup.verdict.verdict import judged_traction, verdict_of
 from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, at_rest, band_pass
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, steps_in, time_of_step
 from ddct_plant.scenario.settings import RunSettings
@@ -42,19 +44,38 @@ def stacked_results(
     window = tuple(steps_in('score_window_s', time) for time in scenario.score_window_s)
     of_loop = {'steps': trajectory.steps, **_NO_TIMING, **_NOTHING_MISSED}
     metrics: dict[str, Any] = {**metric_values(trajectory, start, window), **of_loop}
+    plants = [JudgedPlant.of(run.scenario) for run in runs]
     judged = JudgedRuns(
-        trajectory, start, scenario.score_window_s, metrics, limits.rules.engagements_a_day
+        trajectory,
+        start,
+        scenario.score_window_s,
+        metrics,
+        limits.rules.engagements_a_day,
+        stacked_plants(plants),
     )
+    driving = driving_acceleration(trajectory, judged.plant).tolist()
     by_metric = _rows({name: metrics[name] for name in METRIC_NAMES}, len(runs))
     by_criterion = _rows(raw_criteria(judged), len(runs))
+    by_existence = _rows(existing(judged), len(runs))
     results = []
-    for index, run in enumerate(runs):
-        plant = JudgedPlant.of(run)
+    for index, (run, plant) in enumerate(zip(runs, plants, strict=True)):
         state = slip_state(one_or_more(trajectory, index), start, limits.rules, plant)
-        verdict = verdict_of(state, by_criterion[index], limits, run.scenario.name)
+        verdict = verdict_of(
+            state,
+            by_criterion[index],
+            limits,
+            run.scenario.name,
+            exists=by_existence[index],
+            traction=judged_traction(finite(driving[index]), plant, limits),
+        )
         counts = {'valid': True, 'reason': ''}
         results.append({'metrics': by_metric[index], 'verdict': verdict, **counts})
     return results
+
+
+def stacked_plants(plants: Sequence[JudgedPlant]) -> Any:
+    """Return a plant whose values are those of many, (R,) each."""
+    return JudgedPlant(**vars(stacked(plants)))
 
 
 def one_or_more(stack: Trajectory, index: Any) -> Trajectory:

@@ -59,9 +59,9 @@ def trajectories(runs: Sequence[Run]) -> Trajectory:
     """
     Return the signals of runs as a stack, the runs as the first axis of each.
 
-    They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference and
-    request. All runs have one length, control start, architecture, equilibrium, kind of reference
-    and order of the controller.
+    They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference,
+    request and demand. All runs have one length, control start, architecture, equilibrium, kind
+    of reference and order of the controller.
     """
     return _stack(_linear(runs))
 

@@ -68,9 +68,12 @@ _STATES = (
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
     Definition(
         'within, beyond, no limit',
-        'how a value stands to a limit that is published for it. Most have none.',
+        'how a value stands to a limit that is published or a convention. Most have none.',
     ),
+    Definition('failed', 'the word on limits of a run that neither engaged nor nearly engaged.'),
+    Definition('traction', 'driving force at the wheels over the mass of the car.', 'm/s²'),
 )
+
 _LOOPS = (
     Definition('wear', 'K_usura, the factor of wear on the clutch torque. 1 is as designed.'),
     Definition('stable', 'whether the sampled closed loop is stable at the wear of the run.'),

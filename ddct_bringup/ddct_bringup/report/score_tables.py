@@ -9,8 +9,8 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.scores.scoring import NOT_COMPUTED
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
-from ddct_bringup.verdict.criteria import CRITERIA, Criterion
-from ddct_bringup.verdict.verdict import NO_LIMIT
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION
 from ddct_plant.program.table import Figure
 
 _NO_PHASES = 'a log does not tell when the plates were locked'
@@ -109,12 +109,14 @@ class VerdictCell:
 
 @dataclass(frozen=True)
 class VerdictRow:
-    """A criterion over all runs."""
+    """A criterion over all runs, or the traction."""
 
-    criterion: Criterion
+    criterion: Figure
     limit: str
     """Empty where no limit applies."""
     source: str
+    convention: bool
+    """Whether the limit is agreed on rather than published."""
     cells: tuple[VerdictCell, ...]
 
     @property
@@ -124,24 +126,37 @@ class VerdictRow:
         return '; '.join(each for each in found if each not in ('', NOT_JUDGED))
 
 
+_TRACTION = Figure(
+    TRACTION,
+    TRACTION,
+    'm/s^2',
+    '.4g',
+    'largest driving force at the wheels over the mass of the car, beside what the driven axle '
+    'can carry',
+    'the plant is not known',
+)
+
+
 def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
-    """Return one row per criterion; a run that was not judged has a value in none."""
+    """Return a row per criterion, then the traction; a run not judged has a value in none."""
     judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
     reasons = [
         {**(OF_NO_LOG if run.measured else {}), **run.entry.get(NOT_COMPUTED, {})} for run in runs
     ]
+    for each, run in zip(judged, runs, strict=True):
+        each[TRACTION] = run.entry['verdict'][TRACTION]
     return [
         _verdict_row(
-            criterion,
-            [each.get(criterion.key) for each in judged],
-            [each.get(criterion.key, criterion.undefined) for each in reasons],
+            figure,
+            [each.get(figure.key) for each in judged],
+            [each.get(figure.key, figure.undefined) for each in reasons],
         )
-        for criterion in CRITERIA
+        for figure in (*CRITERIA, _TRACTION)
     ]
 
 
 def _verdict_row(
-    criterion: Criterion, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
+    criterion: Figure, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
 ) -> VerdictRow:
     # All runs of a page are of one scenario, so one limit applies to all.
     limited = next((each for each in found if each and each['limit'] is not None), None)
@@ -149,6 +164,7 @@ def _verdict_row(
         criterion=criterion,
         limit=value_text(limited['limit']) if limited else '',
         source=limited['source'] if limited else '',
+        convention=bool(limited and limited['convention']),
         cells=tuple(_verdict_cell(*each) for each in zip(found, reasons, strict=True)),
     )
 

@@ -14,12 +14,18 @@ from ddct_bringup.run.beside_bag import RunTiming, failed_run, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
-from ddct_bringup.verdict.criteria import criterion_values
+from ddct_bringup.verdict.criteria import criterion_values, existing, finite
 from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, slip_state
-from ddct_bringup.verdict.verdict import Verdict, verdict_of, verdict_of_unreadable
+from ddct_bringup.verdict.traction import driving_acceleration
+from ddct_bringup.verdict.verdict import (
+    Verdict,
+    judged_traction,
+    verdict_of,
+    verdict_of_unreadable,
+)
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
@@ -28,8 +34,12 @@ from ddct_plant.scenario.differences import changed_values
 Entry = dict[str, Any]
 """One run of `scores.json`: bag, ..., metrics, verdict, fallbacks, safe_state, ..."""
 
-SCHEMA_VERSION = 2
-"""Of `scores.json`; 1 had no verdict and did not say its version."""
+SCHEMA_VERSION = 3
+"""
+Of `scores.json`; 1 had no verdict and did not say its version.
+
+In 2 a failed run had other words on limits, and there was no `convention` and no `traction`.
+"""
 
 NOT_COMPUTED = 'not_computed'
 """Key of `scores.json`, of a log of another tool alone: reasons by figure."""
@@ -167,13 +177,22 @@ def _verdict(
     recording: Recording, metrics: dict[str, Any], limits: Limits, *, valid: bool
 ) -> Verdict:
     facts, trajectory, rules = recording.facts, recording.trajectory, limits.rules
-    plant = JudgedPlant.of(recording.settings)
+    plant = JudgedPlant.of(recording.settings.scenario) if recording.settings else None
     start = steps_in('control_start_s', facts.control_start_s)
     state = engine_end(recording) if valid else INVALID
     if state is None:
         state = slip_state(trajectory, start, rules, plant)
-    run = JudgedRun(trajectory, start, facts.score_window_s, metrics, rules.engagements_a_day)
-    return verdict_of(state, criterion_values(run), limits, facts.scenario)
+    window_s, a_day = facts.score_window_s, rules.engagements_a_day
+    run = JudgedRun(trajectory, start, window_s, metrics, a_day, plant)
+    driving = finite(driving_acceleration(trajectory, plant))
+    return verdict_of(
+        state,
+        criterion_values(run),
+        limits,
+        facts.scenario,
+        exists=existing(run),
+        traction=judged_traction(driving, plant, limits),
+    )
 
 
 def scores_document(runs: Sequence[Entry], limits: Limits) -> dict[str, Any]:

@@ -8,8 +8,8 @@ from rich.text import Text
 
 from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
 from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
-from ddct_bringup.verdict.state import ENGAGED
-from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
+from ddct_bringup.verdict.state import SUCCESSES
+from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, TRACTION
 from ddct_plant.base.errors import printable
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.table import UNDEFINED, Column, Figure, drawn_by_rich, table_of
@@ -154,7 +154,8 @@ def beyond_notes(runs: Sequence[Entry]) -> list[str]:
     """Return for each limit that runs are beyond its source, and the runs with their values."""
     beyond: dict[str, list[str]] = {}
     for run in runs:
-        for each in run['verdict']['criteria']:
+        traction = {'name': TRACTION, **(run['verdict']['traction'] or {'state': NO_LIMIT})}
+        for each in (*run['verdict']['criteria'], traction):
             if each['state'] == BEYOND:
                 limit = f'beyond {each["name"]} {each["limit"]:g} {each["unit"]}'
                 found = beyond.setdefault(f'{limit} ({each["source"]})', [])
@@ -163,14 +164,14 @@ def beyond_notes(runs: Sequence[Entry]) -> list[str]:
 
 
 def unknown_limits_notes(run: Entry) -> list[str]:
-    """Return by which limits an engaged run, beyond none, cannot be judged for want of a value."""
+    """Return by which limits a success, beyond none, cannot be judged for want of a value."""
     verdict = run['verdict']
     unknown = [
         each['name']
         for each in verdict['criteria']
         if each['limit'] is not None and each['value'] is None
     ]
-    if not unknown or (verdict['state'], verdict['limits']) != (ENGAGED, NO_LIMIT):
+    if not unknown or verdict['state'] not in SUCCESSES or verdict['limits'] != NO_LIMIT:
         return []
     return [f'not known to keep within its limits: no value of {", ".join(unknown)}']
 

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.verdict.friction_work import LEAST_SLIP_RPM, slips_at, work_over_least
 from ddct_bringup.verdict.judged_run import JudgedRun, Values
+from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_negative_jerk
 from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
 from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
 from ddct_plant.program.table import Figure
@@ -22,6 +24,8 @@ class Criterion(Figure):
 
     value: Callable[[JudgedRun], Values | None] = field(kw_only=True)
     """None, or a number that is not finite, where it is not defined."""
+    exists: Callable[[JudgedRun], Any] = field(default=lambda run: True, kw_only=True)
+    """Whether a run can have it by its plant, (R,) of many: its limit does not apply where not."""
     metric: str = field(default='', kw_only=True)
     """The metric of `scores.json` that it is too, empty for none."""
 
@@ -46,10 +50,10 @@ def _criterion(
     value: Callable[[JudgedRun], Values | None],
     meaning: str,
     undefined: str,
-    metric: str = '',
+    **further: Any,
 ) -> Criterion:
     symbol = name.replace('_', ' ')
-    return Criterion(name, symbol, unit, '.4g', meaning, undefined, value=value, metric=metric)
+    return Criterion(name, symbol, unit, '.4g', meaning, undefined, value=value, **further)
 
 
 def _metric(name: str, key: str) -> Criterion:
@@ -61,13 +65,18 @@ def _metric(name: str, key: str) -> Criterion:
         lambda run: run.metrics[key],
         metric.meaning,
         metric.undefined,
-        key,
+        metric=key,
     )
+
+
+def _sticks(run: JudgedRun) -> bool:
+    return run.trajectory.clutch_phase is not None
 
 
 _NO_LOCK = 'the clutch is linear, or never locked after control start'
 _NOT_TOGETHER = 'the plates never came together after control start'
 _NOTHING = 'the run ends before control start'
+_BELOW_1_S = 'the run ends less than 1 s after control start'
 """Why a figure is undefined."""
 
 CRITERIA = (
@@ -77,6 +86,7 @@ CRITERIA = (
         lambda run: run.time_to_lock_s,
         'control start to the first lock',
         f'{_NO_LOCK}, or was locked there',
+        exists=_sticks,
     ),
     _metric('engagement_time', 'engagement_time_s'),
     _metric('peak_jerk', 'peak_jerk_m_s3'),
@@ -85,7 +95,21 @@ CRITERIA = (
         'm/s^3',
         lambda run: mean_jerk(run.acceleration),
         "largest of the jerk's means over 1 s after control start",
-        'the run ends less than 1 s after control start',
+        _BELOW_1_S,
+    ),
+    _criterion(
+        'mean_negative_jerk',
+        'm/s^3',
+        lambda run: mean_negative_jerk(run.acceleration),
+        "most negative of the jerk's means over 1 s after control start",
+        _BELOW_1_S,
+    ),
+    _criterion(
+        'mean_acceleration',
+        'm/s^2',
+        lambda run: mean_acceleration(run.acceleration),
+        'largest mean of A_x over 2 s after control start',
+        'the run ends less than 2 s after control start',
     ),
     _criterion(
         'peak_acceleration',
@@ -111,11 +135,21 @@ CRITERIA = (
     ),
     _metric('friction_energy', 'friction_energy_j'),
     _criterion(
+        'friction_work_over_least',
+        '1',
+        lambda run: work_over_least(run.trajectory, run.control_start, run.plant),
+        'friction work after control start over the least for a rigid car, '
+        'J_m J_eq/(J_m + J_eq) w_d^2/2 with w_d at control start',
+        f'the slip at control start is below {LEAST_SLIP_RPM:g} rpm, or the plant is not known',
+        exists=lambda run: slips_at(run.trajectory, run.control_start),
+    ),
+    _criterion(
         'peak_temperature',
         'degC',
         _peak_temperature,
         'highest temperature of the facing',
         'the clutch is linear',
+        exists=_sticks,
     ),
     _metric('slip_acceleration_at_lock', 'lockup_slip_acceleration_rad_s2'),
     _criterion(
@@ -124,6 +158,7 @@ CRITERIA = (
         lambda run: run.releases,
         'how often the plates part again',
         _NO_LOCK,
+        exists=_sticks,
     ),
     _criterion(
         'judder',
@@ -170,6 +205,11 @@ def raw_criteria(run: JudgedRun) -> dict[str, Values | None]:
     """Return the values by name as their functions give them."""
     with np.errstate(all='ignore'):  # what is not finite becomes None
         return {criterion.key: criterion.value(run) for criterion in CRITERIA}
+
+
+def existing(run: JudgedRun) -> dict[str, Any]:
+    """Return of every criterion by name whether the run can have it, (R,) of many runs."""
+    return {criterion.key: criterion.exists(run) for criterion in CRITERIA}
 
 
 def finite(value: Any) -> float | int | None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.meeting import SLIPPING, events_of, first_lock, locked_at
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.vibration import (
     judder,
     shuffle,
@@ -37,6 +38,8 @@ class JudgedRun:
     metrics: Mapping[str, Any]
     """Those of `scores.json`, by name."""
     engagements_a_day: float
+    plant: JudgedPlant | None = None
+    """None where it is not known, as of a log; of many runs its values are (R,)."""
 
     @cached_property
     def torsion_speed_rpm(self) -> np.ndarray:

@@ -16,13 +16,17 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
-SCHEMA_VERSION = 1
-"""Of a limits file."""
+SCHEMA_VERSION = 2
+"""Of a limits file; in 1 a convention had no reason."""
+CONVENTION = 'convention'
+_REASONED_FROM = 2
+"""Version from which a convention has a reason."""
 _CITATION = ('source', 'clause')
 _MOST = 1e9
 
@@ -63,7 +67,9 @@ class Limit:
     applies_to: tuple[str, ...] | None
     """Names of scenarios; None for all."""
     source: str
-    """Where it is published and in which clause, or that it is a convention."""
+    """Where it is published and in which clause, or that it is a convention and why."""
+    convention: bool
+    """Whether it is agreed on rather than published."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,8 @@ class Limits:
 
     rules: Rules
     limits: tuple[Limit, ...]
+    traction: TractionRule | None
+    """What the driven axle can carry; None where the file does not limit it."""
     origin: dict[str, Any] = field(compare=False)
     """`name`, `digest` and `schema_version` of the file, as `scores.json` has them."""
 
@@ -121,14 +129,24 @@ def limits_of_text(text: str, name: str) -> Limits:
     with located(f'limits {name}'):
         content, lines = parse_yaml_with_lines(text)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-    origin = {'name': Path(name).name, 'digest': digest, 'schema_version': SCHEMA_VERSION}
     with located(f'limits {name}', lines):
-        top = _mapping('', content, ('rules', 'limits'), (SCHEMA_KEY,))
+        top = _mapping('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction'))
         require_schema_version(top, SCHEMA_VERSION)
+        version = top.get(SCHEMA_KEY, SCHEMA_VERSION)
+        origin = {'name': Path(name).name, 'digest': digest, 'schema_version': version}
         if not isinstance(top['limits'], list):
             raise ParameterError('limits: give a list of limits')
-        limits = [_limit(f'limits[{i}]', item) for i, item in enumerate(top['limits'])]
-        return Limits(_rules(top['rules']), tuple(limits), origin)
+        limits = [_limit(f'limits[{i}]', item, version) for i, item in enumerate(top['limits'])]
+        traction = _traction(top['traction']) if 'traction' in top else None
+        return Limits(_rules(top['rules']), tuple(limits), traction, origin)
+
+
+def _traction(content: Any) -> TractionRule:
+    names = ('friction', 'driven_share', 'height_over_wheelbase')
+    rules = _mapping('traction', content, (*names, 'reason'))
+    _require_text('traction.reason', rules['reason'])
+    values = {name: _rule_value(f'traction.{name}', rules[name], '1', None) for name in names}
+    return TractionRule(**values, reason=rules['reason'])
 
 
 def _rules(content: Any) -> Rules:
@@ -151,9 +169,9 @@ def _rule_value(path: str, content: Any, unit: str, at_least: float | None) -> f
     )
 
 
-def _limit(path: str, content: Any) -> Limit:
+def _limit(path: str, content: Any, version: int) -> Limit:
     required = ('criterion', 'value', 'unit', 'applies_to')
-    limit = _mapping(path, content, required, (*_CITATION, 'convention'))
+    limit = _mapping(path, content, required, (*_CITATION, CONVENTION, 'reason'))
     criterion = limit['criterion']
     if not isinstance(criterion, str) or criterion not in CRITERION_UNITS:
         known = ', '.join(CRITERION_UNITS)
@@ -164,20 +182,32 @@ def _limit(path: str, content: Any) -> Limit:
         require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=_MOST),
         limit['unit'],
         _scenarios(f'{path}.applies_to', limit['applies_to']),
-        _source(path, limit),
+        _source(path, limit, version),
+        limit.get(CONVENTION, False),
     )
 
 
-def _source(path: str, limit: Mapping[str, Any]) -> str:
-    if limit.get('convention') is True:
-        return 'convention'
-    if limit.get('convention', False) is not False:
-        raise ParameterError(f'{path}.convention: give true or false')
+def _source(path: str, limit: Mapping[str, Any], version: int) -> str:
+    if not isinstance(limit.get(CONVENTION, False), bool):
+        raise ParameterError(f'{path}.{CONVENTION}: give true or false')
+    if limit.get(CONVENTION):
+        return _convention(path, limit, version)
+    if 'reason' in limit:
+        raise ParameterError(f'{path}.reason: only a convention has one: cite a clause, or add it')
     for key in _CITATION:
         if key not in limit:
             raise ParameterError(f'{path}: {key} is missing: cite it, or add `convention: true`')
         _require_text(f'{path}.{key}', limit[key])
     return f'{limit["source"]}, {limit["clause"]}'
+
+
+def _convention(path: str, limit: Mapping[str, Any], version: int) -> str:
+    if 'reason' in limit:
+        _require_text(f'{path}.reason', limit['reason'])
+        return f'{CONVENTION}: {limit["reason"]}'
+    if version >= _REASONED_FROM:
+        raise ParameterError(f'{path}: reason is missing: say why this value is agreed on')
+    return CONVENTION
 
 
 def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:

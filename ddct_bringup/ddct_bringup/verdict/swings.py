@@ -10,7 +10,6 @@ from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 
-
 FEWEST_SWINGS = 4
 """Two cycles: the fewest that show a slip to swing by itself, and where its middle goes."""
 

@@ -4,55 +4,90 @@ from collections.abc import Mapping
 from typing import Any
 
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.limits import Limit, Limits
-from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_bringup.verdict.limits import CONVENTION, Limit, Limits
+from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
 Verdict = dict[str, Any]
-"""State, limits and criteria, as in `scores.json`."""
-WITHIN, BEYOND, NO_LIMIT = 'within', 'beyond', 'no_limit'
+"""State, limits, criteria and traction, as in `scores.json`."""
+WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'
+TRACTION = 'traction'
+"""Key of what the driven axle carries, beside the criteria."""
+_TRACTION_UNIT = 'm/s^2'
 
 
 def verdict_of(
-    state: str, values: Mapping[str, float | int | None], limits: Limits, scenario: str
+    state: str,
+    values: Mapping[str, float | int | None],
+    limits: Limits,
+    scenario: str,
+    *,
+    exists: Mapping[str, Any],
+    traction: Mapping[str, Any] | None = None,
 ) -> Verdict:
     """
     Return the verdict over a run of a scenario, of its state and the values of its criteria.
 
-    The run is beyond limits if one criterion is. It is within if it is engaged and every criterion
-    with a limit is within: what never engaged has no engagement to keep within limits, and of a
-    limit without a value, as in a run that ended early, nobody knows whether it was kept.
+    A run that is neither engaged nor nearly engaged has failed, whatever its criteria are. Another
+    is beyond limits if one criterion is, or if its wheels would spin. It is within if every
+    criterion with a limit is: of a limit without a value, as in a run that ended early, nobody
+    knows whether it was kept. No limit applies to what does not exist for the plant, as `exists`
+    says by criterion. `traction` is that of `judged_traction`.
     """
-    strictest = limits.of(scenario)
+    strictest = {key: limit for key, limit in limits.of(scenario).items() if exists[key]}
     criteria = [
         _judged(criterion.key, criterion.unit, values[criterion.key], strictest.get(criterion.key))
         for criterion in CRITERIA
     ]
+    traction = traction or judged_traction(None, None, limits)
     found = {criterion['state'] for criterion in criteria if criterion['limit'] is not None}
     overall = NO_LIMIT
-    if BEYOND in found:
+    if state not in SUCCESSES:
+        overall = FAILED
+    elif BEYOND in (*found, traction['state']):
         overall = BEYOND
-    elif state == ENGAGED and found == {WITHIN}:
+    elif found == {WITHIN}:
         overall = WITHIN
-    return {'state': state, 'limits': overall, 'criteria': criteria}
+    return {'state': state, 'limits': overall, 'criteria': criteria, TRACTION: dict(traction)}
 
 
 def verdict_of_unreadable() -> Verdict:
     """Return the verdict over a run of which nothing is known."""
-    return {'state': INVALID, 'limits': NO_LIMIT, 'criteria': []}
+    return {'state': INVALID, 'limits': FAILED, 'criteria': [], TRACTION: None}
+
+
+def judged_traction(
+    value: float | int | None, plant: JudgedPlant | None, limits: Limits
+) -> dict[str, Any]:
+    """Return the largest driving force over the mass beside what the driven axle can carry."""
+    rule = limits.traction
+    limit = rule.limit(plant.gravity) if rule and plant else None
+    return {
+        'value': value,
+        'unit': _TRACTION_UNIT,
+        'limit': limit,
+        'source': f'{CONVENTION}: {rule.reason}' if rule and plant else None,
+        'convention': limit is not None,
+        'state': _state(value, limit),
+    }
 
 
 def _judged(
     name: str, unit: str, value: float | int | None, limit: Limit | None
 ) -> dict[str, Any]:
     """Return one criterion; the magnitude of its value is what is limited."""
-    state = NO_LIMIT
-    if limit is not None and value is not None:
-        state = WITHIN if abs(value) <= limit.value else BEYOND
     return {
         'name': name,
         'value': value,
         'unit': unit,
         'limit': limit.value if limit else None,
         'source': limit.source if limit else None,
-        'state': state,
+        'convention': limit.convention if limit else False,
+        'state': _state(value, limit.value if limit else None),
     }
+
+
+def _state(value: float | int | None, limit: float | None) -> str:
+    if value is None or limit is None:
+        return NO_LIMIT
+    return WITHIN if abs(value) <= limit else BEYOND

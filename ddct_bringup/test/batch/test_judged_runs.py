@@ -6,12 +6,21 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.results import JudgedRuns, one_or_more
+from ddct_bringup.batch.results import JudgedRuns, one_or_more, stacked_plants
 from ddct_bringup.scores.metrics import metric_values
-from ddct_bringup.verdict.criteria import finite, raw_criteria
+from ddct_bringup.verdict.criteria import existing, finite, raw_criteria
 from ddct_bringup.verdict.judged_run import JudgedRun
+from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
-RUNS, SAMPLES, START, WINDOW = 40, 331, 200, (200, 300)
+EXACT = ('friction_work_over_least', 'mean_acceleration', 'mean_negative_jerk')
+RUNS, SAMPLES, START, WINDOW = 40, 431, 200, (200, 300)
+PLANTS = [
+    JudgedPlant.of_parameters(
+        DrivelineParameters(engine_inertia=0.1 + 0.01 * run), VehicleParameters()
+    )
+    for run in range(RUNS)
+]
 
 
 @pytest.fixture(scope='module')
@@ -39,27 +48,33 @@ def stack():
     )
 
 
-def judged(kind, trajectory, window=WINDOW):
+def judged(kind, trajectory, window=WINDOW, plant=None):
     metrics: dict[str, Any] = dict(metric_values(trajectory, START, window))
     if kind is JudgedRun:
         metrics = {name: finite(value) for name, value in metrics.items()}
     window_s = tuple(step / 100 for step in window)
-    return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0)
+    return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0, plant)
 
 
-@pytest.mark.parametrize('window', [WINDOW, (200, 400)], ids=['scored', 'ends before'])
+@pytest.mark.parametrize('window', [WINDOW, (200, 500)], ids=['scored', 'ends before'])
 def test_criteria_are_those_of_each_run(stack, window):
-    ours: dict[str, Any] = raw_criteria(judged(JudgedRuns, stack, window))
+    runs = judged(JudgedRuns, stack, window, stacked_plants(PLANTS))
+    ours: dict[str, Any] = raw_criteria(runs)
+    exist = existing(runs)
     undefined = set()
     for run in range(RUNS):
-        single = raw_criteria(judged(JudgedRun, one_or_more(stack, run), window))
+        alone = judged(JudgedRun, one_or_more(stack, run), window, PLANTS[run])
+        single = raw_criteria(alone)
+        assert {
+            name: np.broadcast_to(each, RUNS)[run] for name, each in exist.items()
+        } == existing(alone)
         for name, value in single.items():
             found = ours[name] if np.ndim(ours[name]) == 0 else ours[name][run]
             if finite(value) is None:
                 undefined.add(name)
                 assert finite(found) is None, name
             else:
-                assert found == pytest.approx(value, rel=1e-12), name
+                assert found == pytest.approx(value, rel=0.0 if name in EXACT else 1e-12), name
     assert {'shuffle_decay', 'shuffle_amplitude', 'judder', 'engagement_time'} <= undefined
 
 

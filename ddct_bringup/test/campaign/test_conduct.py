@@ -278,5 +278,5 @@ def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
     assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
     failed = rows[0]
     assert "controller 'wild'" in failed['reason']
-    assert (failed['verdict_state'], failed['verdict_limits']) == ('invalid', 'no_limit')
+    assert (failed['verdict_state'], failed['verdict_limits']) == ('invalid', 'failed')
     assert {failed[name] for name in METRIC_COLUMNS} == {None}

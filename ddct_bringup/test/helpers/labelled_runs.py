@@ -69,7 +69,7 @@ class LabelledRun:
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        rules, plant = packaged_limits().rules, JudgedPlant.of(settings)
+        rules, plant = packaged_limits().rules, JudgedPlant.of(scenario)
         return slip_state(trajectory, scenario.control_start_step, rules, plant)
 
 

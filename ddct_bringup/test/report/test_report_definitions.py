@@ -48,7 +48,7 @@ def test_every_signal_is_defined_with_unit_and_sign():
 
 def test_every_state_is_defined():
     terms = ', '.join(entry.term for entry in GROUPS['States and limits'])
-    for state in (*STATES, 'within', 'beyond', 'no_limit'):
+    for state in (*STATES, 'within', 'beyond', 'no_limit', 'failed'):
         assert state.replace('_', ' ') in terms
 
 

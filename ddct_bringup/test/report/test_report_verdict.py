@@ -14,7 +14,8 @@ from ddct_bringup.verdict.verdict import verdict_of, verdict_of_unreadable
 def run(state='engaged', **values):
     """Return a run of `thesis` with these values of its criteria."""
     found = dict.fromkeys(criterion.key for criterion in CRITERIA) | values
-    verdict = verdict_of(state, found, packaged_limits(), 'thesis')
+    exists = dict.fromkeys(found, True)
+    verdict = verdict_of(state, found, packaged_limits(), 'thesis', exists=exists)
     return ReportRun({'valid': True, 'reason': '', 'verdict': verdict})
 
 
@@ -28,7 +29,8 @@ def row_of(name, runs):
 
 def test_every_criterion_has_a_row_with_its_unit():
     rows = verdict_rows([run()])
-    assert [row.criterion.key for row in rows] == [criterion.key for criterion in CRITERIA]
+    keys = [*(criterion.key for criterion in CRITERIA), 'traction']
+    assert [row.criterion.key for row in rows] == keys
     assert unit_text(row_of('releases_after_lock', [run()]).criterion.unit) == ''
 
 
@@ -42,6 +44,13 @@ def test_a_value_beyond_its_limit_is_marked_and_the_limit_has_its_source():
     assert row.limit == '0.315'
     assert row.source.startswith('ISO 2631-1')
     assert row_of('torque_dip', [run(torque_dip=1.0)]).limit == ''
+
+
+def test_a_convention_is_marked_and_gives_its_reason():
+    row = row_of('releases_after_lock', [run(releases_after_lock=2)])
+    assert (row.convention, row.cells[0].state) == (True, 'beyond')
+    assert row.source.startswith('convention: an engagement ends with the lock')
+    assert not row_of('weighted_acceleration', [run(weighted_acceleration=0.9)]).convention
 
 
 def test_every_dash_has_its_reason():

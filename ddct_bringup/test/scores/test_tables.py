@@ -75,7 +75,7 @@ def test_a_valid_run_is_told_from_one_that_is_not():
 def test_an_undefined_metric_is_a_dash():
     lines = printed([run()]).splitlines()
     row = next(line for line in lines if 'pi' in line)
-    assert row.split() == ['pi', '1', *6 * '-', 'invalid', 'no_limit', 'yes']
+    assert row.split() == ['pi', '1', *6 * '-', 'invalid', 'failed', 'yes']
 
 
 def test_the_reason_of_an_invalid_run_stands_below_the_table():
@@ -166,8 +166,9 @@ def verdict_beyond():
     within = {'name': 'peak_jerk', 'value': 1.0, 'unit': 'm/s^3', 'limit': 2.0, 'source': 'A, 1'}
     beyond = {'name': 'judder', 'value': 4.0, 'unit': 'rpm', 'limit': 3.0, 'source': 'B, 2'}
     return {
-        'state': 'oscillating',
+        'state': 'nearly_engaged',
         'limits': 'beyond',
+        'traction': None,
         'criteria': [{**within, 'state': 'within'}, {**beyond, 'state': 'beyond'}],
     }
 
@@ -175,7 +176,7 @@ def verdict_beyond():
 def test_a_run_has_its_state_and_its_limits_and_a_word_on_what_is_beyond():
     text = printed([run('ls8', verdict=verdict_beyond())])
     row = next(line for line in text.splitlines() if 'ls8' in line.split())
-    assert row.split()[-3:] == ['oscillating', 'beyond', 'yes']
+    assert row.split()[-3:] == ['nearly_engaged', 'beyond', 'yes']
     assert 'beyond judder 3 rpm (B, 2): ls8 4\n' in text
     assert 'peak_jerk' not in text
 
@@ -186,10 +187,17 @@ def test_a_limit_is_named_once_with_all_runs_beyond_it():
     assert 'beyond judder 3 rpm (B, 2): pi 4, ls8 4\n' in printed(runs)
 
 
+def test_a_run_beyond_what_the_driven_axle_carries_is_named():
+    traction = {'value': 12.79, 'unit': 'm/s^2', 'limit': 4.905, 'source': 'convention: C'}
+    traction |= {'convention': True, 'state': 'beyond'}
+    text = printed([run('mpc4', verdict={**verdict_beyond(), 'traction': traction})])
+    assert 'beyond traction 4.905 m/s^2 (convention: C): mpc4 12.79\n' in text
+
+
 def test_an_engaged_run_says_by_which_limits_it_cannot_be_judged():
     no_value = {'name': 'peak_temperature', 'value': None, 'unit': 'degC', 'limit': 300.0}
     criteria = [{**no_value, 'source': 'A, 1', 'state': 'no_limit'}]
-    engaged = {'state': 'engaged', 'limits': 'no_limit', 'criteria': criteria}
+    engaged = {'state': 'engaged', 'limits': 'no_limit', 'criteria': criteria, 'traction': None}
     said = 'pi: not known to keep within its limits: no value of peak_temperature\n'
     assert said in printed([run(verdict=engaged)])
     for other in ({'state': 'runaway'}, {'limits': 'beyond'}):
@@ -199,7 +207,7 @@ def test_an_engaged_run_says_by_which_limits_it_cannot_be_judged():
 def test_a_narrow_terminal_has_state_and_limits_in_lines_of_their_own(monkeypatch):
     monkeypatch.setenv('COLUMNS', '80')
     text = printed([run('feedforward', verdict=verdict_beyond())], stream=Terminal())
-    assert 'feedforward: state oscillating, limits beyond' in text
+    assert 'feedforward: state nearly_engaged, limits beyond' in text
     wide = printed([run('feedforward', verdict=verdict_beyond())])
     assert 'feedforward: state' not in wide
 

@@ -1,25 +1,32 @@
 """Every criterion against a run whose answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 from scipy.signal import butter, sosfiltfilt
 
 from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.verdict.criteria import CRITERION_UNITS, criterion_values
+from ddct_bringup.verdict.criteria import CRITERION_UNITS, criterion_values, existing
 from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
+from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of
+from ddct_bringup.verdict.vibration import weighted_acceleration
 from ddct_plant.models.driveline import PhaseEvent
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 T = times()
 WINDOW_S = (0.6, 2.0)
+PLANT = JudgedPlant.of_parameters(DrivelineParameters(), VehicleParameters())
 
 
 def values(run, start=CONTROL_START, engagements=1000.0):
     metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=WINDOW_S)
-    return criterion_values(JudgedRun(run, start, WINDOW_S, metrics._asdict(), engagements))
+    judged = JudgedRun(run, start, WINDOW_S, metrics._asdict(), engagements, PLANT)
+    return criterion_values(judged)
 
 
 def shaft(signal, index=3):
@@ -200,6 +207,74 @@ def test_mean_jerk_is_the_change_of_acceleration_within_one_second():
     assert found['peak_acceleration'] == pytest.approx(acceleration[60])
 
 
+def test_mean_acceleration_and_mean_negative_jerk_are_those_of_iso_15622():
+    acceleration = np.interp(T, [0.6, 1.0, 2.0, 2.6], [0.0, 3.0, 3.0, 0.0])
+    acceleration[:60] = 99.0
+    found = values(made_run(np.zeros(301), vehicle_accel=acceleration))
+    assert found['mean_acceleration'] == pytest.approx((0.6 + 3.0 + 0.9) / 2.0)
+    assert found['mean_negative_jerk'] == pytest.approx(-3.0)
+    rising = values(made_run(np.zeros(301), vehicle_accel=T))
+    assert rising['mean_negative_jerk'] == 0.0
+    short = values(made_run(np.zeros(260), vehicle_accel=acceleration[:260]))
+    assert short['mean_acceleration'] is None
+    assert short['mean_negative_jerk'] is not None
+    assert values(made_run(np.zeros(160)))['mean_negative_jerk'] is None
+
+
+def test_friction_work_is_compared_with_what_two_free_inertias_lose():
+    # A heavy car: C_f = C_m + J_m w_d/t takes the slip w_d linearly to zero within t.
+    slip_rpm, time_s, demand = 400.0, 1.0, 300.0
+    slip = slip_rpm * np.clip(1.6 - T, 0.0, 1.0)
+    slip_rad_s = slip_rpm * RAD_S_PER_RPM
+    torque = np.where(slip > 0.0, demand + PLANT.engine_inertia * slip_rad_s / time_s, 0.0)
+    run = made_run(slip, joint_effort=shaft(torque, 1))
+    heavy = replace(PLANT, rest_inertia=1e9)
+    metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)._asdict()
+    judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, heavy)
+    found = criterion_values(judged)['friction_work_over_least']
+    assert found == pytest.approx(1.0 + demand * time_s / (PLANT.engine_inertia * slip_rad_s))
+    limit = packaged_limits().of('thesis')['friction_work_over_least'].value
+    assert limit == pytest.approx(found, rel=0.02)
+
+
+def test_friction_work_before_control_start_does_not_count():
+    slip, work = np.full(301, 400.0), np.where(T <= 0.6, 1e6, 2.0)
+    found = values(made_run(slip, friction_work=work))['friction_work_over_least']
+    least = PLANT.joint_inertia * (400.0 * RAD_S_PER_RPM) ** 2 / 2.0
+    assert found == pytest.approx(480.0 / least)
+
+
+def test_where_hardly_any_slip_is_to_be_removed_no_least_exists():
+    for slip_rpm, exists in ((49.9, False), (50.1, True), (-50.1, True)):
+        run = made_run(np.full(301, slip_rpm), friction_work=np.ones(301))
+        metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)._asdict()
+        judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, PLANT)
+        value = criterion_values(judged)['friction_work_over_least']
+        assert (value is not None) == exists == existing(judged)['friction_work_over_least']
+        unknown = replace(judged, plant=None)
+        assert criterion_values(unknown)['friction_work_over_least'] is None
+        assert existing(unknown)['friction_work_over_least'] == exists
+
+
+def test_what_only_plates_that_stick_have_does_not_exist_for_a_linear_clutch():
+    for run, expected in ((made_run(np.zeros(301)), False), (sticking({}, phases((0, 1))), True)):
+        found = existing(JudgedRun(run, CONTROL_START, WINDOW_S, {}, 1.0))
+        only = ('time_to_lock', 'peak_temperature', 'releases_after_lock')
+        assert all(found[name] == expected for name in only)
+        assert found['peak_jerk']
+
+
+def test_the_limit_of_judder_is_the_shuffle_that_alone_is_felt():
+    # A_x = r_w/J_v (c_sa + k_sa/(j w)) w_sr with the wheel's load constant, weighted by W_d.
+    car, vehicle, t = DrivelineParameters(), VehicleParameters(), times(40.0)
+    angular = 2 * np.pi * 2.93
+    stiffness = abs(car.halfshaft_damping + car.halfshaft_stiffness / (1j * angular))
+    per_speed = stiffness * vehicle.wheel_radius_m / car.vehicle_inertia
+    felt = weighted_acceleration(per_speed * np.sin(angular * t))[2000:]
+    at_limit_rpm = 0.315 * np.sqrt(0.5) / np.sqrt(np.mean(felt**2)) / RAD_S_PER_RPM
+    assert packaged_limits().of('thesis')['judder'].value == pytest.approx(at_limit_rpm, rel=0.1)
+
+
 def test_the_daily_dose_is_that_of_all_engagements_in_the_sense_of_the_directive():
     acceleration = np.sin(2 * np.pi * T[:201])
     run = made_run(np.zeros(201), vehicle_accel=acceleration)
@@ -253,7 +328,7 @@ limits:
 - {criterion: slip_acceleration_at_lock, value: 40, unit: rad/s^2, applies_to: all,
    source: A, clause: '1'}
 - {criterion: peak_jerk, value: 5, unit: m/s^3, applies_to: [launch], source: B, clause: '2'}
-- {criterion: judder, value: 5, unit: rpm, applies_to: all, convention: true}
+- {criterion: judder, value: 5, unit: rpm, applies_to: all, convention: true, reason: C}
 """
     rules = {
         name: {'value': 3.0, 'unit': unit, 'reason': 'x'}
@@ -271,8 +346,9 @@ limits:
     limits = limits_of_text(text.replace('RULES', repr(rules)), 'x')
     known = dict.fromkeys(CRITERION_UNITS)
 
-    def judged(scenario='thesis', state='engaged', **given):
-        verdict = verdict_of(state, {**known, **given}, limits, scenario)
+    def judged(scenario='thesis', state='engaged', without=(), **given):
+        exists = {key: key not in without for key in known}
+        verdict = verdict_of(state, {**known, **given}, limits, scenario, exists=exists)
         return verdict, {each['name']: each for each in verdict['criteria']}
 
     verdict, criteria = judged(slip_acceleration_at_lock=-41.0, peak_jerk=6.0)
@@ -283,18 +359,27 @@ limits:
         'unit': 'rad/s^2',
         'limit': 40.0,
         'source': 'A, 1',
+        'convention': False,
         'state': 'beyond',
     }
+    assert [criteria['judder'][key] for key in ('source', 'convention')] == ['convention: C', True]
     assert [criteria['peak_jerk'][key] for key in ('limit', 'state')] == [None, 'no_limit']
     assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
     assert judged(slip_acceleration_at_lock=-40.0, judder=5.0)[0]['limits'] == 'within'
     assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'  # judder: who knows
     assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
+    # What does not exist for a plant does not block; without any limit nobody knows.
+    without = judged(slip_acceleration_at_lock=-40.0, without=['judder'])
+    assert without[0]['limits'] == 'within'
+    assert [without[1]['judder'][key] for key in ('limit', 'state')] == [None, 'no_limit']
+    none = judged(without=['judder', 'slip_acceleration_at_lock'])
+    assert none[0]['limits'] == 'no_limit'
     for state in STATES:
-        only = 'within' if state == 'engaged' else 'no_limit'
+        success = state in ('engaged', 'nearly_engaged')
         found = judged(state=state, slip_acceleration_at_lock=-40.0, judder=4.0)
-        assert found[0]['limits'] == only
-        assert judged(state=state, slip_acceleration_at_lock=-41.0)[0]['limits'] == 'beyond'
+        assert found[0]['limits'] == ('within' if success else 'failed')
+        beyond = judged(state=state, slip_acceleration_at_lock=-41.0)
+        assert beyond[0]['limits'] == ('beyond' if success else 'failed')
     undefined = judged()[1]['judder']
     assert (undefined['value'], undefined['limit'], undefined['state']) == (None, 5.0, 'no_limit')
 

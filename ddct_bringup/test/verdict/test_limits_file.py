@@ -26,42 +26,53 @@ def test_the_packaged_file_is_read_and_every_limit_cites_a_clause():
     limits = packaged_limits()
     assert limits.rules.engaged_slip == 50.0
     assert {limit.criterion for limit in limits.limits} <= set(CRITERION_UNITS)
-    assert all(', ' in limit.source and limit.source != 'convention' for limit in limits.limits)
+    for limit in limits.limits:
+        assert limit.source.startswith('convention: ') == limit.convention
+        assert limit.convention or ', ' in limit.source
+    conventions = {limit.criterion for limit in limits.limits if limit.convention}
+    assert conventions == {'releases_after_lock', 'friction_work_over_least', 'judder'}
 
 
 def test_a_limit_of_some_scenarios_holds_for_no_other():
     limits = packaged_limits()
-    assert limits.of('launch_gentle')['mean_jerk'].value == 5.0
-    assert 'mean_jerk' not in limits.of('launch')
-    assert 'judder' not in limits.of('launch_gentle')
+    assert limits.of('launch_gentle')['mean_negative_jerk'].value == 5.0
+    assert 'mean_negative_jerk' not in limits.of('launch')
     assert limits.of('anything')['weighted_acceleration'].value == 0.315
 
 
 def test_the_strictest_of_several_limits_holds():
-    convention = f'{OF_SLIP}    convention: true\n'
+    convention = f'{OF_SLIP}    convention: true\n    reason: mine\n'
     limits = limits_of_text(TEXT + convention + convention.replace('3.0', '2.0'), 'mine.yaml')
     assert limits.of('launch')['judder'].value == 2.0
-    assert limits.of('launch')['judder'].source == 'convention'
-    assert 'judder' not in limits.of('thesis')
+    assert limits.of('launch')['judder'].source == 'convention: mine'
+    assert limits.of('thesis')['judder'].value == 6.0
 
 
 def test_what_must_not_happen_at_all_is_limited_by_zero():
-    none = '  - {criterion: releases_after_lock, value: 0, unit: "1", applies_to: all,'
-    limits = limits_of_text(f'{TEXT}{none} convention: true}}\n', 'mine.yaml')
-    assert limits.of('launch')['releases_after_lock'].value == 0.0
+    assert packaged_limits().of('launch')['releases_after_lock'].value == 0.0
 
 
 def test_a_file_without_a_version_is_of_the_present_one():
-    assert limits_of_text(TEXT.replace('schema_version: 1\n', ''), 'x') == packaged_limits()
+    assert limits_of_text(TEXT.replace('schema_version: 2\n', ''), 'x') == packaged_limits()
 
 
 @pytest.mark.parametrize(
     ('old', 'new', 'at', 'complaint'),
     [
-        ('schema_version: 1', 'schema_version: 2', 'schema_version', 'schema_version is 2, this'),
-        ('schema_version: 1', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
-        ('criterion: mean_jerk', 'criterion: jerkiness', 'jerkiness', 'limits\\[4\\].criterion: '),
-        ('criterion: mean_jerk', 'criterion: [jerk]', '[jerk]', 'limits\\[4\\].criterion: '),
+        ('schema_version: 2', 'schema_version: 3', 'schema_version', 'schema_version is 3, this'),
+        ('schema_version: 2', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
+        (
+            'criterion: mean_negative_jerk',
+            'criterion: jerkiness',
+            'jerkiness',
+            'limits\\[4\\].criterion: ',
+        ),
+        (
+            'criterion: mean_negative_jerk',
+            'criterion: [jerk]',
+            '[jerk]',
+            'limits\\[4\\].criterion: ',
+        ),
         (
             'unit: m/s^3',
             'unit: g/s',
@@ -111,6 +122,20 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'limits\\[1\\].source: ',
         ),
         ('    unit: degC\n', '', 'peak_temperature', 'limits\\[2\\]: the key unit is missing'),
+        (
+            '    reason: an engagement ends',
+            '    clause: an engagement ends',
+            'releases_after',
+            'limits\\[5\\]: reason is missing: say why',
+        ),
+        (
+            '    clause: Article',
+            '    reason: Article',
+            'reason: Article',
+            'limits\\[1\\].reason: only a convention',
+        ),
+        ('  driven_share:', '  share:', '  share:', 'unknown key traction.share: known: fr'),
+        ('    value: 0.6\n', '    value: -0.6\n', 'value: -0.6', 'traction.driven_share.value: '),
         ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'unknown key more: known: rules, limits'),
     ],
 )
@@ -139,9 +164,9 @@ def test_a_file_of_something_else_is_refused(text):
 
 @pytest.mark.parametrize('word', ['true', 'yes', '1'])
 def test_only_the_word_true_makes_a_limit_a_convention(word):
-    text = f'{TEXT}{OF_SLIP}    convention: {word}\n'
+    text = f'{TEXT}{OF_SLIP}    convention: {word}\n    reason: mine\n'
     if word == 'true':
-        assert limits_of_text(text, 'x').of('tip_in')['judder'].source == 'convention'
+        assert limits_of_text(text, 'x').of('tip_in')['judder'].convention
         return
     with pytest.raises(DdctError, match='convention: give true or false'):
         limits_of_text(text, 'x')
@@ -150,7 +175,7 @@ def test_only_the_word_true_makes_a_limit_a_convention(word):
 def test_the_origin_is_the_name_without_folders_and_tells_two_files_of_one_name_apart():
     mine = limits_of_text(TEXT, 'far/away/mine.yaml').origin
     assert list(mine) == ['name', 'digest', 'schema_version']
-    assert (mine['name'], mine['schema_version']) == ('mine.yaml', 1)
+    assert (mine['name'], mine['schema_version']) == ('mine.yaml', 2)
     assert packaged_limits().origin == {**mine, 'name': 'packaged'}
     other = limits_of_text(TEXT.replace('value: 9.1', 'value: 9.2'), 'mine.yaml').origin
     assert other['digest'] != mine['digest']
@@ -161,3 +186,24 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
         load_limits(tmp_path / 'none.yaml')
     (tmp_path / 'mine.yaml').write_text(TEXT, encoding='utf-8')
     assert load_limits(tmp_path / 'mine.yaml') == packaged_limits() == load_limits(None)
+
+
+def test_a_file_of_version_1_is_read_with_conventions_that_have_no_reason_and_no_traction():
+    rules = TEXT[TEXT.index('rules:') : TEXT.index('traction:')]
+    convention = '    convention: true\n'
+    old = limits_of_text(f'schema_version: 1\n{rules}limits:\n{OF_SLIP}{convention}', 'old.yaml')
+    assert old.of('launch')['judder'].source == 'convention'
+    assert old.of('launch')['judder'].convention
+    assert old.traction is None
+    assert old.origin['schema_version'] == 1
+    assert old.rules == packaged_limits().rules
+
+
+def test_the_packaged_traction_is_that_of_a_car_with_front_wheel_drive():
+    # mu (m g s - m a h/L) = m a
+    traction = packaged_limits().traction
+    assert traction is not None
+    limit = traction.limit(9.81)
+    load = 9.81 * traction.driven_share - limit * traction.height_over_wheelbase
+    assert limit == pytest.approx(traction.friction * load)
+    assert limit == pytest.approx(4.905)

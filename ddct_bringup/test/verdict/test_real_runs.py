@@ -50,7 +50,9 @@ def state_of(controller, settings, end_s=None, gain=1.0, delay_steps=0):
     rows = None if end_s is None else round(100 * end_s) + 1
     trajectory = Trajectory({name: values[:rows] for name, values in whole.signals.items()})
     start = settings.scenario.control_start_step
-    return slip_state(trajectory, start, packaged_limits().rules, JudgedPlant.of(settings))
+    return slip_state(
+        trajectory, start, packaged_limits().rules, JudgedPlant.of(settings.scenario)
+    )
 
 
 def test_the_pi_of_the_thesis_engages():

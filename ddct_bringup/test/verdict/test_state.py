@@ -9,9 +9,10 @@ from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_bringup.verdict.swings import turns_of
-from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 T = times()
+CAR = DrivelineParameters(), VehicleParameters()
 
 
 def state(slip_rpm, **signals):
@@ -123,7 +124,7 @@ def held(slip_rpm, engine_rpm, cut_rpm=6500.0):
     speeds = np.zeros((len(slip_rpm), 4))
     speeds[:, 0] = engine_rpm * RAD_S_PER_RPM
     run = made_run(slip_rpm, joint_speed=speeds)
-    plant = JudgedPlant.of_driveline(DrivelineParameters(), cut_rpm * RAD_S_PER_RPM)
+    plant = JudgedPlant.of_parameters(*CAR, cut_rpm * RAD_S_PER_RPM)
     return slip_state(run, CONTROL_START, packaged_limits().rules, plant)
 
 
@@ -273,7 +274,7 @@ ANSWERS = np.interp(
 
 def driven(slip, **signals):
     """Return the state of a run with the driveline of the thesis."""
-    plant = JudgedPlant.of_driveline(DrivelineParameters())
+    plant = JudgedPlant.of_parameters(*CAR)
     return slip_state(made_run(slip, **signals), CONTROL_START, packaged_limits().rules, plant)
 
 
@@ -315,6 +316,13 @@ def test_plates_that_stay_locked_a_little_longer_before_the_next_swing_oscillate
     cycle = np.concatenate([np.zeros(60), *[swing, lock] * 6, swing, lock, np.zeros(longer)])
     for part in range(2, 12):
         assert sticking(np.concatenate([cycle, swing[:part]])) == 'oscillating', part
+
+
+@pytest.mark.parametrize(('samples', 'expected'), [(30, 'not_engaged'), (31, 'engaged')])
+def test_the_time_within_the_band_runs_from_the_first_sample_in_it_to_the_last(samples, expected):
+    # 31 samples span 0.3 s.
+    slip = np.concatenate([np.full(200, 60.0), np.full(samples, 40.0)])
+    assert state(slip) == expected
 
 
 def test_turns_are_extremes_from_which_the_values_move_back():

@@ -63,7 +63,7 @@ def printed(*runs, settings=None, overrides=()):
 
 def test_predicted_row_has_value_and_range_print_and_verdict():
     lines = printed(run('mpc3'))
-    row = lines.index('mpc3 0.620 0.63 1.200 0.90 0.190 0.19 predicted - - invalid no_limit yes')
+    row = lines.index('mpc3 0.620 0.63 1.200 0.90 0.190 0.19 predicted - - invalid failed yes')
     assert lines[row + 1] == '0.550 to - hit 0.50 to 1.50 miss 0.300 to 0.300 hit'
     assert 'below the print hit (within 25 % of it) or miss.' in lines
 
@@ -75,8 +75,8 @@ def test_undefined_figure_is_a_miss():
 
 def test_calibrated_row_and_a_controller_without_a_row_have_neither():
     lines = printed(run('pi'), run('ls1'))
-    row = lines.index('pi 0.620 0.88 1.200 0.70 0.190 0.18 calibrated - - invalid no_limit yes')
-    assert lines[row + 1] == 'ls1 0.620 - 1.200 - 0.190 - - - - invalid no_limit yes'
+    row = lines.index('pi 0.620 0.88 1.200 0.70 0.190 0.18 calibrated - - invalid failed yes')
+    assert lines[row + 1] == 'ls1 0.620 - 1.200 - 0.190 - - - - invalid failed yes'
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_calibrated_row_and_a_controller_without_a_row_have_neither():
 )
 def test_nothing_of_the_thesis_is_shown_under_other_conditions(settings):
     lines = printed(run('mpc3'), settings=settings)
-    assert 'mpc3 0.620 1.200 0.190 - - invalid no_limit yes' in lines
+    assert 'mpc3 0.620 1.200 0.190 - - invalid failed yes' in lines
     assert not any('to' in line.split() or 'thesis:' in line for line in lines)
 
 

@@ -1,0 +1,47 @@
+"""Friction work of an engagement over the least that the rigid car needs."""
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import rad_s_from_rpm
+
+LEAST_SLIP_RPM = 50.0
+"""At control start, below which the least is so small that a ratio to it says nothing."""
+_PRIMARY = 1
+"""Its place among the joints, whose effort is C_f."""
+
+
+def slips_at(trajectory: Trajectory, start: int) -> np.ndarray:
+    """Say whether there is slip to be removed at step `start`, (...)."""
+    slip = trajectory.slip_speed[..., start : start + 1]
+    return np.any(np.abs(slip) >= rad_s_from_rpm(LEAST_SLIP_RPM), axis=-1)
+
+
+def work_over_least(trajectory: Trajectory, start: int, plant: JudgedPlant | None) -> Any:
+    """
+    Return the friction work from step `start` on over J_m J_eq/(J_m + J_eq) w_d^2/2, (...).
+
+    That is what two free rigid inertias lose when slip w_d goes to zero; it takes more when the
+    engine drives meanwhile. Not finite below 50 rpm of slip there; None where the plant is not
+    known or the run ends before.
+    """
+    if plant is None or trajectory.steps < start:
+        return None
+    least = plant.joint_inertia * trajectory.slip_speed[..., start] ** 2 / 2.0
+    slips = slips_at(trajectory, start)
+    return np.where(slips, _work(trajectory, start), np.nan) / np.where(slips, least, 1.0)
+
+
+def _work(trajectory: Trajectory, start: int) -> np.ndarray:
+    """Return the friction work in J from step `start` on, exact where the run reports it."""
+    if trajectory.friction_work is not None:
+        return np.sum(trajectory.friction_work[..., start + 1 :], axis=-1)
+    torque = trajectory.joint_effort[..., start:, _PRIMARY]
+    return scipy.integrate.trapezoid(
+        np.abs(torque * trajectory.slip_speed[..., start:]), dx=PERIOD_S
+    )

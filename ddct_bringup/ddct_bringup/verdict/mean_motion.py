@@ -1,0 +1,29 @@
+"""Means of acceleration and jerk, as ISO 15622 limits them for automated driving."""
+
+import numpy as np
+import scipy
+
+from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
+
+MEAN_S = 2.0
+"""Over which an acceleration is averaged."""
+
+
+def mean_acceleration(acceleration: np.ndarray) -> np.ndarray | None:
+    """Return the largest mean over 2 s of (..., n) samples in m/s^2; None for less than 2 s."""
+    samples = round(MEAN_S * STEPS_PER_S)
+    if acceleration.shape[-1] <= samples:
+        return None
+    speed = scipy.integrate.cumulative_trapezoid(acceleration, dx=PERIOD_S, initial=0.0)
+    gains = speed[..., samples:] - speed[..., :-samples]
+    return np.max(gains, axis=-1) / MEAN_S
+
+
+def mean_negative_jerk(acceleration: np.ndarray) -> np.ndarray | None:
+    """
+    Return the most negative mean over 1 s of the jerk in m/s^3, 0 where none is negative.
+
+    None for (..., n) samples in m/s^2 of less than 1 s.
+    """
+    changes = acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]
+    return np.minimum(np.min(changes, axis=-1), 0.0) if changes.size else None
