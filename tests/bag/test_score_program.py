@@ -128,18 +128,19 @@ def test_the_verdict_has_state_limits_and_every_criterion(bags, trajectory, caps
     assert main([str(bags.write(together(trajectory))), '--json', '-']) == 0
     (run,) = runs_in(capsys.readouterr().out)
     verdict = run['verdict']
-    assert list(verdict) == ['state', 'limits', 'criteria']
+    assert list(verdict) == ['state', 'limits', 'criteria', 'traction']
     assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
     assert [each['name'] for each in verdict['criteria']] == list(CRITERION_UNITS)
-    keys = ['name', 'value', 'unit', 'limit', 'source', 'state']
-    assert all(list(each) == keys for each in verdict['criteria'])
+    keys = ['value', 'unit', 'limit', 'source', 'convention', 'state']
+    assert all(list(each) == ['name', *keys] for each in verdict['criteria'])
+    assert list(verdict['traction']) == keys
 
 
 def test_another_limits_file_judges_otherwise(bags, trajectory, tmp_path, capsys):
-    bag = str(bags.write(trajectory))
+    bag = str(bags.write(together(trajectory)))
     mine = tmp_path / 'mine.yaml'
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
-    mine.write_text(text[: text.index('limits:')] + 'limits: []\n', encoding='utf-8')
+    mine.write_text(text[: text.index('traction:')] + 'limits: []\n', encoding='utf-8')
     assert main([bag, '--limits', str(mine), '--json', '-']) == 0
     printed = capsys.readouterr().out
     assert runs_in(printed)[0]['verdict']['limits'] == 'no_limit'
@@ -165,7 +166,13 @@ def test_a_bag_of_before_the_schema_is_scored_and_says_so(bags, trajectory, caps
     captured = capsys.readouterr()
     before, after = runs_in(captured.out)
     assert (before['before_schema'], after['before_schema']) == (True, False)
-    assert before['verdict'] == after['verdict']
+    verdicts = before['verdict'], after['verdict']
+    assert len({each['state'] for each in verdicts}) == 1
+    # Without a scenario nobody knows the inertias, nor what the wheels can carry.
+    of_plant = 'friction_work_over_least'
+    known = [[c for c in each['criteria'] if c['name'] != of_plant] for each in verdicts]
+    assert known[0] == known[1]
+    assert [each['traction']['limit'] is None for each in verdicts].count(True) == 1
     assert f'{bag}: recorded before scenarios had a schema_version' in captured.err
     assert f'{later}: recorded' not in captured.err
 
