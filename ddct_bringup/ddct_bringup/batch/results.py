@@ -113,6 +113,12 @@ class JudgedRuns(JudgedRun):
         return np.array([steps if np.isnan(time) else step_at(time) for time in at_s.tolist()])
 
     @property
+    def slips_for_judder(self) -> np.ndarray:
+        """Whether the clutch slips long enough for a judder, (R,)."""
+        first, after = self.slipping_spans
+        return (after - first - 1) * PERIOD_S >= SHORTEST_JUDDER_S
+
+    @cached_property
     def slipping_spans(self) -> tuple[np.ndarray, np.ndarray]:
         """First sample of slipping from control start on and the one behind the last, (R,)."""
         sample = np.arange(self.trajectory.slip_speed.shape[-1])
@@ -139,7 +145,7 @@ class JudgedRuns(JudgedRun):
     def judder(self) -> Values:
         """R.m.s. in rpm of w_sr from 2 to 20 Hz while the clutch slips."""
         first, after = self.slipping_spans
-        long = (after - first - 1) * PERIOD_S >= SHORTEST_JUDDER_S
+        long = self.slips_for_judder
         found = np.full(len(first), np.nan)
         if long.any():
             found[long] = judder_of(self.torsion_speed_rpm[long], first[long], after[long])

@@ -167,6 +167,7 @@ CRITERIA = (
         'r.m.s. of w_sr from 2 to 20 Hz from the first to the last sample of slipping after '
         'control start, of a linear clutch before t_a',
         f'the clutch slips for less than {SHORTEST_JUDDER_S:g} s after control start',
+        exists=lambda run: run.slips_for_judder,
     ),
     _criterion(
         'shuffle_amplitude',

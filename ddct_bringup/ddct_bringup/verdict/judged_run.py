@@ -12,6 +12,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.meeting import SLIPPING, events_of, first_lock, locked_at
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.vibration import (
+    SHORTEST_JUDDER_S,
     judder,
     shuffle,
     strongest_stretch,
@@ -56,6 +57,12 @@ class JudgedRun:
     def judder(self) -> Values | None:
         """R.m.s. in rpm of w_sr from 2 to 20 Hz while the clutch slips, short locks included."""
         return judder(self.torsion_speed_rpm[self.slipping])
+
+    @property
+    def slips_for_judder(self) -> Any:
+        """Whether the clutch slips long enough for a judder, (R,) of many runs."""
+        slipping = self.slipping
+        return (slipping.stop - slipping.start - 1) * PERIOD_S >= SHORTEST_JUDDER_S
 
     @cached_property
     def strongest(self) -> tuple[Values | None, Values | None]:
@@ -117,7 +124,7 @@ class JudgedRun:
             return None
         return step_at(time_of_step(self.control_start) + time)
 
-    @property
+    @cached_property
     def slipping(self) -> slice:
         """
         Samples from the first to the last of slipping, from control start on.

@@ -116,6 +116,14 @@ def test_judder_of_a_linear_clutch_that_never_comes_together_is_that_of_the_whol
     assert found['judder'] == pytest.approx(4.0 / np.sqrt(2.0), rel=0.05)
 
 
+@pytest.mark.parametrize('samples', [0, 50, 51])
+def test_the_limit_of_judder_does_not_apply_to_a_slip_that_is_too_short_for_it(samples):
+    phase = phases((0, 2), (60, 1), (60 + samples, 2)) if samples else phases((0, 2))
+    run = made_run(np.zeros(301), clutch_phase=phase)
+    judged = JudgedRun(run, CONTROL_START, WINDOW_S, {'missed_steps': 0}, 1.0)
+    assert existing(judged)['judder'] == (samples >= 51)
+
+
 @pytest.mark.parametrize('samples', [15, 50, 51, 100, 101])
 @pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
 def test_judder_needs_half_a_second_of_slipping_one_period_of_2_hz(clutch, samples):
@@ -258,7 +266,7 @@ def test_where_hardly_any_slip_is_to_be_removed_no_least_exists():
 
 def test_what_only_plates_that_stick_have_does_not_exist_for_a_linear_clutch():
     for run, expected in ((made_run(np.zeros(301)), False), (sticking({}, phases((0, 1))), True)):
-        found = existing(JudgedRun(run, CONTROL_START, WINDOW_S, {}, 1.0))
+        found = existing(JudgedRun(run, CONTROL_START, WINDOW_S, {'engagement_time_s': None}, 1.0))
         only = ('time_to_lock', 'peak_temperature', 'releases_after_lock')
         assert all(found[name] == expected for name in only)
         assert found['peak_jerk']
