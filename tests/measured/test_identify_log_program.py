@@ -45,9 +45,9 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     assert all(each['nrmse'] < 0.02 for each in signals.values())
     assert signals['shaft_speed']['white'] is True
     scenario = load_scenario(str(out))
-    assert scenario.name == 'mycar'
+    assert scenario.name == 'drive'
     assert 'drive.csv' in scenario.description
-    assert scenario.adjusted == ()
+    assert [line.split()[0] for line in scenario.adjusted] == ['vehicle.mass_kg', 'load.slope_rad']
     assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
     assert run_headless(RunSettings(scenario), 'pi').steps == scenario.steps
 
@@ -155,13 +155,15 @@ def test_a_bad_log_is_refused_in_one_line_with_its_place(
 @pytest.mark.parametrize(
     ('options', 'complaint'),
     [
-        (['--fix', 'total_ratio'], '--columns, --check, --fix, --set and --out need a log'),
+        (
+            ['--fix', 'total_ratio'],
+            '--columns, --check, --fix, --set, --force and --out need a log',
+        ),
         (['--from', 'a.csv', '--as-printed'], '--as-printed is about the thesis'),
         (['--from', 'a.csv', '--hold-out', '1.5'], '--hold-out is 1.5: give a share'),
         (['--from', 'none.csv'], 'none.csv: cannot be read'),
         (['--from', 'none.mcap'], 'none.mcap: no such file or folder'),
         (['--from', 'a.csv', '--columns', 'none.yaml'], '--columns none.yaml: cannot be read'),
-        (['--from', 'a.csv', '--out', 'my car.yaml'], 'my car'),
     ],
 )
 def test_options_that_make_no_sense_are_refused(

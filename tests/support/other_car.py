@@ -4,9 +4,11 @@ A car that is not ours, simulated by code of its own: a log as another tool woul
 Equations of motion are written here again, from the free bodies, and integrated by scipy.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -61,41 +63,83 @@ class Drive:
 
 
 @cache
-def drive(seed: int = 1) -> Drive:
-    """Return a drive over random torques, straight between points 0.24 s apart."""
+def _solved(seed: int, corners_s: tuple[float, float] = (0.0, 0.0)) -> tuple[Any, Any, Any, Any]:
+    """Return functions of time of a drive: C_m, C_f, the state and its rate."""
     random = np.random.default_rng(seed)
     points = np.arange(0.0, LASTS_S + 0.5, 0.24)
     of_clutch = 110.0 + 90.0 * random.uniform(-1.0, 1.0, len(points))
     of_engine = of_clutch + 40.0 * random.uniform(-1.0, 1.0, len(points))
+    engine_torque = partial(np.interp, xp=points - corners_s[0], fp=of_engine)
+    clutch_torque = partial(np.interp, xp=points - corners_s[1], fp=of_clutch)
     p = TRUE
 
     def motion(t: float, state: np.ndarray) -> list[float]:
         engine, shaft, wheel, wind_up = state
-        clutch_torque = np.interp(t, points, of_clutch)
-        engine_torque = np.interp(t, points, of_engine)
         rate = shaft / p['total_ratio'] - wheel
         half_shaft = p['halfshaft_stiffness'] * wind_up + p['halfshaft_damping'] * rate
         air = 0.5 * 1.2 * 2.1 * 0.32 * (wheel * RADIUS_M) ** 2 * RADIUS_M
+        asked = float(clutch_torque(t))
         return [
-            (engine_torque - clutch_torque - p['engine_damping'] * engine) / p['engine_inertia'],
-            (clutch_torque - half_shaft / p['total_ratio'] - p['shaft_damping'] * shaft)
+            (float(engine_torque(t)) - asked - p['engine_damping'] * engine) / p['engine_inertia'],
+            (asked - half_shaft / p['total_ratio'] - p['shaft_damping'] * shaft)
             / p['shaft_inertia'],
             (half_shaft - ROLLING_N_M - air) / p['vehicle_inertia'],
             rate,
         ]
 
     start = [190.0, 150.0, 150.0 / p['total_ratio'], 0.02]
-    time_s = np.arange(round(LASTS_S / STEP_S) + 1) * STEP_S
     span, tight = (0.0, LASTS_S + STEP_S), {'rtol': 1e-8, 'atol': 1e-8, 'max_step': 0.01}
-    done = solve_ivp(motion, span, start, 'RK45', time_s, **tight)
-    rates = [motion(t, state) for t, state in zip(time_s, done.y.T, strict=True)]
+    done = solve_ivp(motion, span, start, 'RK45', dense_output=True, **tight)
+    return engine_torque, clutch_torque, done.sol, motion
+
+
+@cache
+def drive(seed: int = 1) -> Drive:
+    """Return a drive over random torques, straight between points 0.24 s apart."""
+    engine_torque, clutch_torque, state, motion = _solved(seed)
+    time_s = np.arange(round(LASTS_S / STEP_S) + 1) * STEP_S
+    states = state(time_s)
+    rates = [motion(t, each) for t, each in zip(time_s, states.T, strict=True)]
     return Drive(
         time_s,
-        done.y[:3].T,
-        np.interp(time_s, points, of_engine),
-        np.interp(time_s, points, of_clutch),
+        states[:3].T,
+        engine_torque(time_s),
+        clutch_torque(time_s),
         RADIUS_M * np.array(rates)[:, 2],
     )
+
+
+def _output(state: Any, index: int, times: np.ndarray) -> np.ndarray:
+    return state(times)[index]
+
+
+def late_log(
+    seed: int,
+    delays_s: Mapping[str, float],
+    *,
+    step_s: float = 0.01,
+    mean_of: int = 1,
+    corners_on_rows: bool = False,
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """
+    Return times and signals of a drive whose log has signals late, in s by quantity.
+
+    `mean_of` samples of each row's step are averaged, the row's own the last. The torques have
+    their corners where a row samples them, or at instants of their own.
+    """
+    late_by = [delays_s.get(name, 0.0) for name in ('engine_torque', 'clutch_torque')]
+    corners = (late_by[0], late_by[1]) if corners_on_rows else (0.0, 0.0)
+    engine_torque, clutch_torque, state, _ = _solved(seed, corners)
+    time_s = np.arange(0.1, LASTS_S - 0.1, step_s)
+    within = np.arange(mean_of) * step_s / mean_of
+
+    def late(name: str, values: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        times = time_s - delays_s.get(name, 0.0)
+        return np.mean([values(times - each) for each in within], axis=0)
+
+    signals = {name: late(name, partial(_output, state, i)) for i, name in enumerate(SPEEDS)}
+    torques = {'engine_torque': engine_torque, 'clutch_torque': clutch_torque}
+    return time_s, signals | {name: late(name, each) for name, each in torques.items()}
 
 
 COLUMNS = """\

@@ -18,7 +18,7 @@ from ddct_plant.identification.coefficients import (
     PrintedCoefficients,
 )
 from ddct_plant.identification.fit import Identification, identify_driveline
-from ddct_plant.identification.log_command import add_log_options, identify_log
+from ddct_plant.identification.from_log.command import add_log_options, identify_log
 from ddct_plant.models.printed import CLUTCH_TO_SLIP_AS_PRINTED
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
 from ddct_plant.program.table import Table, print_tables, text_or_dash
@@ -64,8 +64,17 @@ def _run(argv: list[str]) -> int:
         if options.as_printed:
             raise DdctError('--as-printed is about the thesis, --from about a log: give one')
         return identify_log(options)
-    if options.columns or options.check or options.fix or options.out or options.overrides:
-        raise DdctError('--columns, --check, --fix, --set and --out need a log: give --from LOG')
+    if (
+        options.columns
+        or options.check
+        or options.fix
+        or options.out
+        or options.overrides
+        or options.force
+    ):
+        raise DdctError(
+            '--columns, --check, --fix, --set, --force and --out need a log: give --from LOG'
+        )
     coefficients = PRINTED
     if options.as_printed:
         coefficients = PrintedCoefficients(CLUTCH_TO_SLIP_AS_PRINTED)

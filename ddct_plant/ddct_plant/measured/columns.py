@@ -20,6 +20,9 @@ _NOTHING = np.zeros(0)
 LINEAR, HELD = BETWEEN = ('linear', 'held')
 """What a signal does between its samples: a straight line, or it keeps its value."""
 
+MOST_DELAY_S = 0.1
+"""Largest delay of a signal in a log, either way."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -61,6 +64,8 @@ class Column:
     column: str
     unit: str
     between: str = LINEAR
+    delay_s: float | None = None
+    """How late the log has it, in s, where that is known."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,12 @@ class ColumnMap:
     columns: Mapping[str, Column]
     run: Mapping[str, Any]
     """What `score` needs of a run; empty for `identify`."""
+
+    @property
+    def known_delays(self) -> dict[str, float]:
+        """Delays in s that are given, by quantity."""
+        given = {name: each.delay_s for name, each in self.columns.items()}
+        return {name: each for name, each in given.items() if each is not None}
 
 
 def own_columns(*names: str) -> ColumnMap:
@@ -109,9 +120,14 @@ def _column(name: str, content: Any) -> Column:
         raise ParameterError(f'unknown {key}: {close_name(name, QUANTITIES, "columns.")}')
     if not isinstance(content, dict) or not {'column', 'unit'} <= set(content):
         raise ParameterError(f'{key}: give {{column: NAME, unit: UNIT}}')
-    require_known(content, ('column', 'unit', 'between'), prefix=f'{key}.')
+    require_known(content, ('column', 'unit', 'between', 'delay_s'), prefix=f'{key}.')
+    delay = content.get('delay_s')
+    if delay is not None and (type(delay) not in (int, float) or not abs(delay) <= MOST_DELAY_S):
+        raise ParameterError(
+            f'{key}.delay_s is {delay!r}: give a number of s up to {MOST_DELAY_S:g} either way'
+        )
     for part, value in content.items():
-        if not isinstance(value, str):
+        if part != 'delay_s' and not isinstance(value, str):
             raise ParameterError(f'{key}.{part} is {value!r}: give text')
     found = Column(**content)
     if found.between not in BETWEEN:

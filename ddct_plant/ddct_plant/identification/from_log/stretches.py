@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.log_model import Stretch
+from ddct_plant.identification.from_log.model import Stretch
+from ddct_plant.identification.from_log.names import LOAD, TORQUES
+from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 
-TORQUES = ('engine_torque', 'clutch_torque')
-LOAD = 'load_torque'
 FEWEST_SAMPLES = 40
 """Samples of the shortest stretch: 0.4 s at 100 Hz, just over a period when locked."""
 _GAP = 5.0
@@ -111,14 +111,29 @@ def _stretch(
     finer = [1.0 if even else _FOR_UNEVEN]
     finer += [usual / float(np.median(np.diff(log.samples(name)[0]))) for name in TORQUES]
     step = usual / min(max(round(max(finer)), 1), _FINEST)
-    grid_s = time_s[0] + step * np.arange(int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6)) + 1)
+    # A torque that is late, of a speed that is early.
+    before = int(np.ceil(2.0 * MOST_DELAY_S / step))
+    after = before + int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6))
+    grid_s = time_s[0] + step * np.arange(-before, after + 1)
     known = LOAD in log.signals
     load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, speeds[:, 2]))
+    bends = [_bend(log, name, grid_s) for name in TORQUES]
     return Stretch(
         time_s=time_s,
         speeds=speeds,
         grid_s=grid_s,
         torques=np.column_stack([*(log.at(name, grid_s) for name in TORQUES), load]),
+        bends=np.column_stack([*bends, np.zeros(len(grid_s))]),
         held=tuple(name in log.held for name in (*TORQUES, LOAD)),
         load_known=known,
+        known_s=(float(time_s[0]), float(time_s[-1])),
     )
+
+
+def _bend(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
+    """Return the second difference of a torque over a step of its rows, 0 of one that is held."""
+    if name in log.held:
+        return np.zeros(len(grid_s))
+    step = float(np.median(np.diff(log.samples(name)[0])))
+    before, now, after = (log.at(name, grid_s + shift) for shift in (-step, 0.0, step))
+    return before - 2.0 * now + after

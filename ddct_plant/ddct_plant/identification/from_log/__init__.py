@@ -1,0 +1,1 @@
+"""The driveline of a measured car from a log of a drive: fit, verdict, scenario."""

@@ -1,0 +1,107 @@
+"""`identify --from LOG`: the driveline of a measured car, as tables, JSON and a scenario."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import require_place, write_text
+from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.identification.from_log.prediction import predict
+from ddct_plant.identification.from_log.report import content_of, print_fit
+from ddct_plant.identification.from_log.result import PARAMETERS
+from ddct_plant.identification.from_log.scenario import load_of, name_of, replay_of
+from ddct_plant.identification.from_log.stretches import stretches_of
+from ddct_plant.identification.from_log.verdict import reasons_against
+from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
+from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
+from ddct_plant.program.command_line import ProgramParser, show_and_write
+from ddct_plant.scenario.file import scenario_to_yaml
+from ddct_plant.scenario.options import add_scenario_options
+from ddct_plant.scenario.options import scenario_of as base_scenario
+
+NEEDED = (*SPEEDS, *TORQUES)
+HOLD_OUT = 0.3
+
+
+def add_log_options(parser: ProgramParser) -> None:
+    """Add what belongs to --from."""
+    group = parser.add_argument_group('from a log')
+    group.add_argument('--from', dest='log', metavar='LOG', type=Path, help='a CSV log or a bag')
+    group.add_argument(
+        '--columns',
+        metavar='FILE',
+        help='column map: which column holds which quantity; default: those of score '
+        '--signals-csv',
+    )
+    group.add_argument(
+        '--check', metavar='LOG', type=Path, help='another log of the same columns to predict'
+    )
+    group.add_argument(
+        '--hold-out',
+        metavar='SHARE',
+        type=float,
+        default=HOLD_OUT,
+        help='without --check: last share of the log to predict; default: %(default)s',
+    )
+    group.add_argument(
+        '--fix',
+        action='append',
+        default=[],
+        metavar='NAME',
+        choices=PARAMETERS,
+        help=f'keep this parameter as the scenario has it; one of {", ".join(PARAMETERS)}',
+    )
+    group.add_argument(
+        '--force',
+        action='store_true',
+        help='accept a fit that is refused: write the scenario all the same, exit code 0',
+    )
+    group.add_argument('--out', metavar='FILE.yaml', help='write a scenario that replays the log')
+    add_scenario_options(group, set_example='vehicle.wheel_radius_m=0.31')
+
+
+def identify_log(options: argparse.Namespace) -> int:
+    """Fit, predict, print and write; return the exit code."""
+    if not 0.1 <= options.hold_out <= 0.9:
+        raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
+    for option, file in (('--out', options.out), ('--json', options.json)):
+        require_place(option, file)
+    base = base_scenario(options, options.overrides)
+    columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
+    fitted, held_out = _logs(options, columns)
+    known_load, known_delays = load_of(base), columns.known_delays
+    with Console(stderr=True).status('fitting the driveline'):
+        fit = fit_log(fitted, base.driveline, known_load, options.fix, known_delays)
+    predictions = predict(fit, stretches_of(held_out, known_load))
+    reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
+    content = content_of(fit, predictions, reasons, fitted, held_out)
+    show_and_write(options.json, content, lambda: print_fit(content))
+    if reasons and not options.force:
+        kept = '; no scenario is written' if options.out else ''
+        raise DdctError(
+            f'{options.log}: the fit is refused: {reasons[0]}{_more(reasons)}{kept}: mend the log '
+            'or its column map, or accept the fit with --force'
+        )
+    if options.out:
+        whole = read_log(options.log, columns, NEEDED)
+        scenario = replay_of(base, name_of(options.log), fit, whole)
+        write_text(options.out, scenario_to_yaml(scenario))
+    return 0
+
+
+def _more(reasons: Sequence[str]) -> str:
+    return f', and {len(reasons) - 1} more' if len(reasons) > 1 else ''
+
+
+def _logs(options: argparse.Namespace, columns: ColumnMap) -> tuple[MeasuredLog, MeasuredLog]:
+    """Return the log to fit and the one to predict."""
+    log = read_log(options.log, columns, NEEDED)
+    if options.check:
+        return log, read_log(options.check, columns, NEEDED)
+    first, last = float(log.time_s[0]), float(log.time_s[-1])
+    parting = last - options.hold_out * (last - first)
+    return log.part(first, parting), log.part(parting, last)

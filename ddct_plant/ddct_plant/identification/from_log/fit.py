@@ -1,0 +1,153 @@
+"""Fit a driveline, and how late its signals are, to the log of a drive."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.from_log.delays import (
+    BEND_OF,
+    DELAYED,
+    REFERENCE,
+    left_of,
+    without_ends,
+)
+from ddct_plant.identification.from_log.dependence import Dependence, dependences
+from ddct_plant.identification.from_log.determined import not_determined
+from ddct_plant.identification.from_log.model import Stretch
+from ddct_plant.identification.from_log.names import LOAD, TORQUES
+from ddct_plant.identification.from_log.problem import LogProblem
+from ddct_plant.identification.from_log.result import PARAMETERS, SLIP, LogFit
+from ddct_plant.identification.from_log.stretches import (
+    KnownLoad,
+    stretches_of,
+    torques_are_noisy,
+    with_more_torque_noise,
+)
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.models.parameters import DrivelineParameters
+
+RATIOS = (1.5, 60.0)
+"""Total ratios that gearbox and final drive of a car or truck can have."""
+_ROLLING = 1.0
+"""Wheel speed in rad/s from which the ratio of the speeds says something."""
+_BENT = 0.02
+"""
+Share of the step of a torque that is linear between samples by which its delay may deviate.
+
+The torque of our own actuator is 0.02 steps later between rows of 10 ms than the line is.
+"""
+_MORE_NOISE = 4
+"""How often the noise of the torques is doubled to see what it does to the fit."""
+_ALL_FITTED: Mapping[str, float] = {}
+
+
+def fit_log(
+    log: MeasuredLog,
+    start: DrivelineParameters,
+    known_load: KnownLoad,
+    fixed: Sequence[str] = (),
+    known_delays: Mapping[str, float] = _ALL_FITTED,
+) -> LogFit:
+    """
+    Fit driveline and delays to a log; `fixed` parameters keep the value of `start`.
+
+    `known_delays` are those that are not fitted, in s by quantity. That of the engine speed is 0
+    if it is not given: the others are found against it.
+
+    White noise of the torques pulls a fit aside, as it is no torque of the car. So it is fitted
+    again with that noise doubled; what moves is moved back, and counts as a deviation (simulation
+    and extrapolation, Cook and Stefanski 1994). What the log does not determine is held, and
+    named. Raise DdctError when that is all, or when the fit does not converge.
+    """
+    stretches = stretches_of(log, known_load)
+    if 'total_ratio' not in fixed:
+        start = replace(start, total_ratio=_ratio(log, stretches))
+    noisier = [
+        stretches_of(with_more_torque_noise(log, seed), known_load)
+        for seed in range(_MORE_NOISE)
+        if torques_are_noisy(log)
+    ]
+    signals = [name for name in DELAYED if name in log.signals]
+    reference = known_delays.get(REFERENCE, 0.0)
+    delays = dict.fromkeys((REFERENCE, *signals), reference) | dict(known_delays)
+    free = [name for name in PARAMETERS if name not in fixed]
+    free += [name for name in signals if name not in known_delays]
+    bends = [f'{BEND_OF}{name}' for name in TORQUES if name not in log.held]
+    weak: list[str] = []
+    while len(weak) < len(free):
+        fitted = [name for name in (*free, *bends) if name not in weak]
+        problem = LogProblem(stretches, start, delays, fitted)
+        x, covariance, jacobian = problem.solve()
+        moved = problem.moved_by(x, noisier) if noisier else np.zeros(len(x))
+        std = np.sqrt(np.diag(covariance) + moved**2)
+        found = not_determined(fitted, std, np.abs(moved))
+        if not found:
+            used = [problem.used(each) for each in (stretches, *noisier)]
+            dependent = dependences(problem.values(x), problem.noise, used[0], jacobian, used[1:])
+            deviations = problem.in_units(std) | _between(log, fitted, problem.in_units(std))
+            return _result(problem, x - moved, deviations, weak, stretches, dependent)
+        weak += found
+    raise DdctError(
+        f'{log.path}: the log determines none of {", ".join(free)}: take one in which torques and '
+        'speeds change'
+    )
+
+
+def _between(
+    log: MeasuredLog, fitted: Sequence[str], deviations: Mapping[str, float]
+) -> dict[str, float]:
+    """Return the deviations in s of delays whose torques may bend between their samples."""
+    return {
+        name: math.hypot(deviations[name], _BENT * float(np.median(np.diff(log.samples(name)[0]))))
+        for name in (*TORQUES, LOAD)
+        if name in fitted and name not in log.held
+    }
+
+
+def _ratio(log: MeasuredLog, stretches: Sequence[Stretch]) -> float:
+    """Return w_p over w_r; raise DdctError where no gearbox has that."""
+    speeds = np.vstack([each.speeds for each in stretches])
+    rolling = speeds[np.abs(speeds[:, 2]) > _ROLLING]
+    ratio = float(np.median(rolling[:, 1] / rolling[:, 2])) if len(rolling) else math.nan
+    if not RATIOS[0] <= ratio <= RATIOS[1]:
+        raise DdctError(
+            f'{log.path}: shaft_speed over wheel_speed is {ratio:.4g} as a rule, a car has '
+            f'{RATIOS[0]:g} to {RATIOS[1]:g}: check both units, or give --fix total_ratio'
+        )
+    return ratio
+
+
+def _result(
+    problem: LogProblem,
+    x: np.ndarray,
+    deviations: Mapping[str, float],
+    weak: Sequence[str],
+    stretches: Sequence[Stretch],
+    dependent: Sequence[Dependence],
+) -> LogFit:
+    """Return the fit with its deviations in the units of the parameters."""
+    values = problem.values(x)
+    stretches = without_ends(stretches, values)
+    loads = [left_of(values, each)[1][-1] for each in stretches if not each.load_known]
+    lengths = [len(each.time_s) for each in stretches if not each.load_known]
+    return LogFit(
+        values={name: values[name] for name in PARAMETERS},
+        std={name: each for name, each in deviations.items() if name in PARAMETERS},
+        delays={name: each for name, each in values.items() if name in (REFERENCE, *DELAYED)},
+        delay_std={name: each for name, each in deviations.items() if name in DELAYED},
+        bends={name: each for name, each in values.items() if name.startswith(BEND_OF)},
+        undetermined=tuple(weak),
+        noise=problem.noise,
+        dependences=dict(zip(SPEEDS, dependent, strict=True)),
+        spreads=_spreads(stretches),
+        load_torque=float(np.average(loads, weights=lengths)) if loads else None,
+    )
+
+
+def _spreads(stretches: Sequence[Stretch]) -> dict[str, float]:
+    speeds = np.vstack([each.speeds for each in stretches])
+    spreads = np.column_stack([speeds, speeds[:, 0] - speeds[:, 1]]).std(axis=0).tolist()
+    return dict(zip((*SPEEDS, SLIP), spreads, strict=True))

@@ -1,0 +1,80 @@
+"""What a fitted driveline makes of data that took no part in the fit."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_plant.identification.from_log.delays import left_of, without_ends
+from ddct_plant.identification.from_log.model import Stretch
+from ddct_plant.identification.from_log.noise import whiteness
+from ddct_plant.identification.from_log.result import SLIP, LogFit
+from ddct_plant.identification.from_log.stretches import white_noise
+from ddct_plant.measured.log import SPEEDS
+
+WHITE_FROM = 0.01
+"""Smallest p-value of residuals that count as white."""
+_STILL = 1e-9
+"""Deviation in rad/s of a speed that does not change."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """One speed of the data that were held out, beside what the fitted driveline makes of it."""
+
+    signal: str
+    rms_rad_s: float
+    """R.m.s. of measured less predicted."""
+    nrmse: float | None
+    """The same over the standard deviation of what was measured; None where it is constant."""
+    error: float
+    """R.m.s. less white noise, over the deviation here or in the fitted data, what is larger."""
+    whiteness_p: float | None
+    """p of Ljung and Box for the residuals behind the fit's noise model; None for the slip."""
+    torque_p: float | None
+    """p of the fit's residuals for noise that does not follow the torques; None for the slip."""
+
+    @property
+    def white(self) -> bool | None:
+        """Whether nothing but noise is left, as far as the tests show; None where not tested."""
+        if self.whiteness_p is None or self.torque_p is None:
+            return None
+        return min(self.whiteness_p, self.torque_p) >= WHITE_FROM
+
+
+def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
+    """
+    Return the prediction of w_m, w_p, w_r and of the slip w_m - w_p.
+
+    The speeds at the start of each stretch, and its C_load where it was not measured, are fitted
+    to it, the driveline is not.
+    """
+    values = fit.values | fit.delays | fit.bends
+    stretches = without_ends(stretches, values)
+    left = [left_of(values, each)[0] for each in stretches]
+    p_values = whiteness([fit.noise.white(each) for each in left])
+    measured, residual = (
+        np.column_stack([speeds, speeds[:, 0] - speeds[:, 1]])
+        for speeds in (np.vstack([each.speeds for each in stretches]), np.vstack(left))
+    )
+    found = []
+    for index, name in enumerate((*SPEEDS, SLIP)):
+        rms, spread = (
+            float(np.sqrt(np.mean(residual[:, index] ** 2))),
+            float(measured[:, index].std()),
+        )
+        noise = white_noise(residual[:, index])
+        tested = name in SPEEDS
+        found.append(
+            Prediction(
+                signal=name,
+                rms_rad_s=rms,
+                nrmse=rms / spread if spread else None,
+                error=math.sqrt(max(rms**2 - noise**2, 0.0))
+                / max(spread, fit.spreads[name], _STILL),
+                whiteness_p=p_values[index] if tested else None,
+                torque_p=fit.dependences[name].p_value if tested else None,
+            )
+        )
+    return found

@@ -1,0 +1,154 @@
+"""One fit of driveline parameters to the stretches of a log, and the noise that it leaves."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import scipy
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.from_log.delays import (
+    BEND_OF,
+    BEND_SCALE,
+    BENDS,
+    DELAY_SCALE_S,
+    DELAYED,
+    left_of,
+    sampling_of,
+    without_ends,
+)
+from ddct_plant.identification.from_log.model import NUISANCE, Stretch, responses
+from ddct_plant.identification.from_log.noise import NoiseModel, fit_noise
+from ddct_plant.measured.columns import MOST_DELAY_S
+from ddct_plant.models.parameters import DrivelineParameters
+
+DAMPINGS = ('engine_damping', 'shaft_damping')
+"""These may be zero, so their values are fitted; of all others the logarithms are."""
+_PRIOR_STD = float(np.log(10.0))
+"""Deviation of a logarithm from its start: what the log does not show stays where it was."""
+_DELAY_PRIOR = MOST_DELAY_S / DELAY_SCALE_S
+"""The same of a delay, over its scale."""
+_INSIDE = 0.999
+"""Share of the bounds within which a fit starts."""
+_BOUND = float(np.log(1000.0))
+_LEAST_SPREAD = 1e-9
+"""Spread in rad/s of a speed that does not change."""
+_MOST_ROUNDS = 5
+_COARSE = 1e-4
+"""Relative change of cost or x at which a fit that is only near ends."""
+_SETTLED = 0.05
+"""Change of every estimate, over its deviation, after which no further round is made."""
+
+
+class LogProblem:
+    """
+    One fit of the parameters and delays called `free`.
+
+    x holds ln(value / start), of a damping the change over torque per speed, of a delay the change
+    over DELAY_SCALE_S, of a bend it over BEND_SCALE. The nuisances are linear, so they are
+    projected out of the whitened residuals.
+    """
+
+    def __init__(
+        self,
+        stretches: Sequence[Stretch],
+        start: DrivelineParameters,
+        delays: Mapping[str, float],
+        free: Sequence[str],
+    ) -> None:
+        self._whole, self.free = stretches, free
+        self._start: dict[str, float] = dict(vars(start)) | dict(delays)
+        self._at: Mapping[str, float] = self._start
+        torques = np.concatenate([each.torques[:, :2].ravel() for each in stretches])
+        speeds = np.concatenate([each.speeds[:, :2].ravel() for each in stretches])
+        self.damping = float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
+        spread = np.vstack([np.diff(each.speeds, axis=0) for each in stretches]).std(axis=0)
+        self.noise = NoiseModel(np.zeros((3, 0)), np.diag(np.maximum(spread, _LEAST_SPREAD)))
+
+    def values(self, x: np.ndarray) -> dict[str, float]:
+        """Return every parameter and delay by name."""
+        found = dict(self._start)
+        for name, change in zip(self.free, x.tolist(), strict=True):
+            if name in DAMPINGS:
+                found[name] += change * self.damping
+            elif name in DELAYED:
+                found[name] += change * DELAY_SCALE_S
+            elif name.startswith(BEND_OF):
+                found[name] = change * BEND_SCALE
+            else:
+                found[name] *= float(np.exp(change))
+        return found
+
+    def in_units(self, std: np.ndarray) -> dict[str, float]:
+        """Return deviations of x by name: of a damping, delay or bend its own, else relative."""
+        scales = dict.fromkeys(DAMPINGS, self.damping) | dict.fromkeys(DELAYED, DELAY_SCALE_S)
+        scales |= dict.fromkeys(BENDS, BEND_SCALE)
+        return {n: scales.get(n, 1.0) * e for n, e in zip(self.free, std.tolist(), strict=True)}
+
+    def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """
+        Fit, and model the noise, in turn; return x, its covariance and the Jacobian behind it.
+
+        The first fit takes the noise as white: what a wrong start leaves is no noise, and to
+        whiten it would hide the way. It goes over all samples, later ones over those whose torques
+        the log has at the delays found.
+        """
+        x = self._fitted(np.zeros(len(self.free)), self._whole, _COARSE)[0]
+        for _ in range(_MOST_ROUNDS):
+            self._at = self.values(x)
+            stretches = self.used(self._whole)
+            left = [left_of(self.values(x), each)[0] for each in stretches]
+            self.noise = fit_noise(left, len(x) + NUISANCE * len(left))
+            before = x
+            x, jacobian = self._fitted(x, stretches)
+            covariance = np.linalg.inv(jacobian.T @ jacobian)
+            if np.all(np.abs(x - before) < _SETTLED * np.sqrt(np.diag(covariance))):
+                break
+        return x, covariance, jacobian[: -len(x)]
+
+    def used(self, stretches: Sequence[Stretch]) -> list[Stretch]:
+        """Return the samples of stretches that the last round of the fit took."""
+        return without_ends(stretches, self._at)
+
+    def moved_by(self, x: np.ndarray, others: Sequence[Sequence[Stretch]]) -> np.ndarray:
+        """Return how far the fits to other stretches of the same noise are from x on average."""
+        fits = [self._fitted(x, self.used(each), _COARSE)[0] for each in others]
+        return np.mean(fits, axis=0) - x
+
+    def _fitted(
+        self, x: np.ndarray, stretches: Sequence[Stretch], settled: float = 1e-7
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return x of the best fit, and the Jacobian there, the rows of the prior last."""
+        answer = scipy.optimize.least_squares(
+            self._residuals,
+            np.clip(x, -self._bounds * _INSIDE, self._bounds * _INSIDE),
+            bounds=(-self._bounds, self._bounds),
+            x_scale='jac',
+            ftol=settled,
+            xtol=settled,
+            args=(stretches,),
+        )
+        if not answer.success:
+            raise DdctError(f'the fit to the log does not converge: {answer.message}')
+        return answer.x, answer.jac
+
+    @property
+    def _bounds(self) -> np.ndarray:
+        delay = MOST_DELAY_S / DELAY_SCALE_S
+        return np.array([delay if name in DELAYED else _BOUND for name in self.free])
+
+    def _residuals(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
+        """Return what is left of the whitened residuals of all stretches, and x over its prior."""
+        parts = []
+        values = self.values(x)
+        for stretch in stretches:
+            sampling = sampling_of(values, load_known=stretch.load_known)
+            forced, basis = responses(values, sampling, stretch)
+            left = self.noise.white(stretch.speeds - forced).ravel()
+            directions = np.linalg.qr(self.noise.white(basis).reshape(len(left), NUISANCE))[0]
+            parts.append(left - directions @ (directions.T @ left))
+        return np.concatenate([*parts, x / self._prior])
+
+    @property
+    def _prior(self) -> np.ndarray:
+        kinds = dict.fromkeys(DELAYED, _DELAY_PRIOR) | dict.fromkeys(BENDS, 1.0)
+        return np.array([kinds.get(name, _PRIOR_STD) for name in self.free])

@@ -1,0 +1,196 @@
+"""What a base scenario says of a measured car, and the scenario that replays its log."""
+
+import dataclasses
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ddct_plant.base.errors import LONGEST_NAME, DdctError
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.identification.from_log.delays import left_of, without_ends
+from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
+from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
+from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.models.engine import TorqueProfile
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.scenario.consistency import AGREE
+from ddct_plant.scenario.csv_profiles import MOST_ROWS
+from ddct_plant.scenario.scenario import InitialSpeeds, Scenario
+
+STEEPEST_RAD = 0.6
+"""Slope that a scenario may have."""
+_LEVEL_RAD = 1e-4
+"""Change of the slope that nobody notices: 0.1 m in a kilometre."""
+_PIECES = 10
+"""Instants of a period over which C_m is averaged."""
+_MOVED = ('driveline.', 'vehicle.mass_kg', 'gear')
+"""Beginnings of what a base scenario says of values that the log replaces."""
+
+
+def load_of(base: Scenario) -> KnownLoad:
+    """Return the drag of the base scenario; all else of C_load is a constant that is fitted."""
+    road = RoadLoad(base.load, base.vehicle)
+    constant = road.torque(-base.load.wind_speed_m_s)
+
+    def drag(wheel_speed: np.ndarray) -> np.ndarray:
+        speeds = wheel_speed * base.vehicle.wheel_radius_m
+        return np.array([road.torque(each) for each in speeds.tolist()]) - constant
+
+    return drag
+
+
+def name_of(log: Path) -> str:
+    """Return what a scenario of a log is called: as its file, of letters that a name may have."""
+    plain = re.sub(r'[^A-Za-z0-9._-]', '_', log.stem).lstrip('.-')
+    return plain[:LONGEST_NAME] or 'log'
+
+
+def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scenario:
+    """
+    Return `base` with the driveline of the fit and the drive of the log, from its first row on.
+
+    The log gives C_m, the speeds at the start and the duration. The wheel radius stays and the
+    mass is J_v / r_w^2. The slope is the one with which rolling resistance and slope make the
+    fitted C_load; it stays where C_load was measured. What is moved is said in `adjusted`. Raise
+    DdctError for a C_load that no slope makes, and for a log that is too short.
+    """
+    start_s, steps = _span(log, fit)
+    moved = _with_car(base, fit)
+    moved = _with_window(moved, time_of_step(steps))
+    return dataclasses.replace(
+        moved,
+        name=name,
+        description=(
+            f'driveline and drive of {log.path.name} (SHA-256 {log.digest}...) from '
+            f'{start_s:.6g} s on: fitted {", ".join(fit.std)}; all else as in the scenario '
+            f'{base.name}'
+        ),
+        duration_s=time_of_step(steps),
+        initial=_initial(base, fit, log, start_s),
+        **_torque(moved, fit, log, start_s, steps),
+    )
+
+
+def _span(log: MeasuredLog, fit: LogFit) -> tuple[float, int]:
+    """Return the first time of the log at which all is known, and the whole periods from there."""
+    stretches = stretches_of(log, lambda speeds: np.zeros(len(speeds)))
+    first, last = stretches[0].time_s[0], stretches[-1].time_s[-1]
+    steps = int(math.floor((last - first) / PERIOD_S + 1e-6))
+    return float(first), steps
+
+
+def _torque(
+    base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float, steps: int
+) -> dict[str, Any]:
+    """
+    Return the profile of C_m, its means over whole periods, and what is adjusted for it.
+
+    An engine keeps its torque over a period, so the mean is what does the same to the car.
+    """
+    every = -(-steps // MOST_ROWS)
+    periods = np.arange(0, steps, every)
+    pieces = (np.arange(_PIECES) + 0.5) / _PIECES
+    times = (periods[:, None] + pieces) * PERIOD_S + start_s + fit.delays['engine_torque']
+    means = log.at('engine_torque', times).mean(axis=1)
+    adjusted = list(base.adjusted)
+    if means.min() < 0.0:
+        adjusted.append(
+            f'engine.torque_n_m is 0 where the log has less, down to {means.min():.4g} N m: a '
+            'profile has no engine braking'
+        )
+    if every > 1:
+        adjusted.append(
+            f'engine.torque_n_m has a point every {every * PERIOD_S:g} s: a profile has at most '
+            f'{MOST_ROWS} points'
+        )
+    profile = TorqueProfile(
+        tuple(time_of_step(int(each)) for each in periods),
+        tuple(np.maximum(means, 0.0).tolist()),
+    )
+    return {'engine': profile, 'adjusted': tuple(adjusted)}
+
+
+def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> InitialSpeeds:
+    """Return the fitted speeds of both plates at the start, one speed where no slip is known."""
+    values = fit.values | fit.delays | fit.bends
+    (first, *_) = without_ends(stretches_of(log, load_of(base)), values)
+    left = left_of(values, first)[0]
+    at = [
+        float(
+            np.interp(
+                start_s + fit.delays[name], first.time_s, first.speeds[:, column] - left[:, column]
+            )
+        )
+        for column, name in enumerate(('engine_speed', 'shaft_speed'))
+    ]
+    engine, shaft = (max(each, 0.0) for each in at)
+    if abs(engine - shaft) <= float(np.std(left[:, 0] - left[:, 1])):
+        engine = shaft = (engine + shaft) / 2.0
+    return InitialSpeeds(engine_speed_rad_s=engine, shaft_speed_rad_s=shaft)
+
+
+def _with_car(base: Scenario, fit: LogFit) -> Scenario:
+    """Return the base with the car of the fit, and with lines of what moved with it."""
+    driveline, radius = fit.parameters, base.vehicle.wheel_radius_m
+    mass = driveline.vehicle_inertia / radius**2
+    lines = [line for line in base.adjusted if not line.startswith(_MOVED)]
+    if not math.isclose(mass, base.vehicle.mass_kg, rel_tol=AGREE):
+        lines.append(
+            f'vehicle.mass_kg moved from {base.vehicle.mass_kg:g} to {mass:g}: J_v = m_v r_w^2, '
+            f'with vehicle.wheel_radius_m {radius:g} and driveline.vehicle_inertia '
+            f'{driveline.vehicle_inertia:g} of the log'
+        )
+    same_gear = driveline.total_ratio == base.driveline.total_ratio
+    if base.gear is not None and not same_gear:
+        lines.append(f'gear is now none, as driveline.total_ratio is {driveline.total_ratio:g}')
+    for name, value in fit.values.items():
+        if value < -NO_DAMPING:
+            lines.append(f'driveline.{name} is 0: the log gave {value:.4g}')
+    moved = dataclasses.replace(
+        base,
+        vehicle=dataclasses.replace(base.vehicle, mass_kg=mass),
+        driveline=driveline,
+        gear=base.gear if same_gear else None,
+    )
+    if fit.load_torque is not None and not base.slope.given:
+        slope = _slope(moved, fit.load_torque)
+        if not math.isclose(slope, base.load.slope_rad, abs_tol=_LEVEL_RAD):
+            lines.append(
+                f'load.slope_rad moved from {base.load.slope_rad:g} to {slope:.4g}: the log has a '
+                f'C_load of {fit.load_torque:.4g} N m besides drag'
+            )
+        moved = dataclasses.replace(moved, load=dataclasses.replace(base.load, slope_rad=slope))
+    return dataclasses.replace(moved, adjusted=tuple(lines))
+
+
+def _with_window(scenario: Scenario, duration_s: float) -> Scenario:
+    """Return the scenario with a score window that ends with the log at the latest."""
+    first, last = scenario.score_window_s
+    if duration_s <= first:
+        raise DdctError(
+            f'the log lasts {duration_s:g} s, and score_window_s starts at {first:g} s: give an '
+            'earlier one, such as --set control_start_s=0.1 --set score_window_s=[0.1,0.5]'
+        )
+    if last <= duration_s:
+        return scenario
+    line = f'score_window_s moved from {[first, last]} to {[first, duration_s]} s: the log ends'
+    return dataclasses.replace(
+        scenario, score_window_s=(first, duration_s), adjusted=(*scenario.adjusted, line)
+    )
+
+
+def _slope(scenario: Scenario, load_torque: float) -> float:
+    """Return the slope a in rad with m g (mu cos a + sin a) r_w = `load_torque`."""
+    vehicle, rolling = scenario.vehicle, scenario.load.rolling_coefficient
+    weight_torque = vehicle.mass_kg * vehicle.gravity_m_s2 * vehicle.wheel_radius_m
+    share = load_torque / weight_torque / math.hypot(1.0, rolling)
+    slope = math.asin(share) - math.atan(rolling) if abs(share) <= 1.0 else math.inf
+    if abs(slope) > STEEPEST_RAD:
+        raise DdctError(
+            f'the fitted C_load of {load_torque:.4g} N m at the wheels is no road for a car of '
+            f'{vehicle.mass_kg:.4g} kg: check units and signs of the torques'
+        )
+    return slope

@@ -1,0 +1,173 @@
+"""Whether a fit to a log can be trusted, and if not, why."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ddct_plant.identification.from_log.model import Stretch
+from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.identification.from_log.prediction import Prediction
+from ddct_plant.identification.from_log.problem import DAMPINGS
+from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
+from ddct_plant.measured.columns import MOST_DELAY_S
+from ddct_plant.measured.log import SPEEDS
+
+USUAL = {
+    'engine_inertia': (0.05, 1.0),
+    'shaft_inertia': (0.001, 0.1),
+    'halfshaft_damping': (1.0, 5000.0),
+    'halfshaft_stiffness': (500.0, 100_000.0),
+    'total_ratio': (2.0, 25.0),
+    'vehicle_inertia': (40.0, 800.0),
+}
+"""Ranges of cars, in SI units. A value outside was probably measured in other units."""
+MOST_DAMPING = 1.0
+"""Largest damping of engine or shaft in N m s/rad: 200 N m at 2000 rpm."""
+ENGINE_RAD_S = (40.0, 800.0)
+"""Median speeds of an engine that drives a car: from a stall at 380 rpm to 7600 rpm."""
+MOST_ERROR = 0.1
+"""Largest r.m.s. of a prediction less the noise, over the deviation of the speed."""
+DEPENDS_BELOW = 5e-4
+"""p-value below which a residual depends on the torques."""
+MATERIAL = 2e-4
+"""Share of a speed's deviation up to which what depends on them does not matter."""
+NEGATIVE_SIGMAS = 3.0
+"""Deviations below 0 from which a damping is negative beyond chance: one in 700 of no damping."""
+LEAD_S = 0.02
+"""How far C_f may be ahead of C_m before it looks like a request."""
+_AT_BOUND = 0.99
+_SMOOTHED = 5
+"""Samples over which acceleration and torque are averaged to find a wrong sign."""
+_FOLLOWS = 0.5
+"""Correlation, the wrong way, of the engine's acceleration with its torques."""
+
+
+def reasons_against(
+    fit: LogFit, predictions: Sequence[Prediction], stretches: Sequence[Stretch]
+) -> list[str]:
+    """Return why a fit to `stretches` cannot be trusted, in sentences; none if it can."""
+    return [
+        *_speed_reasons(stretches),
+        *_sign_reasons(stretches),
+        *_error_reasons(predictions),
+        *_parameter_reasons(fit),
+        *_residual_reasons(fit),
+    ]
+
+
+def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
+    median = float(np.median(np.concatenate([each.speeds[:, 0] for each in stretches])))
+    lowest, highest = ENGINE_RAD_S
+    if not lowest <= median <= highest:
+        yield (
+            f'engine_speed is {median:.4g} rad/s ({median * 30.0 / np.pi:.4g} rpm) in the middle, '
+            f'of cars it is {lowest:g} to {highest:g} rad/s: check its unit'
+        )
+
+
+def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
+    """Compare the engine's acceleration with C_m - C_f, which a wrong sign or a swap turns."""
+    work = [(np.diff(each.speeds[:, 0]), np.diff(_impulse(each))) for each in stretches]
+    change, impulse = (np.concatenate(parts) for parts in zip(*work, strict=True))
+    smooth = np.ones(_SMOOTHED) / _SMOOTHED
+    smoothed = [np.convolve(each, smooth, 'valid') for each in (change, impulse)]
+    if not all(each.std() for each in smoothed):
+        return
+    correlation = float(np.corrcoef(smoothed[0], smoothed[1])[0, 1])
+    if correlation < -_FOLLOWS:
+        yield (
+            f'the engine slows down where {TORQUES[0]} exceeds {TORQUES[1]} (correlation '
+            f'{correlation:.2f}): are the two columns swapped, or is a sign wrong?'
+        )
+
+
+def _impulse(stretch: Stretch) -> np.ndarray:
+    """Return the integral of C_m - C_f over time in N m s at the samples, (n,)."""
+    step = stretch.grid_s[1] - stretch.grid_s[0]
+    excess = stretch.torques[:, 0] - stretch.torques[:, 1]
+    return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(excess) * step)
+
+
+def _error_reasons(predictions: Sequence[Prediction]) -> Iterator[str]:
+    for each in predictions:
+        if each.error > MOST_ERROR:
+            yield (
+                f'the held-out {each.signal} is missed by {each.rms_rad_s:.3g} rad/s r.m.s., '
+                f'{100.0 * each.error:.3g} % of its deviation beyond noise (at most '
+                f'{100.0 * MOST_ERROR:g} %)'
+            )
+
+
+def _parameter_reasons(fit: LogFit) -> Iterator[str]:
+    for name in fit.std:
+        value = fit.values[name]
+        lowest, highest = fit.interval(name) or (value, value)
+        interval = f'{name} is {value:.4g} ({lowest:.4g} to {highest:.4g})'
+        if name in DAMPINGS and value < -NEGATIVE_SIGMAS * fit.std[name]:
+            yield f'{interval}: a damping cannot be negative'
+        elif name in DAMPINGS and lowest > MOST_DAMPING:
+            yield f'{interval}: of cars it is below {MOST_DAMPING:g}: check the units'
+        elif name in USUAL and not USUAL[name][0] <= value <= USUAL[name][1]:
+            low, high = USUAL[name]
+            yield f'{interval}, of cars it is {low:g} to {high:g}: check the units of the columns'
+    for name in fit.delay_std:
+        if abs(fit.delays[name]) > _AT_BOUND * MOST_DELAY_S:
+            yield (
+                f'the delay of {name} is beyond {1e3 * MOST_DELAY_S:g} ms: shift the column, or '
+                'check that it belongs to this drive'
+            )
+
+
+def _residual_reasons(fit: LogFit) -> Iterator[str]:
+    for name, each in fit.dependences.items():
+        material = each.rms_rad_s > MATERIAL * fit.spreads[name]
+        if material and each.p_value < DEPENDS_BELOW:
+            yield (
+                f'what the fit leaves of {name} is not noise, as it follows the torques '
+                f'({each.rms_rad_s:.2g} rad/s, p {each.p_value:.1g}): the log has something that '
+                'the model lacks, and the intervals do not count it'
+            )
+
+
+def doubts(fit: LogFit, predictions: Sequence[Prediction]) -> list[str]:
+    """Return what a reader of a fit should know besides, in sentences."""
+    return [*_undetermined(fit), *_coloured(fit, predictions), *_zeroed(fit), *_leading(fit)]
+
+
+def _undetermined(fit: LogFit) -> Iterator[str]:
+    if fit.undetermined:
+        yield (
+            f'the log does not determine {", ".join(_named(each) for each in fit.undetermined)}: '
+            'the scenario keeps its value, a delay is taken as 0, and the other intervals hold '
+            'for that value'
+        )
+
+
+def _named(name: str) -> str:
+    return f'the delay of {name}' if name in (*SPEEDS, *TORQUES, 'load_torque') else name
+
+
+def _coloured(fit: LogFit, predictions: Sequence[Prediction]) -> Iterator[str]:
+    coloured = [each.signal for each in predictions if each.white is False]
+    if coloured:
+        yield (
+            f'what is left of {", ".join(coloured)} is not noise alone: the model lacks something '
+            'that the log has, which the intervals do not count'
+        )
+
+
+def _zeroed(fit: LogFit) -> Iterator[str]:
+    for name in DAMPINGS:
+        if name in fit.std and fit.values[name] < -NO_DAMPING:
+            yield f'{name} is {fit.values[name]:.3g}, and the new scenario has 0'
+
+
+def _leading(fit: LogFit) -> Iterator[str]:
+    """Look for a clutch torque that is asked for, not transmitted."""
+    ahead = fit.delays[TORQUES[0]] - fit.delays[TORQUES[1]]
+    if ahead > LEAD_S:
+        yield (
+            f'{TORQUES[1]} is {1e3 * ahead:.3g} ms ahead of {TORQUES[0]}: if it is a request, its '
+            'delay is that of the actuator, whose dynamics the model lacks; log the torque that '
+            'is transmitted'
+        )

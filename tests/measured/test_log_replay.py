@@ -1,0 +1,104 @@
+"""The scenario that `identify` writes replays the log: its torque, speeds, duration and name."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.logs import drive_log, noisy_log, rows_late
+from support.other_car import COLUMNS, drive, write_csv
+
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.identification.identify import main
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+OTHER_CAR = (
+    'vehicle.mass_kg=1900',
+    'driveline.engine_inertia=0.3',
+    'initial.engine_speed_rad_s=185',
+    'initial.shaft_speed_rad_s=150',
+    'engine.torque_n_m=[20,220]',
+)
+TOLERANCE = 0.01
+"""R.m.s. of replayed less logged, over the deviation of the speed in the log."""
+
+
+def written(log: MeasuredLog, folder: Path) -> Scenario:
+    """Return what `identify` writes of a log."""
+    columns = ['time_s', *(f'{name}_rad_s' for name in SPEEDS)]
+    columns[2] = 'primary_shaft_speed_rad_s'
+    columns += ['engine_torque_n_m', 'primary_shaft_effort_n_m']
+    values = [log.time_s, *(log.signals[n] for n in (*SPEEDS, 'engine_torque', 'clutch_torque'))]
+    rows = [','.join(f'{each:.9g}' for each in row) for row in zip(*values, strict=True)]
+    file = folder / 'tip in.csv'
+    file.write_text('\n'.join([','.join(columns), *rows]) + '\n')
+    out = folder / 'mine.yaml'
+    assert main(['--from', str(file), '--out', str(out), '--fix', 'engine_damping']) == 0
+    return load_scenario(str(out))
+
+
+@pytest.mark.parametrize('rows', [0, 2])
+def test_a_drive_of_a_known_plant_comes_back_from_the_scenario_of_its_log(
+    tmp_path: Path, rows: int
+) -> None:
+    """The base scenario is another car from other speeds; with 2 rows C_m and C_f are late."""
+    true = drive_log(tmp_path, 'pi', OTHER_CAR)
+    log = noisy_log(true, 0, 0.05)
+    if rows:
+        log = rows_late(log, ('engine_torque', 'clutch_torque'), rows)
+    scenario = written(log, tmp_path)
+    assert scenario.name == 'tip_in'
+    assert scenario.duration_s == pytest.approx(3.0 - 0.01 * rows)
+    assert scenario.initial.engine_speed_rad_s == pytest.approx(185.0, abs=0.5)
+    run = run_headless(RunSettings(scenario), 'pi')
+    replayed = np.array(run.joint_speed)[:, :3]
+    speeds = np.column_stack([true.signals[name] for name in SPEEDS])[rows:]
+    speeds = speeds[: len(replayed)]
+    # With late rows the control of the replay starts 20 ms of the drive later.
+    loose = TOLERANCE if not rows else 5.0 * TOLERANCE
+    error = np.sqrt(np.mean((replayed[: len(speeds)] - speeds) ** 2, axis=0))
+    assert np.all(error < loose * speeds.std(axis=0))
+
+
+def test_what_is_adjusted_is_said_and_true(tmp_path: Path) -> None:
+    scenario = written(noisy_log(drive_log(tmp_path, 'pi', OTHER_CAR), 0, 0.05), tmp_path)
+    mass, inertia = scenario.vehicle.mass_kg, scenario.driveline.vehicle_inertia
+    (line,) = [line for line in scenario.adjusted if 'vehicle.mass_kg' in line]
+    assert f'moved from 1500 to {mass:g}' in line
+    assert f'{inertia:g} of the log' in line
+    assert mass == pytest.approx(inertia / scenario.vehicle.wheel_radius_m**2)
+    assert not any('J_v moved' in line or 'inertia moved' in line for line in scenario.adjusted)
+
+
+def test_lines_of_the_base_scenario_that_the_log_makes_untrue_are_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'map.yaml').write_text(COLUMNS)
+    write_csv(tmp_path / 'drive.csv', 3, drive(1))
+    options = ['--from', str(tmp_path / 'drive.csv'), '--columns', str(tmp_path / 'map.yaml')]
+    out = tmp_path / 'mine.yaml'
+    assert main([*options, '--set', 'vehicle.mass_kg=1800', '--out', str(out)]) == 0
+    assert 'driveline.vehicle_inertia moved from' in capsys.readouterr().err
+    scenario = load_scenario(str(out))
+    assert not any('driveline.vehicle_inertia moved' in line for line in scenario.adjusted)
+    assert any(line.startswith('vehicle.mass_kg moved from 1800') for line in scenario.adjusted)
+
+
+def test_the_profile_is_the_torque_of_the_log_at_its_own_times(tmp_path: Path) -> None:
+    """The log starts at 700 s and is linear between rows of 8 ms."""
+    (tmp_path / 'map.yaml').write_text(COLUMNS)
+    write_csv(tmp_path / 'drive.csv', 3, drive(1))
+    options = ['--from', str(tmp_path / 'drive.csv'), '--columns', str(tmp_path / 'map.yaml')]
+    out = tmp_path / 'mine.yaml'
+    assert main([*options, '--out', str(out)]) == 0
+    scenario, logged = load_scenario(str(out)), drive(1)
+    assert scenario.duration_s == 4.8
+    assert scenario.initial.engine_speed_rad_s == pytest.approx(190.0, abs=0.3)
+    # The shaft starts at 4000 rad/s^2, and its delay is known to 0.3 ms.
+    assert scenario.initial.shaft_speed_rad_s == pytest.approx(150.0, abs=1.2)
+    middles = np.arange(480) * 0.01 + 0.005
+    expected = np.interp(middles, logged.time_s, logged.engine_torque)
+    found = scenario.engine.over(np.arange(480) * 0.01)
+    assert np.sqrt(np.mean((found - expected) ** 2)) < 0.3

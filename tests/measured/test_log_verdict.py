@@ -1,0 +1,178 @@
+"""A fit that cannot be right is refused: first in the output, with an exit code, no scenario."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.logs import drag
+from support.other_car import COLUMNS, TRUE, drive, late_log, write_csv
+
+from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.prediction import Prediction, predict
+from ddct_plant.identification.from_log.result import LogFit
+from ddct_plant.identification.from_log.stretches import stretches_of
+from ddct_plant.identification.from_log.verdict import doubts, reasons_against
+from ddct_plant.identification.identify import main
+from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.file import load_scenario
+
+START = DrivelineParameters()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / 'map.yaml').write_text(COLUMNS)
+    write_csv(tmp_path / 'drive.csv', 3, drive(1))
+    return tmp_path
+
+
+def identify(folder: Path, *options: str) -> int:
+    log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
+    return main([*log, '--out', str(folder / 'mine.yaml'), *options])
+
+
+SWAPPED = COLUMNS.replace('MdMot', 'X').replace('MdKup', 'MdMot').replace('X', 'MdKup')
+
+
+@pytest.mark.parametrize(
+    ('columns', 'reason'),
+    [
+        (SWAPPED, 'the engine slows down where engine_torque exceeds clutch_torque'),
+        (COLUMNS.replace('MdKup, unit: Nm', 'MdMot, unit: Nm'), 'the held-out'),
+        (
+            COLUMNS.replace('nMot, unit: rpm', 'nMot, unit: deg/s'),
+            'rpm) in the middle, of cars it is 40 to 800 rad/s',
+        ),
+    ],
+    ids=['swapped torques', 'one torque twice', 'engine rpm as deg/s'],
+)
+def test_a_fit_that_cannot_be_right_is_refused_first_and_writes_nothing(
+    folder: Path, capsys: pytest.CaptureFixture[str], columns: str, reason: str
+) -> None:
+    (folder / 'map.yaml').write_text(columns)
+    report = folder / 'report.json'
+    assert identify(folder, '--json', str(report)) == 1
+    printed, complaint = capsys.readouterr()
+    lines = printed.splitlines()
+    assert lines[0].startswith('REFUSED')
+    assert any(reason in line for line in lines[1:4])
+    assert 'the fit is refused: ' in complaint
+    assert 'no scenario is written' in complaint
+    assert len(complaint.splitlines()) == 1
+    assert not (folder / 'mine.yaml').exists()
+    content = json.loads(report.read_text())
+    assert list(content)[:2] == ['verdict', 'reasons']
+    assert content['verdict'] == 'refused'
+    assert any(reason in each for each in content['reasons'])
+
+
+def test_a_refused_fit_is_accepted_by_force_and_still_says_so_first(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = COLUMNS.replace('nMot, unit: rpm', 'nMot, unit: deg/s')
+    (folder / 'map.yaml').write_text(text)
+    assert identify(folder, '--force') == 0
+    printed, complaint = capsys.readouterr()
+    assert printed.startswith('REFUSED')
+    assert complaint == ''
+    assert load_scenario(str(folder / 'mine.yaml')).name == 'drive'
+
+
+def test_a_good_fit_is_accepted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    report = folder / 'report.json'
+    assert identify(folder, '--json', str(report)) == 0
+    assert 'REFUSED' not in capsys.readouterr().out
+    content = json.loads(report.read_text())
+    assert (content['verdict'], content['reasons']) == ('accepted', [])
+    assert {row['state'] for row in content['delays']} == {'reference', 'fitted'}
+    assert all(each['white'] for each in content['held_out']['signals'][:3])
+
+
+def test_the_table_says_which_values_are_new(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert identify(folder) == 0
+    printed = capsys.readouterr().out
+    assert 'new scenario' in printed
+    assert 'in scenario' not in printed
+
+
+def test_force_needs_a_log(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(['--force']) == 1
+    assert '--force and --out need a log' in capsys.readouterr().err
+
+
+def judged(
+    signals: dict[str, np.ndarray], times: np.ndarray, known: dict[str, float] | None = None
+) -> tuple[LogFit, list[Prediction], list[str]]:
+    log = MeasuredLog(Path('a.csv'), '', times, signals)
+    parting = times[0] + 0.7 * (times[-1] - times[0])
+    first, rest = log.part(times[0], parting), log.part(parting, times[-1])
+    fit = fit_log(first, START, drag, (), known or {})
+    predictions = predict(fit, stretches_of(rest, drag))
+    return fit, predictions, reasons_against(fit, predictions, stretches_of(first, drag))
+
+
+@pytest.mark.parametrize('factor', [6.0, 1.0 / 6.0], ids=['deg/s as rpm', 'rpm as deg/s'])
+def test_speeds_that_are_all_wrong_by_one_factor_fit_and_are_refused_by_the_car_they_need(
+    factor: float,
+) -> None:
+    signals = drive().noisy(0)
+    signals |= {name: factor * signals[name] for name in SPEEDS}
+    _, predictions, reasons = judged(signals, drive().time_s)
+    assert max(each.error for each in predictions) < 0.02
+    for name in ('engine_speed is ', 'engine_inertia is ', 'vehicle_inertia is '):
+        assert any(each.startswith(name) and 'check' in each for each in reasons), name
+
+
+def test_an_engine_damping_significantly_below_zero_is_refused_and_not_written_as_zero() -> None:
+    """Every rad/s of the engine adds 0.05 N m to the torque that the log has."""
+    signals = drive().noisy(0)
+    signals['engine_torque'] = signals['engine_torque'] - 0.05 * drive().signals['engine_speed']
+    fit, _, reasons = judged(signals, drive().time_s)
+    assert fit.values['engine_damping'] == pytest.approx(TRUE['engine_damping'] - 0.05, abs=2e-3)
+    assert any('engine_damping is -0.0' in each and 'negative' in each for each in reasons)
+
+
+def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_and_said() -> None:
+    signals = drive().noisy(0)
+    signals['engine_torque'] = signals['engine_torque'] - 0.02 * drive().signals['engine_speed']
+    fit, predictions, reasons = judged(signals, drive().time_s)
+    assert reasons == []
+    said = any('engine_damping is -' in each for each in doubts(fit, predictions))
+    assert said == (fit.values['engine_damping'] < -1e-6)
+    assert fit.parameters.engine_damping == max(fit.values['engine_damping'], 0.0)
+
+
+def test_residuals_that_follow_the_torques_are_no_noise_though_lags_make_them_white() -> None:
+    """A clutch torque that is 10 ms late, and a map that says that it is not."""
+    times, signals = late_log(1, {'clutch_torque': 0.01}, corners_on_rows=True)
+    random = np.random.default_rng(8)
+    for name in SPEEDS:
+        signals[name] = signals[name] + 0.1 * random.standard_normal(len(times))
+    in_time = dict.fromkeys(('shaft_speed', 'wheel_speed', 'engine_torque', 'clutch_torque'), 0.0)
+    fit, predictions, reasons = judged(signals, times, in_time)
+    assert fit.noise.order > 0
+    assert any('is not noise, as it follows the torques' in each for each in reasons)
+    assert not all(each.white for each in predictions[:3])
+    fit, predictions, reasons = judged(signals, times)
+    assert reasons == []
+    assert all(each.white for each in predictions[:3])
+
+
+def test_noise_with_a_memory_and_noise_of_the_torques_are_not_taken_for_a_wrong_model() -> None:
+    random = np.random.default_rng(2)
+    for signals in (drive().noisy(1, 1.0), drive().noisy(2)):
+        for name in SPEEDS:
+            slow = np.convolve(random.standard_normal(len(drive().time_s)), 0.9 ** np.arange(40))
+            signals[name] = signals[name] + 0.02 * slow[: len(drive().time_s)]
+        assert judged(signals, drive().time_s)[2] == []
+
+
+def test_a_clutch_torque_that_leads_is_named_as_a_request() -> None:
+    late = {'clutch_torque': -0.035}
+    times, signals = late_log(1, late, corners_on_rows=True)
+    fit, predictions, _ = judged(signals, times)
+    assert any('if it is a request' in each for each in doubts(fit, predictions))

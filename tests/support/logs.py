@@ -1,0 +1,53 @@
+"""Logs of drives, with noise and with signals that are late."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.measured.columns import TIME, own_columns
+from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
+from support.runs import plan, record
+
+
+def drag(wheel_speed: np.ndarray) -> np.ndarray:
+    """Return the drag of the car of `other_car` in N m at the wheels."""
+    return 0.4032 * 0.3211344993404892**3 * wheel_speed**2
+
+
+def drive_log(folder: Path, controller: str = 'pi', changes: tuple[str, ...] = ()) -> MeasuredLog:
+    """Return the log of a run of the thesis's scenario, rows every 10 ms, as CSV in a folder."""
+    run = record(
+        plan(controller, 'headless', duration_s=3.0, changes=changes), folder / controller
+    )
+    file = folder / f'{controller}.csv'
+    file.write_text(signals_csv(run))
+    needed = (*SPEEDS, *TORQUES)
+    return read_log(file, own_columns(TIME, *needed), needed)
+
+
+def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:
+    """Return a log with white noise on its speeds, of a size in rad/s."""
+    random = np.random.default_rng(seed)
+    signals = dict(log.signals)
+    for name in SPEEDS:
+        signals[name] = signals[name] + size * random.standard_normal(len(log.time_s))
+    return replace(log, signals=signals)
+
+
+def rows_late(log: MeasuredLog, names: Sequence[str], rows: int) -> MeasuredLog:
+    """Return a log that has some of its signals rows late, without the first ones."""
+    signals = {
+        name: values[:-rows] if name in names else values[rows:]
+        for name, values in log.signals.items()
+    }
+    return replace(log, time_s=log.time_s[rows:], signals=signals)
+
+
+def speeds_late(late_s: float) -> dict[str, float]:
+    """Return the delays against the engine speed where all speeds are late."""
+    torques = dict.fromkeys(TORQUES, -late_s)
+    return {'shaft_speed': 0.0, 'wheel_speed': 0.0} | torques
