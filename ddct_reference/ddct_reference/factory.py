@@ -4,9 +4,10 @@ from dataclasses import replace
 
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.clutch import LINEAR, STICK_SLIP
+from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
-from ddct_plant.scenario.plant import make_load
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
@@ -53,15 +54,17 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     """
     Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
 
-    It is that of the nominal detailed run: a clutch without wear, the actuator as printed. Until
-    control starts feedback is off and only the static controller C_fOL acts. So no controller
-    enters: the values are those of any controller's run, to the last bit.
+    It is that of the nominal detailed run: a clutch without wear, the actuator as printed. The
+    clutch is the linear one, or the one that sticks where the linear one cannot run the scenario.
+    Until control starts feedback is off and only the static controller C_fOL acts. So no
+    controller enters: the values are those of any controller's run, to the last bit.
     """
     nominal = replace(scenario, actuator=ActuatorParameters())
-    settings = RunSettings(nominal, architecture='detailed')
+    clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
+    settings = RunSettings(nominal, architecture='detailed', clutch=clutch)
     plant = WholePlant(settings, two_input=False)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
-    load = make_load(settings)
+    load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
     slips = []
     for step in range(scenario.control_start_step + 1):
         sight = plant.look(step)

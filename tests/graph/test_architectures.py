@@ -23,3 +23,13 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
         bags.append(bag_bytes(tmp_path / layout))
     assert bags[0] == bags[1] == bags[2]
+
+
+@pytest.mark.parametrize('name', ['launch', 'tip_in'])
+@pytest.mark.parametrize('architecture', [name for name in ARCHITECTURES if name != 'detailed'])
+def test_a_clutch_that_sticks_has_the_same_stored_reference_in_the_graph_and_headless(
+    tmp_path: Path, architecture: str, name: str
+) -> None:
+    scenario = load_scenario(name, ['duration_s=0.6', 'score_window_s=[0.3,0.6]'])
+    run = RunPlan(RunSettings(scenario, architecture, 'stick_slip'), 'hinf2', 'single-process')
+    assert record(run, tmp_path / name).trajectory.sha256() == expected(run).sha256()

@@ -122,7 +122,12 @@ def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
 
 
 def initial_state(settings: RunSettings) -> InitialState:
-    """Return the state at t_0 of a run with these settings."""
+    """
+    Return the state at t_0 of a run with these settings.
+
+    C_fOL is asked of the clutch before the run in `detailed`, and where the scenario starts with
+    a clutch that is locked or slipping.
+    """
     scenario = settings.scenario
     driveline = scenario.driveline
     wheel_speed = scenario.initial.shaft_speed_rad_s / driveline.total_ratio
@@ -134,7 +139,8 @@ def initial_state(settings: RunSettings) -> InitialState:
     static = StaticTorque(driveline, scenario.equilibrium)
     shaft_speed = scenario.initial.shaft_speed_rad_s
     static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
-    asked = settings.detailed and scenario.initial.clutch_phase != OPEN
+    phase = scenario.initial.clutch_phase
+    asked = settings.detailed if phase is None else phase != OPEN
     torque_request = max(static_torque, 0.0) if asked else 0.0
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     initial = InitialState(

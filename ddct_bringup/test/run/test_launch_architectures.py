@@ -1,0 +1,45 @@
+"""The architectures with a stored reference run in the scenarios for the clutch that sticks."""
+
+import numpy as np
+import pytest
+
+from ddct_bringup.run.headless import run_headless
+from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+
+ALL_BUT_DETAILED = [name for name in ARCHITECTURES if name != 'detailed']
+FOR_STICK_SLIP = [name for name in scenario_names() if load_scenario(name).of_stick_slip]
+
+
+def run(name, architecture, wear_gain=1.0):
+    settings = RunSettings(load_scenario(name), architecture, 'stick_slip', wear_gain)
+    return run_headless(settings, 'hinf1')
+
+
+@pytest.mark.parametrize('architecture', ALL_BUT_DETAILED)
+@pytest.mark.parametrize('name', FOR_STICK_SLIP)
+def test_the_reference_is_the_slip_of_the_nominal_detailed_run_with_the_same_clutch(
+    name, architecture
+):
+    start = load_scenario(name).control_start_step
+    nominal = run(name, 'detailed')
+    for wear_gain in (1.0, 0.7):
+        worn = run(name, architecture, wear_gain)
+        reference = worn.slip_reference[: start + 1, 0]
+        np.testing.assert_array_equal(reference, nominal.slip_speed[: start + 1])
+        assert np.all(np.isfinite(worn.slip_speed))
+
+
+@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize(('name', 'phase'), [('launch', 0.0), ('tip_in', 2.0)])
+def test_the_clutch_starts_in_the_phase_of_the_scenario(name, phase, architecture):
+    assert run(name, architecture).clutch_phase[0] == phase
+
+
+def test_a_scenario_for_both_clutches_has_the_reference_of_the_linear_one():
+    of_clutch = [
+        run_headless(RunSettings(load_scenario('thesis'), 'base', clutch), 'pi').slip_reference
+        for clutch in CLUTCHES
+    ]
+    np.testing.assert_array_equal(*of_clutch)
