@@ -1,13 +1,13 @@
 """What a campaign can vary: scenario keys, and the settings of a run."""
 
-from collections.abc import Iterable
 from dataclasses import fields
 from functools import cache
 
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import Option, OptionGroup, Options, close_name, group_of, options_of
+from ddct_plant.base.options import Option, Options, group_of, options_of
 from ddct_plant.scenario.csv_profiles import FACTOR, FACTOR_OPTION
+from ddct_plant.scenario.key_names import key_hint, scenario_options
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -22,12 +22,6 @@ FILE_KEY = '.csv'
 def run_options() -> Options:
     """Return the settings that can vary, without the mode: a campaign has no wall clock."""
     return {name: each for name, each in options_of(RunSettings).items() if name != MODE}
-
-
-@cache
-def scenario_options() -> Options:
-    """Return every option of a scenario by its dotted key, without those of controllers."""
-    return dict(_options(Scenario))
 
 
 def option_of(where: str, key: str) -> Option | None:
@@ -49,17 +43,10 @@ def option_of(where: str, key: str) -> Option | None:
         return FACTOR_OPTION
     if key == SCENARIO or key in sections() or key.removesuffix(FILE_KEY) in sections():
         return None
-    raise ParameterError(f'{where}: unknown key {key}: {close_name(key, (*known, SCENARIO))}')
+    raise ParameterError(f'{where}: unknown key {key}: {key_hint(key, known)}')
 
 
 @cache
 def sections() -> frozenset[str]:
     """Return the names of the groups of keys that a scenario has."""
     return frozenset(field.name for field in fields(Scenario) if group_of(field))
-
-
-def _options(group: type[OptionGroup]) -> Iterable[tuple[str, Option]]:
-    yield from ((f'{group.prefix}{name}', each) for name, each in options_of(group).items())
-    for field in fields(group):
-        if nested := group_of(field):
-            yield from _options(nested)

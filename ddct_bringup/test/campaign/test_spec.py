@@ -50,6 +50,10 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
             PI + 'grid:\n  vehicle.mas_kg: [1]\n',
             'line 3: grid.vehicle.mas_kg: unknown key vehicle.mas_kg: did you mean vehicle.mass',
         ),
+        (
+            PI + 'grid: {K_usura: [0.7]}\n',
+            'line 2: grid.K_usura: unknown key K_usura: did you mean wear_gain?',
+        ),
         (PI + 'grid: {mode: [realtime]}\n', 'grid.mode: unknown key mode'),
         (PI + GRID + 'seed: -1\n', 'line 3: seed is -1: it must be at least 0'),
         (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),

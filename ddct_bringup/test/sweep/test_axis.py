@@ -42,6 +42,7 @@ BAD = {
     'no values': ('wear_gain', 'KEY=START:STOP:COUNT'),
     'empty': ('wear_gain=', 'KEY=START:STOP:COUNT'),
     'no key': ('=1:2:3', 'KEY=START:STOP:COUNT'),
+    'symbol of the thesis': ('K_usura=1:2:3', 'unknown key K_usura: did you mean wear_gain?'),
     'unknown key': ('wear_gian=1:2:3', 'did you mean wear_gain'),
     'two of three': ('wear_gain=1:2', 'KEY=START:STOP:COUNT'),
     'four of three': ('wear_gain=1:2:3:4', 'KEY=START:STOP:COUNT'),

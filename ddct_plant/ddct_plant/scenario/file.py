@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Group, OptionGroup, group_of, require_known
+from ddct_plant.base.options import Group, OptionGroup, group_of
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.csv_profiles import with_points
+from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.plant import require_driveline
 from ddct_plant.scenario.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
@@ -203,7 +204,10 @@ def _build(group: type[Group], content: Any) -> Group:
     if not isinstance(content, Mapping):
         raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
     fields = {field.name: field for field in dataclasses.fields(group)}
-    require_known(content, fields, prefix=prefix)
+    for name in content:
+        if name not in fields:
+            hint = scenario_key_hint(str(name), fields, prefix)
+            raise ParameterError(f'unknown key {prefix}{name}: {hint}')
     for name, field in fields.items():
         required = (
             field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING

@@ -1,0 +1,77 @@
+"""Every key of a scenario and of its run by its dotted name, and which one a wrong name means."""
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import fields
+from functools import cache
+
+from ddct_plant.base.options import Option, OptionGroup, Options, group_of, options_of
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import RunSettings
+
+MOST_MEANT = 3
+"""How many keys a hint names at most."""
+_PAGE = 'docs/use/scenario.md'
+
+
+@cache
+def scenario_options() -> Options:
+    """Return every option of a scenario by its dotted key, without those of controllers."""
+    return dict(_options(Scenario))
+
+
+def key_hint(key: str, known: Options) -> str:
+    """Return which of the known keys may be meant by an unknown one, or where all are listed."""
+    meant = _meant(key, known)
+    if not meant:
+        return f'{_PAGE} lists the keys'
+    *others, last = meant
+    return f'did you mean {", ".join(others)} or {last}?' if others else f'did you mean {last}?'
+
+
+def scenario_key_hint(name: str, section: Iterable[str], prefix: str) -> str:
+    """Return what an unknown key of a scenario may mean: one of its section, any, an option."""
+    if close := difflib.get_close_matches(name, list(section), n=1):
+        return f'did you mean {prefix}{close[0]}?'
+    of_run = options_of(RunSettings)
+    known = {**scenario_options(), **of_run}
+    for meant in _meant(f'{prefix}{name}', known):
+        if meant in of_run:
+            option = f'--{meant.replace("_", "-")}'
+            return f'{meant} stands beside the scenario: give it to the program, as {option}'
+    return key_hint(f'{prefix}{name}', known)
+
+
+def _meant(key: str, known: Options) -> list[str]:
+    """
+    Return the few keys that `key` may mean, by the first rule that finds any.
+
+    A key is meant by the symbol that its description begins with, such as K_usura, by a name like
+    its own, by one of the words in its name, by a symbol anywhere in its description.
+    """
+    name = key.rpartition('.')[2]
+    if not name:
+        return []
+    symbol = re.compile(rf'(?<!\w){re.escape(name)}(?!\w)')
+    words = name.lower().split('_')
+    rules: Iterable[Iterable[str]] = (
+        (each for each, option in known.items() if symbol.match(option.description)),
+        difflib.get_close_matches(key, known, n=1),
+        (each for each in known if _has_words(each, words)),
+        (each for each, option in known.items() if symbol.search(option.description)),
+    )
+    return next(filter(None, map(list, rules)), [])[:MOST_MEANT]
+
+
+def _has_words(key: str, words: list[str]) -> bool:
+    """Say whether the words stand in the key side by side."""
+    parts = re.split('[._]', key)
+    return any(parts[at : at + len(words)] == words for at in range(len(parts)))
+
+
+def _options(group: type[OptionGroup]) -> Iterator[tuple[str, Option]]:
+    yield from ((f'{group.prefix}{name}', each) for name, each in options_of(group).items())
+    for field in fields(group):
+        if nested := group_of(field):
+            yield from _options(nested)
