@@ -89,7 +89,8 @@ def test_an_interrupted_bringup_stops_its_nodes_and_keeps_what_was_recorded(
     bringup.send(number)
     assert bringup.wait(20.0) == 130
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'ddct bringup', 'interrupted')
+    recorded = f'what was recorded is in {tmp_path / "runs" / "ls8.partial"}'
+    assert_one_line(bringup.errors(), 'ddct bringup', 'interrupted', recorded)
     assert not bringup.output()
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20

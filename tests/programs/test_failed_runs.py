@@ -188,8 +188,8 @@ def test_where_no_run_is_valid_an_old_result_stays(
     assert [run['valid'] for run in _scores(partial)] == [False]
 
 
-def test_an_interrupted_compare_keeps_the_old_result(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_an_interrupted_compare_keeps_the_old_result_and_names_what_it_recorded(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', 'pi', *WHOLE, '--out', str(out)]) == 0
@@ -197,4 +197,8 @@ def test_an_interrupted_compare_keeps_the_old_result(
     spoil_ls8(monkeypatch, interrupted)
     assert _compare(out, '--overwrite') == 130
     assert _bytes(out) == before
-    assert (tmp_path / 'runs.partial' / 'pi' / 'pi_0.mcap').is_file(), 'it was under way'
+    partial = tmp_path / 'runs.partial'
+    assert (partial / 'pi' / 'pi_0.mcap').is_file(), 'it was under way'
+    assert capfd.readouterr().err.splitlines()[-1] == (
+        f'ddct compare: interrupted: {out} is untouched, what was recorded is in {partial}'
+    )

@@ -45,7 +45,7 @@ examples:
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
 others: DIR has its reason and its logs, and the exit code is 1. When no run is
-valid DIR is not touched, and what was recorded stays in DIR.partial.
+valid, or on Ctrl-C, DIR is not touched, and what was recorded stays in DIR.partial.
 """
 
 
@@ -69,22 +69,28 @@ def _compare(argv: list[str]) -> int:
     if options.controllers == ALL:
         names = working_controllers(settings, partial(complain, PROGRAM))
     plans = [RunPlan(settings, name, options.layout) for name in names]
-    with held(options.out):
-        failed = _run_all(plans, settings, options, limits)
+    with (
+        held(options.out),
+        StagedFolder(options.out, overwrite=options.overwrite) as folder,
+    ):
+        failed = _run_all(plans, folder, settings, options, limits)
     if failed:
         complain(PROGRAM, f'not valid: {", ".join(failed)}: the table and the report say why')
     return 1 if failed else 0
 
 
 def _run_all(
-    plans: list[RunPlan], settings: RunSettings, options: argparse.Namespace, limits: Limits
+    plans: list[RunPlan],
+    folder: StagedFolder,
+    settings: RunSettings,
+    options: argparse.Namespace,
+    limits: Limits,
 ) -> list[str]:
     """
     Carry out all runs, put what they left under its final name, and return which are not valid.
 
     Raise DdctError when none is valid: DIR stays what it was.
     """
-    folder = StagedFolder(options.out, overwrite=options.overwrite)
     evidence = frequency_evidence([plan.controller for plan in plans], settings)
     runs = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ', limits)
@@ -96,10 +102,7 @@ def _run_all(
     failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
     if len(failed) == len(plans):
         tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
-        raise DdctError(
-            f'no run is valid ({", ".join(failed)}): {folder.final} is untouched, what was '
-            f'recorded is in {folder.path}'
-        )
+        raise DdctError(f'no run is valid ({", ".join(failed)}): {folder.left}')
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
     folder.commit()

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO
 
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import (
     Chosen,
@@ -24,6 +25,13 @@ from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 ALL = 'all'
 """Stands for every controller."""
+_FROM_FILES = 'as their files have them, whatever driveline the scenario has: {}'
+_FROM_CLASSES = (
+    'not known whether another driveline in the scenario changes their gains: {} (write into the '
+    "class computed_from = 'scenario' if they are computed from the scenario, or "
+    "computed_from = 'thesis' if they are fixed numbers)"
+)
+_NOT_LOADED = 'cannot be loaded, as the options of controllers say: {}'
 
 
 def add_settings_options(parser: argparse.ArgumentParser) -> None:
@@ -128,14 +136,19 @@ def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
     for name in names:
         try:
             spec = controller_spec(name)
-            found.setdefault(spec.computed_from, []).append(spec.name)
-        except DdctError:  # a third party's that cannot be loaded; the table of options says why
-            found.setdefault(UNSTATED, []).append(str(name))
-    for source, labels in found.items():
-        what = f'computed from {source}'
-        if source == UNSTATED:
-            what = 'not stated whether computed from the scenario or the thesis'
-        print(f'{what}: {printable(", ".join(labels))}', file=stream)
+            found.setdefault(_origin(name, spec.computed_from), []).append(spec.name)
+        except DdctError:  # a third party's that cannot be loaded
+            found.setdefault(_NOT_LOADED, []).append(str(name))
+    for origin, labels in found.items():
+        print(origin.format(printable(', '.join(labels))), file=stream)
+
+
+def _origin(chosen: Chosen, computed_from: str) -> str:
+    """Return a line about a controller, with a place for names."""
+    if computed_from != UNSTATED:
+        return f'computed from {computed_from}: {{}}'
+    in_a_file = isinstance(chosen, str) and is_controller_file(chosen)
+    return _FROM_FILES if in_a_file else _FROM_CLASSES
 
 
 def controller_options_table() -> Table:

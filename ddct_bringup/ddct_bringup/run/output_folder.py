@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import Self
 
 from ddct_plant.base.errors import DdctError
 
@@ -26,8 +27,8 @@ class StagedFolder:
     A folder that appears under its final name only when it is complete.
 
     Work goes to `<final>.partial` beside it. `commit` puts it in place of an earlier result, which
-    stays untouched until then; after a failure the partial folder is left for inspection.
-    Whoever uses it holds the final folder (`held`).
+    stays untouched until then; after a failure the partial folder is left for inspection, and
+    `with` adds its name to an interruption. Whoever uses it holds the final folder (`held`).
     """
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
@@ -46,6 +47,19 @@ class StagedFolder:
             if self.path.exists():
                 shutil.rmtree(self.path)
         mark_folder(self.path)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        """Raise KeyboardInterrupt anew, with what there is and where, after an interruption."""
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            raise KeyboardInterrupt(f'interrupted: {self.left}')
+
+    @property
+    def left(self) -> str:
+        """Say for a message what a run that was not committed has left, and where."""
+        return f'{self.final} is untouched, what was recorded is in {self.path}'
 
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""
@@ -128,8 +142,8 @@ def run_folder(out: Path, name: str, *, overwrite: bool) -> Iterator[StagedFolde
     """Hold the folder `name` in `out`, which is made if absent, and yield it staged."""
     with held(out, shared=True):
         mark_folder(out)
-        with held(out / name):
-            yield StagedFolder(out / name, overwrite=overwrite)
+        with held(out / name), StagedFolder(out / name, overwrite=overwrite) as folder:
+            yield folder
 
 
 def is_ours(folder: Path) -> bool:

@@ -1,0 +1,42 @@
+"""What `--list` and `compare` print of a controller's origin tells its author what to do."""
+
+import io
+from pathlib import Path
+
+from ddct_bringup.run.options import print_computed_from
+from ddct_controllers.interface import SCENARIO, THESIS
+from ddct_controllers.registry import factory_spec
+
+
+def printed(*names):
+    stream = io.StringIO()
+    print_computed_from(names, stream)
+    return stream.getvalue().splitlines()
+
+
+def of_class(computed_from=None):
+    attributes = {} if computed_from is None else {'computed_from': computed_from}
+    return factory_spec('my_slip', type('Mine', (), attributes), 'mine.py')
+
+
+def test_the_class_that_does_not_say_it_is_named_with_what_to_write_and_why():
+    (line,) = printed(of_class())
+    assert 'whether another driveline in the scenario changes their gains: my_slip' in line
+    assert "write into the class computed_from = 'scenario' if they are computed from" in line
+    assert "computed_from = 'thesis' if they are fixed numbers" in line
+
+
+def test_what_the_line_says_to_write_ends_it():
+    assert printed(of_class(SCENARIO)) == ['computed from scenario: my_slip']
+    assert printed(of_class(THESIS), 'pi') == ['computed from thesis: my_slip, pi']
+
+
+def test_a_controller_file_is_not_asked_for_what_it_cannot_say():
+    file = Path(__file__).parents[3] / 'docs' / 'templates' / 'transfer_function.yaml'
+    assert printed(str(file)) == [
+        'as their files have them, whatever driveline the scenario has: mine'
+    ]
+
+
+def test_one_that_cannot_be_loaded_is_called_so():
+    assert printed('nobody') == ['cannot be loaded, as the options of controllers say: nobody']
