@@ -46,6 +46,19 @@ def test_rows_of_table_5_2_are_what_the_runs_give(clutch):
     assert [row for row in rows_of(clutch, 1.3) if row not in shown] == [], MAKE
 
 
+def test_the_overview_says_how_many_words_of_table_5_2_hold():
+    text = (DOCS / 'thesis' / 'reproducing.md').read_text(encoding='utf-8')
+    section = ' '.join(text.partition('## Table 5.2')[2].split())
+    held = {}
+    for clutch in ('linear', 'stick_slip'):
+        rows = [row for row in rows_on_page('table_5_2_in_numbers') if row[0] == clutch]
+        words = [word for row in rows for word in row[-2:] if word != '-']
+        assert len(words) == 16
+        held[clutch] = sum(word.endswith(': holds') for word in words)
+    assert f'linear clutch {held["linear"]} of the 16 hold' in section
+    assert f'plates that stick {held["stick_slip"]} of the 16 holds' in section
+
+
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
 def test_a_small_chart_stands_beside_each_table(study):
     texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]

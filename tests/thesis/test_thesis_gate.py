@@ -81,6 +81,27 @@ def test_predictions_are_hits_by_their_tolerance_alone(rows: tuple[GateRow, ...]
         assert row.hit == (distance <= row.number.absolute_tolerance), row.number.item
 
 
+def test_the_rise_times_of_table_2_1_have_one_rule_and_the_one_outside_is_a_miss(
+    rows: tuple[GateRow, ...],
+) -> None:
+    column = [
+        row
+        for row in rows
+        if row.number.section == '2.3, Table 2.1' and row.number.item.endswith(': t_r')
+    ]
+    assert len(column) == 9
+    assert {(row.number.verdict, row.number.group) for row in column} == {
+        ('predicted', 'Table 2.1: t_r')
+    }
+    assert [row.number.item for row in column if not row.hit] == ['LS4: t_r']
+
+
+def test_r_of_table_4_1_is_no_number_that_the_thesis_leads_to(rows: tuple[GateRow, ...]) -> None:
+    weights = [row for row in rows if row.number.item in ('MPC1: R', 'MPC2: R', 'MPC3: R')]
+    assert [row.outcome for row in weights] == ['predicted hit'] * 3
+    assert all('a rule of MATLAB' in row.number.reason for row in weights)
+
+
 def test_number_is_not_reproduced_in_one_place_and_an_erratum_in_another() -> None:
     verdicts: dict[tuple[str, str], set[str]] = defaultdict(set)
     for number in NUMBERS:

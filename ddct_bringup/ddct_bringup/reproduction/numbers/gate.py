@@ -22,6 +22,12 @@ from ddct_plant.files.yaml_text import parse_yaml
 
 _KEYS = frozenset(field.name for field in fields(ThesisNumber))
 _ROUNDING = Tolerance(half_units=1.0)
+LEAST_OF_ERRATUM = 2.0
+"""
+How many tolerances an erratum lies from the print at least.
+
+What is nearer is a miss: a tolerance that is chosen a little wider would have let it through.
+"""
 OUTCOMES = (
     *('reproduced', 'erratum', 'calibrated hit', 'calibrated miss'),
     *('predicted hit', 'predicted miss', 'given', 'not_reproducible'),
@@ -171,9 +177,20 @@ def _complaint(number: ThesisNumber, value: Value, hit: bool) -> str | None:
         return f'{_text(value)} is {within} the tolerance of the printed {number.printed}'
     if number.verdict == ERRATUM and hit:
         return f'called an erratum, but {_text(value)} agrees with the print'
+    if number.verdict == ERRATUM and _misses_closely(value, number):
+        return (
+            f'called an erratum, but {_text(value)} is less than {LEAST_OF_ERRATUM:g} tolerances '
+            f'from the printed {number.printed}: a miss'
+        )
     if number.ours is not None and not _agrees(value, number.ours, _ROUNDING):
         return f'{_text(value)} is not the {number.ours} that the list gives as ours'
     return None
+
+
+def _misses_closely(value: Value, number: ThesisNumber) -> bool:
+    if not isinstance(value, float) or number.absolute_tolerance is None:
+        return False
+    return abs(value - float(number.printed)) < LEAST_OF_ERRATUM * number.absolute_tolerance
 
 
 def _agrees(value: Value, stated: str, tolerance: Tolerance | None) -> bool:

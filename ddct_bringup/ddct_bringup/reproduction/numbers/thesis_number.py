@@ -26,9 +26,10 @@ VERDICTS = (*COMPUTED_VERDICTS, 'given', 'not_reproducible')
 """
 What can be said of a printed number.
 
-`reproduced`: the thesis's other numbers lead to it. `erratum`: they lead to another value.
+`reproduced`: the thesis's other numbers lead to it. `erratum`: they lead far off it.
 `calibrated`: parameters of ours were fitted to its group. `predicted`: a model that was fitted to
-other numbers, or a rule of ours, leads to it or misses it. `given`: an input of the thesis.
+other numbers, or a rule that the thesis does not state, leads to it or misses it. `given`: an
+input of the thesis.
 `not_reproducible`: a result of the thesis whose inputs it does not print.
 """
 

@@ -1,6 +1,7 @@
 """Subcommand `reproduce studies`: what decides how the predictive controllers fare."""
 
 import argparse
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,33 +23,35 @@ from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.command_line import complain
 from ddct_plant.program.table import print_table
 
+_ABOUT: Mapping[StudyFunction, str] = {
+    admissible_scenarios.admissible_scenarios: 'the scenarios that fit Table 5.1 as well',
+    clutch_torque_limit.clutch_torque_limit: 'the least w_sr and A_x at the t_a of Table 5.1',
+    sweeps.engine_authority: 'MPC4 by how far it may move the engine torque',
+    mpc4_readings.mpc4_readings: 'MPC4 by reading of Section 4.3',
+    sweeps.pedal_positions: '`pedal_mpc` by pedal position',
+    admissible_scenarios.prediction_ranges: 'the MPC rows of Table 5.1 over all these scenarios',
+    readings.readings: 'MPC1-3 by reading of Section 4.2 and Table 4.1',
+    admissible_scenarios.score_windows: 'the MPC rows by the end of the score window',
+    sweeps.state_of_art: 'controllers after works that the thesis cites, new and worn',
+    table_5_2.table_5_2_in_numbers: 'Table 5.2: our figures, the words they come to, the print',
+    mpc4_readings.torque_level: 'MPC4 by its pull towards the demand',
+    sweeps.torsion_weight: '`mpc_torsion` by its weight (Section 6.1)',
+    sweeps.two_input_wear: 'controllers of clutch and engine, worn',
+    wear.wear: 'MPC3 and its descendants, Hinf2 and LS8 at every wear gain',
+    wear.wear_estimate: 'how well `mpc_wear` estimates K_usura',
+    wear.wear_feedforward: '`wear` in the architecture of Figure 5.1',
+    admissible_scenarios.worn_ranges: 'Table 5.2 over all scenarios that fit',
+}
 STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
-    function.__name__: function
-    for function in (
-        admissible_scenarios.admissible_scenarios,
-        clutch_torque_limit.clutch_torque_limit,
-        sweeps.engine_authority,
-        mpc4_readings.mpc4_readings,
-        sweeps.pedal_positions,
-        admissible_scenarios.prediction_ranges,
-        readings.readings,
-        admissible_scenarios.score_windows,
-        sweeps.state_of_art,
-        table_5_2.table_5_2_in_numbers,
-        mpc4_readings.torque_level,
-        sweeps.torsion_weight,
-        sweeps.two_input_wear,
-        wear.wear,
-        wear.wear_estimate,
-        wear.wear_feedforward,
-        admissible_scenarios.worn_ranges,
-    )
+    function.__name__: function for function in _ABOUT
 }
 """Every study by its name."""
+_COLUMNS, _NAME_COLUMNS = 80, max(map(len, STUDIES))
 _DESCRIPTION = """\
 Study the predictive controllers of Chapter 4, and of what it leaves to future work, in
 the closed loop of the frozen thesis scenario. Then judge every controller in every
 packaged scenario. Each study is a table, those of the scenarios with a chart."""
+_OF_A_SCENARIO = 'every controller in this scenario, new and worn'
 _EPILOG = """\
 examples:
   ddct reproduce studies                                every study
@@ -63,10 +66,13 @@ def add_parser(subparsers: Any) -> None:
         'studies',
         help='studies of the predictive controllers',
         description=_DESCRIPTION,
-        epilog=_EPILOG,
+        epilog=f'{_studies()}\n\n{_EPILOG}',
     )
     parser.add_argument(
-        '--study', action='append', metavar='NAME', help='only this study; may be repeated'
+        '--study',
+        action='append',
+        metavar='NAME',
+        help='only this study, one of those below; may be repeated',
     )
     parser.add_argument('--json', metavar='FILE', help='write the tables; - is standard output')
     parser.add_argument(
@@ -75,6 +81,19 @@ def add_parser(subparsers: Any) -> None:
         help='draw the charts of studies that have one: STUDY.png and .svg, their data in .csv',
     )
     parser.set_defaults(run=run)
+
+
+def _studies() -> str:
+    """Return every study with what it is about, a line each, for a terminal of 80 columns."""
+    lines = ['studies:']
+    for name, function in STUDIES.items():
+        lines += textwrap.wrap(
+            f'{name:{_NAME_COLUMNS}} {_ABOUT.get(function, _OF_A_SCENARIO)}',
+            _COLUMNS,
+            initial_indent='  ',
+            subsequent_indent=' ' * (_NAME_COLUMNS + 3),
+        )
+    return '\n'.join(lines)
 
 
 def run(options: argparse.Namespace) -> int:

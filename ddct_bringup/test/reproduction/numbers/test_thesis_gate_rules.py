@@ -52,6 +52,12 @@ def test_erratum_must_differ_from_the_print_and_be_the_value_given_as_ours():
     assert 'is not the 0.61' in complaint(ERRATUM, 0.64)
 
 
+def test_a_number_less_than_two_tolerances_off_is_a_miss_and_no_erratum():
+    near = dataclasses.replace(ERRATUM, ours='0.536', tolerance=Tolerance(absolute=0.005))
+    assert 'less than 2 tolerances from the printed 0.53: a miss' in complaint(near, 0.536)
+    assert complaint(dataclasses.replace(near, ours='0.541'), 0.541) is None
+
+
 def test_words_must_be_equal():
     assert complaint(WORD, 'negative') is None
     assert complaint(WORD, 'positive')

@@ -31,6 +31,16 @@ def test_without_options_every_study_is_printed_with_its_remarks(capsys):
     assert output.err.splitlines() == progress
 
 
+def test_the_help_lists_every_study_with_what_it_is_about(capsys, monkeypatch):
+    monkeypatch.setattr(command, 'STUDIES', STUDIES)
+    with pytest.raises(SystemExit):
+        reproduce.main(['studies', '--help'])
+    listed = capsys.readouterr().out.partition('\nstudies:\n')[2].partition('\nexamples:')[0]
+    lines = [line.split(maxsplit=1) for line in listed.splitlines() if line[2:3].strip()]
+    assert [name for name, about in lines if about] == list(STUDIES)
+    assert max(map(len, listed.splitlines())) <= 80
+
+
 def test_json_on_standard_output_stands_alone_and_has_a_mapping_per_row(capsys):
     assert reproduce.main(['studies', '--study', 'first', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out) == {
