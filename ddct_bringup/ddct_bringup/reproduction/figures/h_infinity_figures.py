@@ -18,7 +18,7 @@ from ddct_controllers.design.analysis.loops import (
     continuous_loop,
     plant_in_rpm,
 )
-from ddct_controllers.design.drawing.chart_style import BLUE, BOUND_LINE, SKY
+from ddct_controllers.design.drawing.chart_style import BLACK, BOUND_LINE, SKY
 from ddct_controllers.design.drawing.charts import draw_bound
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.uncertainty import (
@@ -35,7 +35,7 @@ _G_C = H_INFINITY_CONTROLLERS['hinf1']
 _W_S, _W_T = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
 _ERROR_LINES: tuple[dict[str, Any], ...] = (
     {'color': SKY, 'linestyle': '-', 'linewidth': 4.0},
-    {'color': BLUE, 'linestyle': '-'},
+    {'color': BLACK, 'linestyle': ':'},
 )
 """For the two ends of the wear, of which one lies on the other."""
 _PRINTED_SENSITIVITY_NORM = 0.97

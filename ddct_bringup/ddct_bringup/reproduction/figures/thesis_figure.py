@@ -17,6 +17,7 @@ from ddct_controllers.design.drawing.charts import (
     draw_step_response,
     label_time_axis,
 )
+from ddct_controllers.design.drawing.distinct_lines import told_apart
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.verification import contours
@@ -61,11 +62,21 @@ def draw_over_time(
     lines: Mapping[str, tuple[np.ndarray, np.ndarray]],
     styles: Mapping[str, dict[str, Any]],
 ) -> None:
-    """Draw (time, values) by name; lines without a style in `styles` get one after the other."""
+    """
+    Draw (time, values) by name; lines without a style in `styles` get one after the other.
+
+    Where two lines share a colour or a dash, one of them gets another.
+    """
     others = line_styles()
+    apart = told_apart({name: styles.get(name) or next(others) for name in lines})
     for name, (time, values) in lines.items():
-        axes.plot(time, values, label=name, **(styles.get(name) or next(others)))
+        axes.plot(time, values, label=name, **apart[name])
     label_time_axis(axes, quantity, range_s)
+
+
+def _solid(controller: str) -> dict[str, Any]:
+    """Return the style of the only loop of a chart: its bounds and references are dashed."""
+    return {**controller_style(controller), 'linestyle': '-'}
 
 
 def nichols_figure(
@@ -87,7 +98,7 @@ def nichols_figure(
     def draw(axes: Axes) -> str:
         loop = continuous_loop(controller)
         curve = LoopCurve(loop)
-        styles = [controller_style(styled_as)] if styled_as else None
+        styles = [_solid(styled_as)] if styled_as else None
         draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
         margins = loop_margins(loop)
         if not margins.stable:
@@ -123,7 +134,7 @@ def step_figure(
 
     def draw(axes: Axes) -> str:
         time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
-        draw_step_response(axes, {name: (time, output)}, [controller_style(styled_as)])
+        draw_step_response(axes, {name: (time, output)}, [_solid(styled_as)])
         return (
             f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
             f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from ddct_controllers.design.drawing.line_looks import LineLook, controller_look
+from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LineLook, controller_look
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.files.output_file import write_bytes, write_text
 
@@ -33,13 +33,14 @@ ORANGE = '#e69f00'
 SKY = '#56b4e9'
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 """Okabe's and Ito's, without the yellow that is faint on white."""
-_DASHES = ('-', (0, (5, 1.2)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
-"""Neighbouring lines differ in these too, so that a grey print can be read."""
+_DASHES = (DASHES[0], *DASHES[2:], DOTS)
+"""As many as colours, so that a grey print can be read; none like that of references."""
 REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth': 1.3}
 """How what should be followed is drawn."""
 BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
 """How what should not be exceeded is drawn."""
-_LINE_WIDTH = 1.5
+LINE_WIDTH = 1.5
+"""Of a line in points; dashes are in widths of it."""
 _MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """A symbol with its index and perhaps a power, such as W_s^-1."""
@@ -60,7 +61,7 @@ _STYLE: dict[Any, Any] = {
     'axes.spines.right': False,
     'grid.color': '#d8d8d8',
     'grid.linewidth': 0.6,
-    'lines.linewidth': _LINE_WIDTH,
+    'lines.linewidth': LINE_WIDTH,
     'legend.fontsize': 10.0,
     'legend.framealpha': 0.9,
     'svg.hashsalt': 'ddct',
@@ -83,7 +84,12 @@ def new_chart(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
 def line_styles() -> Iterator[dict[str, Any]]:
     """Yield the keywords of one line after the other, without end."""
     pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
-    return ({'color': colour, 'linestyle': dashes} for colour, dashes in pairs)
+    return ({'color': colour, 'linestyle': dash_style(dash)} for colour, dash in pairs)
+
+
+def dash_style(dash: tuple[int, ...]) -> Any:
+    """Return matplotlib's name of a line with these lengths of line and gap in points."""
+    return (0, tuple(length / LINE_WIDTH for length in dash)) if dash else '-'
 
 
 def controller_style(name: str, repeat: int = 0) -> dict[str, Any]:
@@ -93,9 +99,7 @@ def controller_style(name: str, repeat: int = 0) -> dict[str, Any]:
 
 def look_style(look: LineLook) -> dict[str, Any]:
     """Return the keywords of a line with this look."""
-    style: dict[str, Any] = {'color': look.light, 'linestyle': '-'}
-    if look.dash:  # in widths of the line
-        style['linestyle'] = (0, tuple(length / _LINE_WIDTH for length in look.dash))
+    style: dict[str, Any] = {'color': look.light, 'linestyle': dash_style(look.dash)}
     if look.mark:
         style |= {'marker': _MARKERS[look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
         style['markerfacecolor'] = look.light if look.filled else 'white'

@@ -25,10 +25,12 @@ from ddct_controllers.design.drawing.chart_style import (
     REFERENCE_LINE,
     VERMILLION,
     chart_style,
+    dash_style,
     line_styles,
     new_chart,
     save_figure,
 )
+from ddct_controllers.design.drawing.line_looks import DASHES
 from ddct_controllers.design.drawing.nichols import (
     TURN_DEG,
     NicholsCurve,
@@ -44,6 +46,7 @@ from ddct_plant.linear.lti import StateSpace
 
 _PHASE_DEG, _MAGNITUDE_DB = (-360.0, 0.0), (-40.0, 40.0)
 """What a Nichols chart shows."""
+_BOUNDED_LINES = ((BLUE, DASHES[0]), (GREEN, DASHES[2]))
 _STEP_RISE_TIMES = 8.0
 """Length of the step chart in rise times asked for."""
 
@@ -63,11 +66,11 @@ def draw_nichols(
     """
     draw_nichols_grid(axes, _PHASE_DEG, _MAGNITUDE_DB)
     s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
-    for name, curve, colour in (
-        (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE),
-        (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION),
+    for name, curve, colour, line in (
+        (f'|S| = S_p = {s_p:.2f}', constant_s_curve(s_p), ORANGE, '-.'),
+        (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION, '--'),
     ):
-        draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle='--')
+        draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle=line)
     for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
     critical = np.arange(-180.0, _PHASE_DEG[0] - 1.0, -TURN_DEG)
@@ -111,8 +114,9 @@ def draw_bound(
     bound: tuple[str, np.ndarray],
 ) -> None:
     """Draw functions by name in dB over frequency, and their bound, (name, values at omega)."""
-    for (name, values), colour in zip(functions.items(), (BLUE, GREEN), strict=False):
-        axes.semilogx(omega, decibel(values), color=colour, label=name)
+    for (name, values), (colour, dash) in zip(functions.items(), _BOUNDED_LINES, strict=False):
+        line = dash_style(dash)
+        axes.semilogx(omega, decibel(values), color=colour, linestyle=line, label=name)
     bound_name, limits = bound
     axes.semilogx(omega, decibel(limits), label=bound_name, **BOUND_LINE)
     axes.set(xlim=(omega[0], omega[-1]), xlabel='Frequency, rad/s', ylabel='Magnitude, dB')

@@ -20,6 +20,9 @@ far apart for normal, protanopic, deuteranopic and tritanopic eyes, at a contras
 DASHES = ((), (7, 3), (2, 2), (9, 3, 2, 3), (14, 4), (9, 3, 2, 3, 2, 3))
 """Lengths of line and gap in pixels, for a grey print and for more controllers than colours."""
 
+DOTS = (2, 5)
+"""A dash for charts in which those are taken."""
+
 MARKS = ('circle', 'square', 'star', 'plus')
 """Shapes on a line, filled or hollow. Triangles and diamonds mark events and printed figures."""
 

@@ -19,8 +19,13 @@ _MAGNITUDES_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
 """Levels of |T|."""
 _PHASES_DEG = (-30.0, -60.0, -90.0, -120.0, -150.0, -210.0, -240.0, -270.0, -300.0, -330.0)
 """Levels of arg T."""
-_LINE: dict[str, Any] = {'color': '#c4c4c4', 'linewidth': 0.7, 'zorder': 1.2}
-_PHASE_LINE = _LINE | {'linestyle': (0, (2, 2))}
+_LINE: dict[str, Any] = {
+    'color': '#c4c4c4',
+    'linewidth': 0.7,
+    'linestyle': (0, (1, 1)),
+    'zorder': 1.2,
+}
+_PHASE_LINE = _LINE | {'linestyle': (0, (4, 4))}
 _TEXT: dict[str, Any] = {
     'color': '#6e6e6e',
     'fontsize': 7.5,

@@ -1,0 +1,57 @@
+"""In each figure of the gallery no two lines share a colour, or dashes that look alike."""
+
+from itertools import combinations
+from typing import Any
+
+import pytest
+from matplotlib.colors import to_hex
+
+from ddct_bringup.reproduction.figures.command import collect_figures
+from ddct_controllers.design.drawing.chart_style import chart_style
+
+FIGURES = {figure.number: figure for figure in collect_figures()}
+
+
+def dash_points(line: Any) -> tuple[float, ...]:
+    """Return the lengths of line and gap in points, empty for a solid line."""
+    lengths = line._unscaled_dash_pattern[1]  # matplotlib has no public name for it
+    return tuple(line.get_linewidth() * each for each in lengths or ())
+
+
+def look_alike(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """Say whether two dashes have as many parts, nearly one period and nearly the same share."""
+    if len(one) != len(other):
+        return False
+    if not one:
+        return True
+    periods, shares = (
+        [measure(each) for each in (one, other)]
+        for measure in (sum, lambda each: sum(each[::2]) / sum(each))
+    )
+    return max(periods) < 1.5 * min(periods) and abs(shares[0] - shares[1]) < 0.1
+
+
+def of_the_legend(axes):
+    return [
+        line
+        for line in axes.get_lines()
+        if not str(line.get_label()).startswith('_') and line.get_linestyle() != 'None'
+    ]
+
+
+@pytest.mark.parametrize('number', FIGURES)
+def test_each_line_of_a_figure_has_its_own_colour_and_its_own_dash(number):
+    with chart_style():
+        chart, _ = FIGURES[number].draw()
+    for axes in chart.axes:
+        for one, other in combinations(of_the_legend(axes), 2):
+            pair = f'{one.get_label()} and {other.get_label()}'
+            assert to_hex(one.get_color()) != to_hex(other.get_color()), pair
+            assert not look_alike(dash_points(one), dash_points(other)), pair
+
+
+def test_a_dash_of_a_thinner_line_is_the_same_to_the_eye_and_another_is_not():
+    assert look_alike((7.0, 3.0), (4.8, 2.1))
+    assert look_alike((), ())
+    assert not look_alike((7.0, 3.0), (2.0, 2.0))
+    assert not look_alike((9.0, 3.0, 2.0, 3.0), (9.0, 3.0))
