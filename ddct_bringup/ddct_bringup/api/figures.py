@@ -6,14 +6,20 @@ from matplotlib.figure import Figure
 
 from ddct_bringup.api.runs import Run, as_runs
 from ddct_bringup.report.quantities import Quantity, quantities_of
-from ddct_bringup.report.runs import run_labels
-from ddct_controllers.design.drawing.chart_style import chart_style, look_style
+from ddct_bringup.report.runs import common_conditions, run_labels, varied_conditions
+from ddct_controllers.design.drawing.chart_style import (
+    chart_style,
+    controllers_text,
+    headed,
+    look_style,
+)
 from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
+from ddct_plant.scenario.differences import scenario_title
 
-_WIDTH_IN, _CHART_IN = 8.0, 2.6
+_WIDTH_IN, _CHART_IN, _TITLE_IN = 8.0, 2.6, 0.6
 
 
 def figure(
@@ -22,8 +28,10 @@ def figure(
     """
     Return a figure with a chart per quantity over time, all runs in each.
 
-    The quantities are the keys of the report's charts, such as w_d, error, w_sr, A_x, C_f_request;
-    `temperature` and others of a clutch that sticks too. Raise ParameterError for another.
+    The title names the controllers, what the runs differ in, and what they share: scenario,
+    architecture, clutch, wear gain. The quantities are the keys of the report's charts, such as
+    w_d, error, w_sr, A_x, C_f_request; `temperature` and others of a clutch that sticks too. Raise
+    ParameterError for another.
     """
     shown = as_runs(runs)
     if not shown or not quantities:
@@ -32,7 +40,8 @@ def figure(
     looks = looks_of(each.entry['controller'] or each.entry['bag'] for each in shown)
     end_s = max(each.trajectory.time_s[-1] for each in shown)
     with chart_style():
-        drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities)))
+        drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities) + _TITLE_IN))
+        drawing.suptitle(_title(shown))
         charts = drawing.subplots(len(quantities), squeeze=False)[:, 0]
         for axes, key in zip(charts, quantities, strict=True):
             for each, label, look in zip(shown, labels, looks, strict=True):
@@ -41,6 +50,22 @@ def figure(
                 axes.plot(each.trajectory.time_s, values, label=label, **look_style(look))
             label_time_axis(axes, f'{key}, {quantity.unit}', (0.0, end_s))
     return drawing
+
+
+def _title(runs: Sequence[Run]) -> str:
+    """Return which controllers are drawn over what, and below it what all runs share."""
+    entries = [run.entry for run in runs]
+    names = dict.fromkeys(entry['controller'] or entry['bag'] for entry in entries)
+    scenarios = dict.fromkeys(
+        scenario_title(entry['scenario'] or 'no scenario', entry['scenario_changes'] or ())
+        for entry in entries
+    )
+    varied = [key.replace('_', ' ') for key in varied_conditions(entries)]
+    varied = ['scenario', *varied] if len(scenarios) > 1 else varied
+    over = f' over {", ".join(varied)}' if varied else ''
+    shared = ', '.join(common_conditions(entries))
+    title = f'{controllers_text(list(names))}{over}'
+    return headed(title, f'{"; ".join(scenarios)}; {shared}', _WIDTH_IN)
 
 
 def _quantity(run: Run, key: str) -> Quantity:

@@ -117,8 +117,7 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
 
     Where that is not enough the bag is named too. A bag that tells no controller goes by its name.
     """
-    known = _simulated(entries)
-    differing = [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
+    differing = varied_conditions(entries)
     labels = [_label(entry, differing) for entry in entries]
     counts = Counter(labels)
     labels = [
@@ -126,6 +125,12 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
         for label, entry in zip(labels, entries, strict=True)
     ]
     return _numbered(labels)
+
+
+def varied_conditions(entries: Sequence[Entry]) -> list[str]:
+    """Return the keys of the conditions in which simulated runs differ, which their labels name."""
+    known = _simulated(entries)
+    return [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
 
 
 def common_conditions(entries: Sequence[Entry]) -> list[str]:

@@ -71,6 +71,25 @@ class Sweep:
         """Those of the points."""
         return [self.base.at(point) for point in self.points]
 
+    @property
+    def conditions(self) -> str:
+        """What all runs share, for a heading: scenario, architecture, clutch and wear gain."""
+        settings = self.settings[0]
+        changes = [f'{key}={value}' for key, value in self.base.changes.items()]
+        swept = [axis.key for axis in self.axes]
+        shared = {
+            'architecture': settings.architecture,
+            'clutch': f'{settings.clutch} clutch',
+            'wear_gain': f'wear gain {settings.wear_gain:g}',
+        }
+        kept = ', '.join(text for key, text in shared.items() if key not in swept)
+        return '; '.join(filter(None, (scenario_title(settings.scenario.name, changes), kept)))
+
+    @property
+    def varied(self) -> str:
+        """What is varied, for a heading."""
+        return f'over {", ".join(axis.key for axis in self.axes)}'
+
     def __len__(self) -> int:
         """Return the number of runs."""
         return len(self.controllers) * len(self.points)
@@ -112,14 +131,7 @@ def sweep_csv(runs: Sequence[Entry]) -> str:
 
 def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Table:
     """Return a row per run: the controller, where it ran, its metrics and its state."""
-    settings = sweep.settings[0]
-    changes = [f'{key}={value}' for key, value in sweep.base.changes.items()]
-    swept = [axis.key for axis in sweep.axes]
-    wear = '' if 'wear_gain' in swept else f', wear gain {settings.wear_gain:g}'
-    title = (
-        f'{scenario_title(settings.scenario.name, changes)}; {settings.architecture}, '
-        f'{settings.clutch} clutch{wear}; over {", ".join(swept)}'
-    )
+    title = f'{sweep.conditions}; {sweep.varied}'
     columns = [CONTROLLER, *map(_place, sweep.axes), *map(metric, metrics), STATE]
     return table_of(title, columns, runs)
 

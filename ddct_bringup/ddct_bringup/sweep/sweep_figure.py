@@ -24,6 +24,8 @@ from ddct_controllers.design.drawing.chart_style import (
     GREY,
     chart_style,
     controller_style,
+    controllers_text,
+    headed,
     save_chart,
 )
 from ddct_controllers.registry import controller_label
@@ -53,6 +55,11 @@ def write_sweep_figure(
         save_chart(sweep_figure(sweep, runs, metrics), path)
 
 
+def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
+    """Return who is drawn over what, and below it in which conditions, for a figure so wide."""
+    return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
+
+
 def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Drawing:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
@@ -61,8 +68,9 @@ def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure])
         return _maps(sweep, names, states)
     lane = 0.5 + _LANE_IN * len(names)
     heights = [*(_PANEL_IN for _ in metrics), lane]
-    drawing = Drawing(figsize=(_WIDTH_IN, sum(heights) + 0.8))
+    drawing = Drawing(figsize=(_WIDTH_IN, sum(heights) + 1.3))
     panels = drawing.subplots(len(heights), sharex=True, height_ratios=heights)
+    panels[0].set_title(_title(sweep, names, _WIDTH_IN))  # below the legend
     places = places_of(sweep.axes[0])
     for axes, figure in zip(panels, metrics, strict=False):
         values = np.array([run['metrics'][figure.key] for run in runs], dtype=float)
@@ -112,7 +120,9 @@ def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Drawing:
     across, up = sweep.axes
     columns = min(_ACROSS, len(names))
     rows = -(-len(names) // columns)
-    drawing = Drawing(figsize=(max(_MAP_IN * columns, 4.5), _MAP_IN * rows + 0.6))
+    width = max(_MAP_IN * columns, 4.5)
+    drawing = Drawing(figsize=(width, _MAP_IN * rows + 1.1))
+    drawing.suptitle(_title(sweep, names, width))
     panels = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     edges = (edges_of(places_of(across)), edges_of(places_of(up)))
     for axes, name, each in zip(panels.flat, names, states, strict=False):

@@ -66,6 +66,24 @@ def test_a_panel_says_symbol_and_unit_as_they_are_printed(panel):
     assert panel.get_ylabel() == 't_a, s'
 
 
+def test_the_title_says_who_is_drawn_over_what_and_in_which_conditions():
+    figure = drawn(['wear_gain=0.8,1.2'], ['pi', 'ls8'], [(ENGAGED, 1.0)] * 4)
+    assert figure.axes[0].get_title() == (
+        'pi, ls8 over wear_gain\nthesis; detailed, linear clutch'
+    )
+    over = ['load.slope_rad=0,0.05', 'clutch=linear,stick_slip']
+    figure = drawn(over, ['pi'], [(ENGAGED, 1.0)] * 4)
+    first, *others = figure.get_suptitle().split('\n')
+    assert first == 'pi over load.slope_rad, clutch'
+    assert ' '.join(others) == 'thesis; detailed, wear gain 1'
+
+
+def test_of_many_controllers_the_title_has_the_number():
+    names = [f'ls{index}' for index in range(1, 10)]
+    figure = drawn(['wear_gain=1,1.2'], names, [(ENGAGED, 1.0)] * 18)
+    assert figure.axes[0].get_title().startswith('9 controllers over wear_gain\n')
+
+
 def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
     runs = [(ENGAGED, 1.0), (ENGAGED, None), (NOT_ENGAGED, 1.5)]
     panel = drawn(['wear_gain=0.8,1,1.2'], ['pi'], runs).axes[0]

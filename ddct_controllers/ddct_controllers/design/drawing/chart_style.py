@@ -6,10 +6,11 @@ The colours are fit for colour-blind readers.
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from itertools import cycle, zip_longest
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import matplotlib
@@ -44,6 +45,9 @@ LINE_WIDTH = 1.5
 _MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """A symbol with its index and perhaps a power, such as W_s^-1."""
+_LETTERS_IN = 10.0
+"""Letters of a title per inch."""
+_MOST_NAMED = 8
 ENDINGS = ('.png', '.svg', '.csv')
 Column = tuple[str, np.ndarray]
 """Heading with the unit, and the values, (n,)."""
@@ -79,6 +83,17 @@ def new_chart(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
     figure.suptitle(title)
     axes = figure.subplots(1, panels, squeeze=False)
     return figure, list(axes[0])
+
+
+def headed(title: str, conditions: str, width_in: float) -> str:
+    """Return a title with the conditions below it, in lines that a figure so wide holds."""
+    columns = int(_LETTERS_IN * width_in)
+    return '\n'.join(line for text in (title, conditions) for line in wrap(text, columns))
+
+
+def controllers_text(names: Sequence[str]) -> str:
+    """Return the controllers for a title; of many, how many there are."""
+    return ', '.join(names) if len(names) <= _MOST_NAMED else f'{len(names)} controllers'
 
 
 def line_styles() -> Iterator[dict[str, Any]]:
