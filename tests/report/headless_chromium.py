@@ -5,10 +5,12 @@ import base64
 import contextlib
 import itertools
 import json
+import os
 import shutil
 import subprocess
 import tempfile
 import time
+import uuid
 from collections.abc import AsyncIterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +18,15 @@ from typing import Any
 
 WITHIN_S = 60.0
 """How long the browser may take for any one thing on a loaded machine."""
+
+CLOSES_S = 20.0
+"""How long the browser may take to close before it is killed."""
+
+HELPERS_S = 10.0
+"""How long its helpers may take to end after it."""
+
+MARK = 'DDCT_BROWSER'
+"""Environment variable that marks a browser and every process that it starts."""
 
 PRINT = 'print'
 """A script that prints the page, and returns the PDF file."""
@@ -151,12 +162,14 @@ async def _browser() -> AsyncIterator[_Tab]:
 
     program = chromium()
     assert program is not None
+    mark = uuid.uuid4().hex
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         process = subprocess.Popen(
             [program, *_OPTIONS, f'--user-data-dir={profile}', 'about:blank'],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
+            env={**os.environ, MARK: mark},
         )
         try:
             port = await _port(Path(profile) / 'DevToolsActivePort', process)
@@ -170,9 +183,34 @@ async def _browser() -> AsyncIterator[_Tab]:
             await tab.call('Browser.close')
         finally:
             with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(5.0)
+                process.wait(CLOSES_S)
             process.kill()
             process.wait()
+            wait_for_helpers(mark)
+
+
+def wait_for_helpers(mark: str, within_s: float = HELPERS_S) -> list[int]:
+    """
+    Wait until every process with this mark has ended; return those that still run, by id.
+
+    The crash handler is in a session of its own. It ends by itself once it notices that the
+    browser is gone, which takes a moment on a loaded machine.
+    """
+    deadline = time.monotonic() + within_s
+    while (left := _marked(mark)) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return left
+
+
+def _marked(mark: str) -> list[int]:
+    entry = f'{MARK}={mark}'.encode()
+    found = []
+    for folder in Path('/proc').iterdir():
+        if folder.name.isdigit():
+            with contextlib.suppress(OSError):  # it may end, or be somebody else's
+                if entry in (folder / 'environ').read_bytes().split(b'\0'):
+                    found.append(int(folder.name))
+    return found
 
 
 async def _port(file: Path, process: subprocess.Popen[bytes]) -> int:

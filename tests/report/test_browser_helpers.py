@@ -1,0 +1,60 @@
+"""What the browser has started may end a little after it, and must end."""
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+from headless_chromium import MARK, wait_for_helpers
+from support.processes import processes_left
+
+Helpers = list['subprocess.Popen[bytes]']
+
+
+@pytest.fixture
+def helpers() -> Iterator[Helpers]:
+    """Return a list of processes that are ended after the test."""
+    started: Helpers = []
+    yield started
+    for helper in started:
+        helper.kill()
+        helper.wait()
+
+
+def start(helpers: Helpers, mark: str, program: str) -> int:
+    """Start a helper in a session of its own, as the crash handler is."""
+    helper = subprocess.Popen(
+        [sys.executable, '-c', program],
+        stdin=subprocess.PIPE,
+        start_new_session=True,
+        env={**os.environ, MARK: mark},
+    )
+    helpers.append(helper)
+    return helper.pid
+
+
+def test_a_helper_that_ends_when_it_notices_the_end_of_the_browser_is_waited_for(
+    helpers: Helpers,
+) -> None:
+    pid = start(helpers, 'one', 'import sys, time; sys.stdin.read(); time.sleep(0.3)')
+    assert pid in processes_left()
+    (browser,) = (helper.stdin for helper in helpers)
+    assert browser is not None
+    browser.close()
+    assert wait_for_helpers('one', 20.0) == []
+    assert pid not in processes_left(), 'what each test is asked at its end'
+
+
+def test_a_helper_that_stays_is_not_passed_over(helpers: Helpers) -> None:
+    pid = start(helpers, 'two', 'import sys; sys.stdin.read()')
+    started = time.monotonic()
+    assert wait_for_helpers('two', 0.2) == [pid]
+    assert time.monotonic() - started < 10.0
+    assert pid in processes_left(), 'so the test that started it fails'
+
+
+def test_helpers_of_another_browser_are_not_waited_for(helpers: Helpers) -> None:
+    start(helpers, 'three', 'import sys; sys.stdin.read()')
+    assert wait_for_helpers('four') == []
