@@ -17,11 +17,14 @@ from support.processes import START_S, Programs
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from support.silent_controller import run_until_silent
 
+from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
@@ -54,6 +57,18 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
         assert np.ptp(trajectory.engine_torque - trajectory.torque_demand) > 10.0
         bags.append(bag_bytes(folder))
     assert all(bag == bags[0] for bag in bags)
+
+
+def test_a_commanded_engine_with_limits_is_the_headless_one_while_the_shaft_stands(
+    tmp_path: Path,
+) -> None:
+    changes = ['duration_s=0.6', 'score_window_s=[0.3,0.6]']
+    settings = RunSettings(load_scenario('launch', changes), clutch='stick_slip')
+    run = RunPlan(settings, 'mpc4', 'single-process')
+    trajectory = record(run, tmp_path / 'run').trajectory
+    assert trajectory.sha256() == expected(run).sha256()
+    engine, shaft = trajectory.joint_speed[:, 0], trajectory.joint_speed[:, 1]
+    assert engine[30] > shaft[30] + 50.0
 
 
 def test_an_engine_that_does_not_expect_requests_says_so(graph_of: GraphOf) -> None:

@@ -7,14 +7,18 @@ import threading
 import warnings
 from dataclasses import replace
 from importlib.metadata import EntryPoint, EntryPoints
+from importlib.resources import files
 
 import numpy as np
 import pytest
 
 from ddct_bringup import api
+from ddct_bringup.api import runs
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
+from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers import registry
 from ddct_controllers.design.drawing.line_looks import controller_look
@@ -257,3 +261,38 @@ def test_what_cannot_be_used_is_an_error_that_names_it(options, text):
 
 def test_everything_public_is_there():
     assert [name for name in api.__all__ if not hasattr(api, name)] == []
+
+
+def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeypatch):
+    good = api.run('ls8', duration=SHORT_S, out=tmp_path)
+    before = {file.name: file.read_bytes() for file in good.path.parent.iterdir()}
+
+    def half(plan, folder):
+        settings = RunSettings(load_scenario('thesis', [f'duration_s={SHORT_S / 2}']))
+        data = custom_data(plan.settings, plan.name, plan.steps)
+        info = {'load': {'version': '0.1.0'}}
+        write_trajectory(run_headless(settings, 'ls8'), folder, plan.name, data, info)
+
+    monkeypatch.setattr(runs, 'execute', half)
+    bad = api.run('ls8', duration=SHORT_S, out=tmp_path, overwrite=True)
+    assert not bad.valid
+    assert 'ended early' in bad.reason
+    assert bad.path.parent == tmp_path / 'ls8.partial'
+    after = {file.name: file.read_bytes() for file in good.path.parent.iterdir()}
+    assert after == before
+
+
+def test_a_loaded_run_is_judged_by_the_limits_that_are_given(tmp_path):
+    kept = api.run('ls8', duration=SHORT_S, out=tmp_path / 'runs')
+    packaged = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+    mine = tmp_path / 'mine.yaml'
+    stricter = '{criterion: weighted_acceleration, value: 0.001, unit: m/s^2, applies_to: all'
+    mine.write_text(f'{packaged}  - {stricter}, convention: true}}\n', encoding='utf-8')
+
+    def limit_of(run):
+        criteria = run.entry['verdict']['criteria']
+        (found,) = [each for each in criteria if each['name'] == 'weighted_acceleration']
+        return found['limit']
+
+    assert limit_of(api.load(kept.path)) == limit_of(kept) > 0.001
+    assert limit_of(api.load(kept.path, limits=mine)) == 0.001

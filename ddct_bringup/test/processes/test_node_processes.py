@@ -249,3 +249,29 @@ def test_the_owner_of_time_may_hang_while_it_leaves(processes, quick_to_leave):
     nodes.wait_for('driveline', lambda: False)
     nodes.require_clean_end()
     nodes.__exit__()
+
+
+@pytest.mark.parametrize('order', [('driveline', 'clutch'), ('clutch', 'driveline')])
+@pytest.mark.parametrize('code', [1, -signal.SIGKILL])
+def test_to_blame_is_the_node_that_failed_and_not_the_driveline_that_noticed(
+    processes, order, code
+):
+    """Both have ended when the supervisor looks: without the clutch the driveline fails too."""
+    programs = {
+        'clutch': OBEDIENT if code < 0 else "print('ready', flush=True); sys.exit(1)",
+        'driveline': "print('ready', flush=True); sys.exit(1)",
+    }
+    nodes = processes(**{name: programs[name] for name in order})
+    if code < 0:
+        next(node for node in nodes._nodes if node.name == 'clutch').process.kill()
+    for node in nodes._nodes:
+        node.process.wait(WITHIN_S)
+    assert wait_as_supervisor(nodes).startswith('node clutch ')
+
+
+def test_a_node_that_ended_well_is_not_to_blame_where_the_driveline_failed(processes):
+    done = "print('ready', flush=True)"
+    nodes = processes(clutch=done, driveline="print('ready', flush=True); sys.exit(1)")
+    for node in nodes._nodes:
+        node.process.wait(WITHIN_S)
+    assert wait_as_supervisor(nodes).startswith('node driveline ended with code 1')

@@ -410,3 +410,28 @@ def test_a_second_input_is_refused():
         ParameterError, match='2 inputs given: without an engine authority it decides 1'
     ):
         controller(replace(MPC3, inputs=(InputTerms(0.1), InputTerms(0.1))))
+
+
+class NoSolution:
+    """A solver that gives up at chosen calls."""
+
+    def __init__(self, solver, at):
+        self._solver, self._at, self._calls = solver, at, 0
+
+    def reset(self):
+        self._solver.reset()
+
+    def solve(self, *program):
+        self._calls += 1
+        solution = self._solver.solve(*program)
+        return replace(solution, status='iteration limit') if self._calls in self._at else solution
+
+
+def test_the_status_counts_the_steps_without_a_solution():
+    mpc = controller()
+    mpc._solver = NoSolution(mpc._solver, at=(3, 4, 7))
+    statuses = [dict(each.status) for each in answers(mpc)]
+    assert [status['fallbacks'] for status in statuses] == list('00122233')
+    assert [status['qp_status'] == 'solved' for status in statuses].count(False) == 3
+    mpc.reset()
+    assert dict(answers(mpc, steps=1)[0].status)['fallbacks'] == '0'

@@ -175,3 +175,12 @@ def test_capacities_that_cannot_be_are_refused():
         driveline.step(60.0, 20.0, [-1.0] * 11, [1.0] * 11, ROLLING)
     with pytest.raises(ParameterError, match='element 1: its capacity -2.0 must not be negative'):
         driveline.step(60.0, 20.0, [1.0] * 11, [1.0] * 11, -2.0)
+
+
+def test_the_clutch_is_open_as_soon_as_a_period_ends_without_capacity():
+    """Its capacity falls to zero within the period: the next tick says so, not the one after."""
+    driveline = make(initial(300.0, 160.0))
+    for last, expected in ((50.0, 'slipping'), (0.0, 'open'), (50.0, 'slipping')):
+        capacity = np.linspace(100.0 if last else 50.0, last, 11).tolist()
+        driveline.step(150.0, 0.0, capacity, capacity, ROLLING)
+        assert phase(driveline) == expected

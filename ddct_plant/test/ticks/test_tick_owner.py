@@ -88,6 +88,17 @@ def test_lockstep_never_steps_on_a_reply_to_another_tick(lockstep):
     assert lockstep.owner.late == 3
 
 
+def test_replies_to_the_tick_of_now_are_never_late_however_often_they_come(lockstep):
+    lockstep.owner.start()
+    for _ in range(3):
+        lockstep.answer(0, topics=(ENGINE,))
+    assert lockstep.owner.late == 0
+    lockstep.answer(0, topics=(LOAD, CLUTCH))
+    lockstep.answer(0, topics=(LOAD,))
+    assert lockstep.owner.step == 1
+    assert lockstep.owner.late == 1, 'the one of t_0, after its step'
+
+
 def test_lockstep_sends_an_unanswered_tick_again_unchanged(lockstep):
     lockstep.owner.start()
     lockstep.answer(0, topics=(ENGINE,))
@@ -299,6 +310,7 @@ def test_a_missing_holding_torque_holds_the_last_and_is_counted():
     run.go_to(20, topics=(ENGINE, LOAD, CLUTCH))
     assert {step[-1] for step in run.driveline.steps} == {60.0}
     assert run.owner.missed_replies[HOLDING] == 19
+    assert run.owner.missed_steps == 19
     assert not run.owner.safe
 
 

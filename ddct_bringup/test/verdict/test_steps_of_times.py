@@ -1,0 +1,14 @@
+"""A time that is a step's is that step, whatever the last bit of the division says."""
+
+from ddct_bringup.verdict.judged_run import step_at
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
+
+
+def test_the_time_of_a_step_is_that_step():
+    off_the_grid = [k for k in range(100_000) if time_of_step(k) / PERIOD_S > k]
+    assert off_the_grid, 'there are times whose division ends above the step'
+    assert [k for k in range(100_000) if step_at(time_of_step(k)) != k] == []
+
+
+def test_a_time_after_a_step_is_the_next_one():
+    assert [step_at(0.57 + after) for after in (1e-6, 0.005, 0.0099)] == [58, 58, 58]

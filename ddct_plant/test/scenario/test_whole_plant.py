@@ -1,0 +1,38 @@
+"""The plant without ROS: what it delivers and what resists at each step."""
+
+import pytest
+
+from ddct_plant.base.timebase import time_of_step
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.plant import make_engine, make_load
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import WholePlant
+
+SLOPE = 'slope={time_s: [0.0, 1.0], slope_rad: [0.0, 0.2]}'
+
+
+@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
+    settings = RunSettings(load_scenario('thesis', [SLOPE]), clutch=clutch)
+    plant, load = WholePlant(settings, two_input=False), make_load(settings)
+    found = []
+    for step in range(60):
+        sight = plant.look(step)
+        reply = plant.reply(step, sight, 0.0, None)
+        assert reply['load_torque'] == load.torque(sight.now.vehicle_speed, time_of_step(step))
+        found.append(reply['load_torque'])
+        plant.advance(reply)
+    assert found[-1] > found[0] + 400.0, 'at 0.118 rad'
+
+
+def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
+    """At rest in gear: the shaft stands, and at its speed the engine would give nothing."""
+    settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
+    plant, engine = WholePlant(settings, two_input=True), make_engine(settings)
+    sight = plant.look(0)
+    engine_speed, shaft_speed = sight.now.joint_speed[:2]
+    assert engine_speed == pytest.approx(104.72)
+    assert shaft_speed == 0.0
+    found = plant.reply(0, sight, 0.0, 80.0)['engine_torque']
+    assert found == engine.torque(0, 80.0, engine_speed)
+    assert found != make_engine(settings).torque(0, 80.0, shaft_speed)
