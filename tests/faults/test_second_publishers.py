@@ -79,7 +79,7 @@ def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph = graph_of(plan(controller, duration_s=0.3, clutch=clutch, changes=changes))
     graph.add_other(Echo(topic, context=graph.context))
     node, complaint = _graph(graph, recorded=recorded).first_failure()
-    assert node == 'driveline'
+    assert node == 'driveline', complaint
     assert complaint.startswith(f'{topic.name} has two live publishers, of the nodes /')
     assert '/echo' in complaint
     assert 'another ROS_DOMAIN_ID' in complaint
