@@ -128,7 +128,7 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
 
 
 def varied_conditions(entries: Sequence[Entry]) -> list[str]:
-    """Return the keys of the conditions in which simulated runs differ, which their labels name."""
+    """Return the keys of the conditions in which simulated runs differ; labels name them."""
     known = _simulated(entries)
     return [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
 

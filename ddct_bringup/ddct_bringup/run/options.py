@@ -5,8 +5,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, TextIO
 
-from ddct_controllers.from_file.controller_file import is_controller_file
-from ddct_controllers.interface import UNSTATED
+from ddct_controllers.interface import UNSTATED, Controller, ControllerSpec
 from ddct_controllers.registry import (
     Chosen,
     controller_label,
@@ -136,19 +135,18 @@ def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
     for name in names:
         try:
             spec = controller_spec(name)
-            found.setdefault(_origin(name, spec.computed_from), []).append(spec.name)
+            found.setdefault(_origin(spec), []).append(spec.name)
         except DdctError:  # a third party's that cannot be loaded
             found.setdefault(_NOT_LOADED, []).append(str(name))
     for origin, labels in found.items():
         print(origin.format(printable(', '.join(labels))), file=stream)
 
 
-def _origin(chosen: Chosen, computed_from: str) -> str:
+def _origin(spec: ControllerSpec[Controller]) -> str:
     """Return a line about a controller, with a place for names."""
-    if computed_from != UNSTATED:
-        return f'computed from {computed_from}: {{}}'
-    in_a_file = isinstance(chosen, str) and is_controller_file(chosen)
-    return _FROM_FILES if in_a_file else _FROM_CLASSES
+    if spec.computed_from != UNSTATED:
+        return f'computed from {spec.computed_from}: {{}}'
+    return _FROM_FILES if spec.written_in else _FROM_CLASSES
 
 
 def controller_options_table() -> Table:

@@ -38,5 +38,18 @@ def test_a_controller_file_is_not_asked_for_what_it_cannot_say():
     ]
 
 
+def test_the_class_in_a_python_file_can_say_it(tmp_path):
+    file = tmp_path / 'mine.py'
+    file.write_text(
+        'from ddct_controllers.interface import Command, Controller\n'
+        'class Mine(Controller):\n'
+        '    def reset(self):\n        pass\n'
+        '    def update(self, measurement):\n        return Command(0.0)\n',
+        encoding='utf-8',
+    )
+    (line,) = printed(str(file))
+    assert 'changes their gains: Mine (write into the class' in line
+
+
 def test_one_that_cannot_be_loaded_is_called_so():
     assert printed('nobody') == ['cannot be loaded, as the options of controllers say: nobody']
