@@ -41,4 +41,4 @@ def test_the_numbers_of_controllers_and_criteria_are_right() -> None:
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
     assert f'with {len(controller_names())} such controllers' in readme
     verdict = (USE / 'verdict.md').read_text(encoding='utf-8')
-    assert f'[{len(CRITERIA)} criteria](metrics_and_symbols.md#criteria)' in verdict
+    assert f'[{len(CRITERIA)} criteria](criteria.md)' in verdict

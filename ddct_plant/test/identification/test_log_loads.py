@@ -1,13 +1,14 @@
 """What a log says of C_load is a mean over its time, however its gaps part it."""
 
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ddct_plant.identification.log_fit import PARAMETERS, fit_log
-from ddct_plant.identification.log_model import Stretch, responses
-from ddct_plant.identification.log_stretches import TORQUES
+from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.model import Sampling, Stretch, responses
+from ddct_plant.identification.from_log.names import TORQUES
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -22,11 +23,20 @@ def part(start_s: float, samples: int, load_n_m: float, random: np.random.Genera
     points = np.arange(time_s[0], time_s[-1] + 0.5, 0.2)
     torques = [np.interp(time_s, points, random.uniform(50.0, 250.0, len(points))) for _ in 'mf']
     table = np.column_stack([*torques, np.zeros(samples)])
-    stretch = Stretch(time_s, np.zeros((samples, 3)), time_s, table, (False, False, False), False)
-    forced, basis = responses(vars(DrivelineParameters()), stretch)
+    stretch = Stretch(
+        time_s,
+        np.zeros((samples, 3)),
+        time_s,
+        table,
+        bends=np.zeros((samples, 3)),
+        held=(False, False, False),
+        load_known=False,
+        known_s=(float(time_s[0]), float(time_s[-1])),
+    )
+    forced, basis = responses(vars(DrivelineParameters()), Sampling(), stretch)
     speeds = forced + basis @ np.array([200.0, 180.0, 180.0 / RATIO, 0.02, load_n_m])
     noise = 1e-3 * random.standard_normal(speeds.shape)
-    return Stretch(time_s, speeds + noise, time_s, table, stretch.held, load_known=False)
+    return replace(stretch, speeds=speeds + noise)
 
 
 def test_a_stretch_counts_by_its_length() -> None:
@@ -44,7 +54,9 @@ def test_a_stretch_counts_by_its_length() -> None:
     log = MeasuredLog(
         Path('drive.csv'), '', np.concatenate([each.time_s for each in parts]), signals
     )
-    fixed = [name for name in PARAMETERS if name != 'vehicle_inertia']
-    fit = fit_log(log, DrivelineParameters(), lambda wheels: np.zeros(len(wheels)), fixed)
+    names = [each.name for each in fields(DrivelineParameters)]
+    fixed = [name for name in names if name != 'vehicle_inertia']
+    on_time = dict.fromkeys((*SPEEDS, *TORQUES), 0.0)
+    fit = fit_log(log, DrivelineParameters(), lambda wheels: np.zeros(len(wheels)), fixed, on_time)
     assert fit.load_torque == pytest.approx(np.average(LOADS_N_M, weights=SAMPLES), abs=2.0)
     assert abs(fit.load_torque - np.mean(LOADS_N_M)) > 90.0
