@@ -100,12 +100,32 @@ def test_the_nodes_of_a_killed_bringup_end_by_themselves(
     programs: Programs, tmp_path: Path
 ) -> None:
     bringup = _running(programs, tmp_path / 'runs')
-    assert len(processes_left()) == 10, 'bringup, its guardian and the nodes'
+    processes = processes_left()
+    assert len(processes) == 11, 'bringup, the warm parent, the guardian and the nodes'
+    # Ports are shared, and used again by graphs of others.
+    own = [name for pid in processes for name in segments_of(pid) if 'port' not in name]
+    assert len(own) == len(set(own)) >= 8, 'each node has its own'
     bringup.send(signal.SIGKILL)
     bringup.wait()
     wait_until(lambda: not processes_left(), 'no node left', 20.0)
+    there = {file.name for file in SHARED_MEMORY.iterdir()}
+    assert not {name for name in there for segment in own if segment in name}
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
+
+
+def test_a_run_goes_on_without_the_warm_parent_that_forked_its_nodes(
+    programs: Programs, tmp_path: Path
+) -> None:
+    out = tmp_path / 'runs'
+    bringup = programs.start_module(
+        *('ddct_bringup.programs.bringup', '--controller', 'ls8', '--duration', '30'),
+        *('--out', str(out)),
+    )
+    wait_until(lambda: (out / 'ls8.partial' / 'ls8_0.mcap').exists(), 'a bag', START_S)
+    os.kill(node_of('processes.forks'), signal.SIGKILL)
+    assert bringup.wait() == 0, bringup.errors()
+    assert _require_whole_until_its_end(out / 'ls8') == 3000
 
 
 def _segments(programs: Programs, node: Program) -> set[str]:

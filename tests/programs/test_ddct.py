@@ -4,9 +4,13 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
+from support.complaints import assert_one_line
+from support.processes import Programs, processes_left
 
 from ddct_bringup.programs import ddct
 
@@ -145,3 +149,39 @@ def test_a_sourced_workspace_has_it_on_the_path() -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[0].endswith('/bin/ddct')
     assert 'usage: ddct load ' in done.stdout
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'expected'),
+    [
+        (['bringup'], 1),
+        (['compare', '--controllers', 'pi'], 1),
+        (['bringup', '--headless'], 0),
+        (['compare', '--list'], 0),
+        (['bringup', '--help'], 0),
+        (['score', '--help'], 0),
+    ],
+)
+def test_a_warm_parent_starts_ahead_where_nodes_are_to_come(
+    arguments: list[str], expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started = []
+
+    @contextmanager
+    def started_ahead() -> Iterator[None]:
+        started.append(True)
+        yield
+
+    monkeypatch.setattr(ddct, 'started_ahead', started_ahead)
+    monkeypatch.setattr(sys, 'argv', ['ddct'])
+    with suppress(SystemExit):
+        ddct.main(arguments)
+    assert len(started) == expected
+
+
+def test_one_that_was_started_ahead_in_vain_is_gone_with_its_program(programs: Programs) -> None:
+    start = 'from ddct_bringup.programs.ddct import main; raise SystemExit(main())'
+    program = programs.start([sys.executable, '-P', '-c', start, 'bringup'])
+    assert program.wait() == 1
+    assert_one_line(program.errors(), 'ddct bringup', '--out is missing')
+    assert not processes_left()

@@ -10,12 +10,13 @@ import contextlib
 import os
 import select
 import signal
-import subprocess
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
+from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
+from ddct_bringup.processes.warm_parent import WarmParent
 
 PATIENCE_S = 10.0
 """How long nodes have to end by themselves once their supervisor is gone."""
@@ -25,26 +26,34 @@ _KILLED_S = 2.0
 class Guardian:
     """The guardian of this process's nodes, as a process of its own."""
 
-    def __init__(self) -> None:
-        """Start it."""
-        self._process = subprocess.Popen(
-            [sys.executable, '-P', '-m', 'ddct_bringup.processes.guardian'],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
+    def __init__(self, parent: WarmParent, stopped: Callable[[], bool]) -> None:
+        """Start it; raise what `WarmParent.start` raises."""
+        reader, writer = os.pipe2(os.O_CLOEXEC)
+        try:
+            (self.process,) = parent.start(
+                [Job(__name__, stdin=reader, outlives=True)], stopped=stopped
+            )
+        except BaseException:
+            os.close(writer)
+            raise
+        finally:
+            os.close(reader)
+        self._nodes = writer
 
     def watch(self, pid: int) -> None:
         """Tell it of one more node, a child of ours that has not been waited for."""
-        assert self._process.stdin is not None
         with contextlib.suppress(BrokenPipeError):  # somebody has killed it
-            self._process.stdin.write(f'{pid}\n'.encode())
-            self._process.stdin.flush()
+            os.write(self._nodes, f'{pid}\n'.encode())
 
     def dismiss(self) -> None:
         """End it, after the last node has ended."""
-        self._process.communicate()
+        os.close(self._nodes)
+        self.process.wait()
+
+
+def main() -> None:
+    """Guard the processes that standard input names."""
+    guard(sys.stdin)
 
 
 def guard(pids: Iterable[str]) -> None:
@@ -74,7 +83,3 @@ def _ends(node: int, within_s: float) -> bool:
     """Wait until the process of a descriptor has ended, or for a time in s; say whether it has."""
     ended, _, _ = select.select([node], [], [], max(within_s, 0.0))
     return bool(ended)
-
-
-if __name__ == '__main__':
-    guard(sys.stdin)

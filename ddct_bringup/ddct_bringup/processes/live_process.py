@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 from ddct_bringup.processes.node_process import Child
 from ddct_bringup.processes.node_processes import POLL_S
+from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 
@@ -63,7 +64,7 @@ class LiveView(Child):
 
 
 @contextmanager
-def live_view(port: int) -> Iterator[LiveView]:
+def live_view(port: int, parent: WarmParent) -> Iterator[LiveView]:
     """
     Reserve a domain for one run, serve it on a port, and yield once a viewer shows a topic.
 
@@ -72,6 +73,7 @@ def live_view(port: int) -> Iterator[LiveView]:
     """
     with own_domain():
         view = LiveView('ddct_bringup.programs.live', '--port', str(port))
+        (view.process,) = parent.start([view.job])
         try:
             view.wait_for_viewer()
             yield view

@@ -3,14 +3,13 @@
 import contextlib
 import os
 import signal
-import subprocess
-import sys
 from pathlib import Path
-from typing import Any
 
+from ddct_bringup.processes.forked_process import ForkedProcess
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
+from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
-from ddct_plant.program.supervision import FAREWELL, PULSE_FD, end_with_parent
+from ddct_plant.program.supervision import FAREWELL
 
 START_S = 60.0
 """How long a node may take to start before it counts as hung."""
@@ -25,22 +24,15 @@ _PIPE_BYTES = 1 << 16
 
 
 class Child:
-    """A running program of ours, which does not outlive us, and what it prints."""
+    """A program of ours, which does not outlive us, and what it prints; `WarmParent` starts it."""
 
-    def __init__(self, module: str, *arguments: str, **options: Any) -> None:
-        """Start `python -m module` with these arguments; `options` are those of Popen."""
+    process: ForkedProcess
+
+    def __init__(self, module: str, *arguments: str, pulse: int | None = None) -> None:
+        """Prepare to run `main` of a module with these arguments."""
         # In memory: a full disk must not swallow the reason of a failure.
         self._printed = os.memfd_create(module)
-        self.process = subprocess.Popen(
-            # -P: a file of the current folder must not hide a module of the same name.
-            [sys.executable, '-P', '-m', module, *arguments],
-            stdin=subprocess.DEVNULL,
-            stdout=self._printed,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            preexec_fn=end_with_parent,
-            **options,
-        )
+        self.job = Job(module, arguments, output=self._printed, pulse=pulse)
 
     @property
     def running(self) -> bool:
@@ -70,7 +62,7 @@ class NodeProcess(Child):
     """A running node."""
 
     def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
-        """Start it with its parameters; `close` writes what it prints into `log`."""
+        """Give it its parameters; `tidy` writes what it prints into `log`."""
         self.name = spec.name
         self.log = log
         self.hung = False
@@ -81,9 +73,8 @@ class NodeProcess(Child):
         self._segments: set[str] = set()
         self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         parameters = ('--ros-args', '--params-file', str(parameter_file))
-        environment = {**os.environ, PULSE_FD: str(pulse)}
-        super().__init__(spec.module, *parameters, pass_fds=[pulse], env=environment)
-        os.close(pulse)
+        super().__init__(spec.module, *parameters, pulse=pulse)
+        self._its_pulse: int | None = pulse
 
     @property
     def code(self) -> int | None:
@@ -122,14 +113,24 @@ class NodeProcess(Child):
             self.process.send_signal(number)
             self.process.send_signal(signal.SIGCONT)
 
-    def close(self) -> None:
+    def tidy(self) -> None:
         """Keep the log of a node that has ended, and remove what it could not remove itself."""
         with contextlib.suppress(OSError):
             self.log.write_bytes(self.printed())
-        super().close()
-        os.close(self._pulse)
         if self.process.returncode is not None and self.process.returncode < 0:
             remove_segments(self._segments)
+
+    def close(self) -> None:
+        """Forget what it has printed, and its pulse."""
+        super().close()
+        os.close(self._pulse)
+        self.close_its_pulse()
+
+    def close_its_pulse(self) -> None:
+        """Close the end of the pipe that the node has by now."""
+        if self._its_pulse is not None:
+            os.close(self._its_pulse)
+            self._its_pulse = None
 
     def obituary(self) -> str:
         """Say in one line how the node ended."""

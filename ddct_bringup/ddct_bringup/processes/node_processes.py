@@ -8,6 +8,7 @@ from pathlib import Path
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.guardian import Guardian
 from ddct_bringup.processes.node_process import NodeProcess
+from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_plant.base.errors import DdctError
 
 STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
@@ -20,35 +21,59 @@ LOOK_S = 0.5
 class NodeProcesses:
     """The processes of one graph; as a context manager it always stops them."""
 
-    def __init__(self, logs: Path, parameter_file: Path) -> None:
-        """Leave `<logs>/<node>.log` at the end; nodes take their parameters from the file."""
+    def __init__(
+        self,
+        logs: Path,
+        parameter_file: Path,
+        parent: WarmParent,
+        stopped: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """
+        Leave `<logs>/<node>.log` at the end; nodes take their parameters from the file.
+
+        `parent` forks them. Waiting raises KeyboardInterrupt when `stopped()`.
+        """
         self._logs = logs
         self._parameter_file = parameter_file
+        self._parent = parent
+        self._stopped = stopped
         self._nodes: list[NodeProcess] = []
 
     def __enter__(self) -> 'NodeProcesses':
-        self._guardian = Guardian()
+        self._guardian = Guardian(self._parent, self._stopped)
         return self
 
     def __exit__(self, *_: object) -> None:
         self.stop(lambda name: True)
         for node in self._nodes:
+            node.tidy()
             node.close()
         self._guardian.dismiss()
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
-        """Start one process per node, in the given order."""
-        for spec in specs:
-            log = self._logs / f'{spec.name}.log'
-            node = NodeProcess(spec, self._parameter_file, log)
-            self._nodes.append(node)
-            self._guardian.watch(node.process.pid)
+        """Start one process per node; raise what `WarmParent.start` raises."""
+        nodes = [
+            NodeProcess(spec, self._parameter_file, self._logs / f'{spec.name}.log')
+            for spec in specs
+        ]
+        try:
+            forked = self._parent.start(
+                [node.job for node in nodes], self._guardian.watch, self._stopped
+            )
+        except BaseException:
+            for node in nodes:
+                node.close()
+            raise
+        for node, process in zip(nodes, forked, strict=True):
+            node.process = process
+            node.close_its_pulse()
+        self._nodes += nodes
 
-    def wait_for(self, name: str, stopped: Callable[[], bool]) -> None:
+    def wait_for(self, name: str) -> None:
         """
         Wait until node `name` has done its work.
 
-        Raise DdctError when any node fails or hangs, KeyboardInterrupt when `stopped()`.
+        Raise DdctError when any node fails or hangs.
         """
         looked_at = time.monotonic()
         while True:
@@ -59,7 +84,7 @@ class NodeProcesses:
                 raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
             if ended:
                 return
-            if stopped():
+            if self._stopped():
                 raise KeyboardInterrupt
             now = time.monotonic()
             if now - looked_at >= LOOK_S:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
-from ddct_bringup.run.execution import run_with_progress, tell_of_logs
+from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.run.execution import parent_for, run_with_progress, tell_of_logs
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
@@ -49,19 +50,31 @@ def _bringup(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
-    limits = load_limits(options.limits)
-    settings = settings_of(options, [controller_label(options.controller)])
-    plan = RunPlan(settings, options.controller, options.layout)
-    if options.live is not None and plan.layout != 'processes':
-        raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-    with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-        _run(plan, folder, options, limits)
+    # It imports while the run is planned.
+    with parent_for(options.layout) as parent:
+        limits = load_limits(options.limits)
+        settings = settings_of(options, [controller_label(options.controller)])
+        plan = RunPlan(settings, options.controller, options.layout)
+        if options.live is not None and plan.layout != 'processes':
+            raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
+        with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
+            _run(plan, folder, options, limits, parent)
     return 0
 
 
-def _run(plan: RunPlan, folder: StagedFolder, options: argparse.Namespace, limits: Limits) -> None:
-    with nullcontext() if options.live is None else live_view(options.live) as live:
-        run_with_progress(plan, folder.path, live=live)
+def _run(
+    plan: RunPlan,
+    folder: StagedFolder,
+    options: argparse.Namespace,
+    limits: Limits,
+    parent: WarmParent | None,
+) -> None:
+    with (
+        live_view(options.live, parent)
+        if options.live is not None and parent
+        else nullcontext() as live
+    ):
+        run_with_progress(plan, folder.path, live=live, parent=parent)
     recording = read_bag(folder.path)
     entry = score_recording(recording, plan.name, limits)
     if not entry['valid']:

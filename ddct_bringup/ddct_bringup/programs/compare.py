@@ -5,12 +5,13 @@ import sys
 from functools import partial
 from pathlib import Path
 
+from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
 from ddct_bringup.run.beside_bag import note_failure
 from ddct_bringup.run.description import custom_data
-from ddct_bringup.run.execution import run_with_progress, tell_of_logs
+from ddct_bringup.run.execution import parent_for, run_with_progress, tell_of_logs
 from ddct_bringup.run.options import (
     ALL,
     add_controllers_option,
@@ -63,17 +64,19 @@ def _compare(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bags')
     require_chart_library()
     require_place('--json', options.json)
-    limits = load_limits(options.limits)
-    names = controllers_of(options.controllers)
-    settings = settings_of(options, [controller_label(name) for name in names])
-    if options.controllers == ALL:
-        names = working_controllers(settings, partial(complain, PROGRAM))
-    plans = [RunPlan(settings, name, options.layout) for name in names]
-    with (
-        held(options.out),
-        StagedFolder(options.out, overwrite=options.overwrite) as folder,
-    ):
-        failed = _run_all(plans, folder, settings, options, limits)
+    # It imports while the runs are planned, and serves them all.
+    with parent_for(options.layout) as parent:
+        limits = load_limits(options.limits)
+        names = controllers_of(options.controllers)
+        settings = settings_of(options, [controller_label(name) for name in names])
+        if options.controllers == ALL:
+            names = working_controllers(settings, partial(complain, PROGRAM))
+        plans = [RunPlan(settings, name, options.layout) for name in names]
+        with (
+            held(options.out),
+            StagedFolder(options.out, overwrite=options.overwrite) as folder,
+        ):
+            failed = _run_all(plans, folder, settings, options, limits, parent)
     if failed:
         complain(PROGRAM, f'not valid: {", ".join(failed)}: the table and the report say why')
     return 1 if failed else 0
@@ -85,6 +88,7 @@ def _run_all(
     settings: RunSettings,
     options: argparse.Namespace,
     limits: Limits,
+    parent: WarmParent | None,
 ) -> list[str]:
     """
     Carry out all runs, put what they left under its final name, and return which are not valid.
@@ -93,7 +97,7 @@ def _run_all(
     """
     evidence = frequency_evidence([plan.controller for plan in plans], settings)
     runs = [
-        _run(plan, folder.path, f'{index} of {len(plans)}, ', limits)
+        _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, parent)
         for index, plan in enumerate(plans, start=1)
     ]
     entries = [run.entry for run in runs]
@@ -115,7 +119,9 @@ def _run_all(
     return failed
 
 
-def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
+def _run(
+    plan: RunPlan, out: Path, label: str, limits: Limits, parent: WarmParent | None
+) -> ReportRun:
     """
     Carry out, read and score one run; of one that fails, note in its folder why.
 
@@ -125,7 +131,7 @@ def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ReportRun:
     bag = out / plan.name
     mark_folder(bag)
     try:
-        run_with_progress(plan, bag, label)
+        run_with_progress(plan, bag, label, parent=parent)
         run = read_run(bag, out, limits)
         if run.recording is not None:
             return run

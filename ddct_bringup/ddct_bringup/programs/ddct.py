@@ -3,11 +3,14 @@
 import ast
 import os
 import sys
+from collections.abc import Callable
+from contextlib import nullcontext
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
+from ddct_bringup.processes.warm_parent import started_ahead
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_ros
@@ -18,6 +21,10 @@ GROUP = 'ddct.programs'
 """The entry points of the programs: the packages' setup.py holds them."""
 _FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')
 """What a node imports first of ROS."""
+_RUNS_GRAPHS = ('bringup', 'compare')
+"""Their warm parent starts before they do, as its imports take about as long as theirs."""
+_WITHOUT_NODES = {'-h', '--help', '--headless', '--list', '--single-process', '--version'}
+"""Options with which they start no node."""
 
 _EXAMPLES = """\
 examples:
@@ -52,14 +59,20 @@ def _ddct(argv: list[str]) -> int:
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
     # Matrices are small: further threads only wait for one another, and nodes inherit this.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+    ahead = argv[0] in _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv)
+    with started_ahead() if ahead else nullcontext():
+        sys.argv[1:] = argv[1:]
+        return _load(known[argv[0]])()
+
+
+def _load(point: EntryPoint) -> Callable[[], int]:
+    """Import a program; raise DdctError where something that it needs is not installed."""
     try:
-        program = known[argv[0]].load()
+        return point.load()
     except ImportError as error:
         if error.name in _FIRST_OF_ROS:
             require_ros()
-        raise DdctError(f'{argv[0]} cannot start: {error}: install what it needs') from error
-    sys.argv[1:] = argv[1:]
-    return program()
+        raise DdctError(f'{point.name} cannot start: {error}: install what it needs') from error
 
 
 def _listing(known: dict[str, EntryPoint]) -> str:

@@ -4,6 +4,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
+from ddct_bringup.processes.warm_parent import WarmParent, warm_parent
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
@@ -31,11 +33,22 @@ WORK_FOLDER = 'work'
 _WARNING = re.compile(rb'^\[(WARN|ERROR|FATAL)\]', re.MULTILINE)
 
 
+def parent_for(layout: str) -> AbstractContextManager[WarmParent | None]:
+    """Start the warm parent that runs of this layout need, if they do: one for several runs."""
+    return warm_parent() if layout == 'processes' else nullcontext()
+
+
 def run_with_progress(
-    plan: RunPlan, folder: Path, label: str = '', live: LiveView | None = None
+    plan: RunPlan,
+    folder: Path,
+    label: str = '',
+    live: LiveView | None = None,
+    parent: WarmParent | None = None,
 ) -> None:
     """
     Carry out `plan` into `folder`, saying what runs, if its loop is stable, and how fast it went.
+
+    `parent` forks the nodes of separate processes; without it the run starts one of its own.
 
     Raise DdctError when the run does not end well, KeyboardInterrupt after SIGINT or SIGTERM.
     """
@@ -44,7 +57,7 @@ def run_with_progress(
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.monotonic()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
-        execute(plan, folder, lambda: bool(stops), live)
+        execute(plan, folder, lambda: bool(stops), live, parent)
     if stops:
         # It came when the run had ended already: whatever would follow is not wanted.
         raise KeyboardInterrupt
@@ -57,11 +70,13 @@ def execute(
     folder: Path,
     stopped: Callable[[], bool] = lambda: False,
     live: LiveView | None = None,
+    parent: WarmParent | None = None,
 ) -> None:
     """
     Run `plan` and write its bag and `timing.json` into the existing `folder`.
 
-    A run of separate processes begins once `live` hears them.
+    A run of separate processes begins once `live` hears them. `parent` forks them; without it the
+    run starts one of its own.
     Raise DdctError with the reason when the run does not end well, KeyboardInterrupt when
     `stopped()` becomes true; what was recorded until then stays in the folder.
     """
@@ -75,7 +90,8 @@ def execute(
         work.mkdir()
         with own_domain():
             if plan.layout == 'processes':
-                _execute_processes(plan, folder, work, stopped, live)
+                with nullcontext(parent) if parent else WarmParent() as warm:
+                    _execute_processes(plan, folder, work, stopped, live, warm)
             else:
                 # The graph needs ROS installed and sourced; a headless run does not.
                 from ddct_bringup.processes.single_process import run_single_process
@@ -123,15 +139,17 @@ def _execute_processes(
     work: Path,
     stopped: Callable[[], bool],
     live: LiveView | None,
+    parent: WarmParent,
 ) -> None:
-    with NodeProcesses(work, plan.write_parameter_file(folder, work)) as processes:
+    parameter_file = plan.write_parameter_file(folder, work)
+    with NodeProcesses(work, parameter_file, parent, stopped) as processes:
         processes.start([node for node in GRAPH_NODES if node.name != 'recorder' or not live])
         if live:
             # Without its recorder the graph stays at t_0 and sends it again and again.
             live.wait_until_heard(stopped)
             processes.start([node for node in GRAPH_NODES if node.name == 'recorder'])
         try:
-            processes.wait_for('driveline', stopped)
+            processes.wait_for('driveline')
         finally:
             # The recorder goes last: it must hear what the others flush when they stop.
             processes.stop(lambda name: name != 'recorder')

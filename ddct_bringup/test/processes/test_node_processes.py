@@ -8,16 +8,16 @@ import time
 from pathlib import Path
 
 import pytest
+from stub_programs import WITHIN_S, gone, wait_until
 
 from ddct_bringup.processes import node_process, node_processes
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.node_processes import STOP_LADDER, NodeProcesses
+from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_plant.base.errors import DdctError
 
 pytestmark = pytest.mark.slow
 
-WITHIN_S = 20.0
-"""How long a small program may take to start or to end on a loaded machine."""
 LIVE = """
 import os, signal, sys, time
 from ddct_plant.program.supervision import beat, farewell
@@ -26,6 +26,8 @@ def run():
     while True:
         beat()
         time.sleep(0.01)
+def main():
+    return 0
 """
 OBEDIENT = 'signal.signal(signal.SIGINT, lambda *_: sys.exit(0))\nrun()\n'
 DEAF = (
@@ -45,51 +47,36 @@ QUICK_LADDER = tuple((number, 1.0) for number, _ in STOP_LADDER)
 
 
 @pytest.fixture
-def processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def processes(tmp_path: Path, stubs: Path, parent: WarmParent, monkeypatch: pytest.MonkeyPatch):
     """Return a function that makes a supervisor of programs with these texts, by node name."""
-    monkeypatch.setenv('PYTHONPATH', f'{tmp_path}:{os.environ.get("PYTHONPATH", "")}')
     monkeypatch.setattr(node_processes, 'STOP_LADDER', QUICK_LADDER)
-    (tmp_path / 'stubs').mkdir()
+    package = f'stubs_{tmp_path.name}'
+    (stubs / package).mkdir()
+    deadlines = [time.monotonic() + WITHIN_S]
+
+    def stopped() -> bool:
+        assert time.monotonic() < deadlines[-1], 'nothing was noticed'
+        return False
 
     def make(**texts: str) -> NodeProcesses:
         for name, text in texts.items():
-            (tmp_path / 'stubs' / f'{name}_node.py').write_text(LIVE + text)
-        made = NodeProcesses(tmp_path, tmp_path / 'parameters.yaml')
+            (stubs / package / f'{name}_node.py').write_text(LIVE + text)
+        made = NodeProcesses(tmp_path, tmp_path / 'parameters.yaml', parent, stopped)
         made.__enter__()
-        made.start([NodeSpec(name, f'stubs.{name}_node') for name in texts])
+        made.start([NodeSpec(name, f'{package}.{name}_node') for name in texts])
         for node in made._nodes:
             wait_until(lambda node=node: b'ready' in node.printed())
+        deadlines.append(time.monotonic() + WITHIN_S)
         return made
 
     return make
 
 
-def wait_until(condition) -> None:
-    deadline = time.monotonic() + WITHIN_S
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-
-
-def gone(pid: int) -> bool:
-    """Say whether a process has ended, waited for or not."""
-    try:
-        return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] in 'ZX'
-    except OSError:
-        return True
-
-
 def wait_as_supervisor(nodes: NodeProcesses) -> str:
     """Return why the supervisor ends, having stopped everything."""
-    deadline = time.monotonic() + WITHIN_S
-
-    def stopped() -> bool:
-        assert time.monotonic() < deadline, 'nothing was noticed'
-        return False
-
     try:
         with pytest.raises(DdctError) as raised:
-            nodes.wait_for('driveline', stopped)
+            nodes.wait_for('driveline')
     finally:
         nodes.__exit__()
     return str(raised.value)
@@ -151,7 +138,8 @@ def test_a_stopped_node_is_woken_to_end_in_order(processes):
 
 def test_ctrl_c_in_the_terminal_reaches_the_supervisor_alone(processes):
     nodes = processes(driveline=OBEDIENT)
-    pids = [nodes._nodes[0].process.pid, nodes._guardian._process.pid]
+    children = (nodes._nodes[0].process, nodes._guardian.process, nodes._parent.process)
+    pids = [child.pid for child in children]
     assert os.getpgrp() not in [os.getpgid(pid) for pid in pids]
     nodes.__exit__()
 
@@ -161,10 +149,12 @@ import sys, time
 from pathlib import Path
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.node_processes import NodeProcesses
+from ddct_bringup.processes.warm_parent import WarmParent
 folder = Path(sys.argv[1])
-with NodeProcesses(folder, folder / 'parameters.yaml') as nodes:
+with WarmParent() as parent, NodeProcesses(folder, folder / 'parameters.yaml', parent) as nodes:
     nodes.start([NodeSpec(name, f'stubs.{name}_node') for name in sys.argv[2:]])
-    pids = [*(node.process.pid for node in nodes._nodes), nodes._guardian._process.pid]
+    others = [nodes._guardian.process.pid, parent.process.pid]
+    pids = [*(node.process.pid for node in nodes._nodes), *others]
     while not all(b'ready' in node.printed() for node in nodes._nodes):
         time.sleep(0.01)
     print(*pids, flush=True)
@@ -246,7 +236,7 @@ def test_the_owner_of_time_may_hang_while_it_leaves(processes, quick_to_leave):
     nodes = processes(
         driveline=HANGS_LEAVING.format(code=0) + "print('ready', flush=True)\nleave()\n"
     )
-    nodes.wait_for('driveline', lambda: False)
+    nodes.wait_for('driveline')
     nodes.require_clean_end()
     nodes.__exit__()
 

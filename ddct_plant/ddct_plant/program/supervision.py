@@ -18,6 +18,7 @@ FAREWELL = b'!'
 """Comes before the exit code of a node whose work is over."""
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
+_SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
 
 
 @contextmanager
@@ -38,6 +39,19 @@ def ends_at_once() -> Iterator[None]:
 def end_with_parent(by: signal.Signals = signal.SIGTERM) -> None:
     """Let the kernel send this process a signal when its parent ends, be it killed (Linux)."""
     ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, by)
+
+
+@contextmanager
+def adopting_orphans() -> Iterator[None]:
+    """Become the parent of those descendants whose parent ends meanwhile (Linux)."""
+    prctl = ctypes.CDLL(None).prctl
+    before = ctypes.c_int()
+    prctl(_GET_TAKES_ORPHANS, ctypes.byref(before))
+    prctl(_SET_TAKES_ORPHANS, 1)
+    try:
+        yield
+    finally:
+        prctl(_SET_TAKES_ORPHANS, before.value)
 
 
 @contextmanager

@@ -1,0 +1,55 @@
+"""What the warm parent imports before it forks nodes: all that takes time and keeps no state."""
+
+import contextlib
+import importlib
+
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+
+_LATER = (
+    'daqp',
+    'ddct_bringup.processes.guardian',
+    'ddct_controllers.mpc.qp.solvers',
+    'importlib.resources.readers',
+    'rclpy.experimental.events_executor',
+    'scipy.linalg',
+    'scipy.optimize',
+    'type_description_interfaces.msg',
+)
+"""What nodes of ours import when they need it."""
+_SERVICES = (
+    'DescribeParameters',
+    'GetParameters',
+    'GetParameterTypes',
+    'ListParameters',
+    'SetParameters',
+    'SetParametersAtomically',
+)
+"""What each node offers for its parameters."""
+
+
+def preload() -> None:
+    """
+    Import the nodes, the middleware's libraries and the messages.
+
+    No third party's controller is imported: it lives in the process of its node alone.
+    """
+    for module in (*(node.module for node in GRAPH_NODES), *_LATER):
+        # A node says itself what it misses.
+        with contextlib.suppress(ImportError):
+            importlib.import_module(module)
+    with contextlib.suppress(ImportError):
+        _load_messages()
+
+
+def _load_messages() -> None:
+    import rcl_interfaces.msg
+    import rcl_interfaces.srv
+    from rclpy.type_support import check_for_type_support
+
+    from ddct_plant.graph.topics import all_topics
+
+    classes = [topic.message_class for topic in all_topics()]
+    classes += [rcl_interfaces.msg.Log, rcl_interfaces.msg.ParameterEvent]
+    classes += [getattr(rcl_interfaces.srv, name) for name in _SERVICES]
+    for each in classes:
+        check_for_type_support(each)

@@ -1,0 +1,155 @@
+"""
+The warm parent: a process that has imported what nodes need, and forks them when we ask.
+
+Importing takes a node far longer than everything else before its first tick. What the warm parent
+forks is a child of ours, like a process that we start ourselves.
+"""
+
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from ddct_bringup.processes.forked_process import ForkedProcess
+from ddct_bringup.processes.forks import GO
+from ddct_bringup.processes.jobs import Job, send_request
+from ddct_plant.base.errors import DdctError
+from ddct_plant.program.supervision import adopting_orphans, end_with_parent
+
+START_S = 60.0
+"""How long it may take to import everything and to fork, on a busy machine."""
+_SLICE_S = 0.05
+"""How often we look whether we are to stop meanwhile."""
+_END_S = 5.0
+"""How long it may take to end once it has closed its side of the channel."""
+_ROOM = ' ' * 400
+"""An argument that does nothing: a fork writes its own command line over it."""
+
+
+class WarmParent:
+    """A running warm parent; it ends with us, or with `close`."""
+
+    def __init__(self) -> None:
+        """Start it; it imports while we do something else."""
+        self._launch()
+
+    def _launch(self) -> None:
+        self._channel, theirs = socket.socketpair()
+        # In memory: a full disk must not swallow the reason of a failure.
+        self._printed = os.fdopen(os.memfd_create('warm_parent'), 'rb')
+        self.process = subprocess.Popen(
+            # -P: a file of the current folder must not hide a module of the same name.
+            [
+                *(sys.executable, '-P', '-m', 'ddct_bringup.processes.forks'),
+                *(str(theirs.fileno()), _ROOM),
+            ],
+            stdin=subprocess.DEVNULL,
+            stdout=self._printed,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            preexec_fn=lambda: end_with_parent(signal.SIGKILL),
+            pass_fds=[theirs.fileno()],
+            # Its numerics must have no threads when it forks; nodes get our environment.
+            env={'OPENBLAS_NUM_THREADS': '1', **os.environ},
+        )
+        theirs.close()
+
+    def __enter__(self) -> 'WarmParent':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End it; what it has forked goes on."""
+        self.process.kill()
+        self.process.wait()
+        self._channel.close()
+        self._printed.close()
+
+    def start(
+        self,
+        jobs: Sequence[Job],
+        watch: Callable[[int], None] = lambda pid: None,
+        stopped: Callable[[], bool] = lambda: False,
+    ) -> list[ForkedProcess]:
+        """
+        Fork a process for each job, with our environment as it is now.
+
+        `watch(pid)` is called for each before any of them begins. Raise DdctError when the warm
+        parent fails, and KeyboardInterrupt when `stopped()` becomes true before it has answered.
+        """
+        if self.process.poll() is not None:  # killed since the last start
+            self.close()
+            self._launch()
+        reader, writer = os.pipe2(os.O_CLOEXEC)
+        with os.fdopen(writer, 'wb', buffering=0) as go:
+            try:
+                with adopting_orphans():
+                    with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+                        send_request(self._channel, jobs, reader)
+                    pids = json.loads(self._reply(stopped))
+            finally:
+                os.close(reader)
+            forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids, jobs, strict=False)]
+            if len(forked) < len(jobs):
+                raise DdctError(f'no process for {jobs[len(forked)].module}: {self._last_words()}')
+            for process in forked:
+                watch(process.pid)
+            go.write(GO * len(forked))
+        return forked
+
+    def _reply(self, stopped: Callable[[], bool]) -> bytes:
+        deadline = time.monotonic() + START_S
+        line = b''
+        while not line.endswith(b'\n'):
+            if stopped():
+                self.close()
+                raise KeyboardInterrupt
+            if time.monotonic() > deadline:
+                raise DdctError(f'nodes could not be started within {START_S:g} s')
+            if select.select([self._channel], [], [], _SLICE_S)[0]:
+                with contextlib.suppress(ConnectionResetError):
+                    if more := self._channel.recv(1 << 16):
+                        line += more
+                        continue
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    self.process.wait(_END_S)
+                raise DdctError(f'nodes cannot be started: {self._last_words()}')
+        return line
+
+    def _last_words(self) -> str:
+        code = self.process.poll()
+        if code == -signal.SIGKILL:
+            return 'the warm parent, which forks them, was killed'
+        # Not by seek and read: it writes at the file position that we share with it.
+        printed = self._printed.fileno()
+        text = os.pread(printed, os.fstat(printed).st_size, 0).decode(errors='replace')
+        return (text.strip().splitlines() or [f'the warm parent ended with code {code}'])[-1]
+
+
+_ahead: list[WarmParent] = []
+"""At most one, which nobody has taken yet."""
+
+
+@contextmanager
+def started_ahead() -> Iterator[None]:
+    """Let a warm parent import while its program is still imported; at the end it is gone."""
+    with WarmParent() as parent:
+        _ahead.append(parent)
+        try:
+            yield
+        finally:
+            _ahead.clear()
+
+
+def warm_parent() -> WarmParent:
+    """Return the one that was started ahead, or start one."""
+    return _ahead.pop() if _ahead else WarmParent()

@@ -1,0 +1,58 @@
+"""Many runs of one warm parent: each is as if it were alone."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.runs import bag_bytes, plan
+
+from ddct_bringup.processes.shared_memory import segments_of
+from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.run.execution import execute
+from ddct_bringup.run.plan import RunPlan
+
+
+def _run(run: RunPlan, folder: Path, parent: WarmParent | None = None) -> dict[str, bytes]:
+    folder.mkdir(parents=True)
+    execute(run, folder, parent=parent)
+    return bag_bytes(folder)
+
+
+def test_the_runs_of_one_warm_parent_leave_the_same_bytes_as_runs_without_a_graph(
+    tmp_path: Path,
+) -> None:
+    runs: tuple[tuple[str, dict[str, Any]], ...] = (
+        ('pi', {}),
+        ('ls8', {'wear_gain': 0.7, 'changes': ('load.slope_rad=0.05',)}),
+        ('mpc4', {'clutch': 'stick_slip'}),
+        ('mpc3', {'seed': 3}),
+        ('pi', {}),
+    )
+    with WarmParent() as parent:
+        for number, (controller, options) in enumerate(runs):
+            warm = _run(plan(controller, **options), tmp_path / f'{number}', parent)
+            alone = _run(plan(controller, 'headless', **options), tmp_path / f'{number} headless')
+            assert warm == alone, (number, controller)
+
+
+def test_the_warm_parent_itself_never_joins_a_graph(tmp_path: Path) -> None:
+    with WarmParent() as parent:
+        _run(plan(), tmp_path / 'run', parent)
+        tasks = Path(f'/proc/{parent.process.pid}/task').iterdir()
+        names = {(task / 'comm').read_text().strip() for task in tasks}
+        assert not {name for name in names if name.startswith('dds')}
+        assert not segments_of(parent.process.pid)
+
+
+def test_each_run_has_its_own_domain_and_folder_of_logs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    logs = []
+    with WarmParent() as parent:
+        for number, domain in enumerate(('41', '42')):
+            monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / f'logs{number}'))
+            # Two graphs in one domain would hear each other; here the one before is over.
+            monkeypatch.setenv('ROS_DOMAIN_ID', domain)
+            _run(plan(), tmp_path / f'run{number}', parent)
+            logs.append(sorted((tmp_path / f'logs{number}').iterdir()))
+    assert [len(each) for each in logs] == [8, 8], 'one of each node'
