@@ -6,13 +6,13 @@ from typing import Any
 
 from ddct_controllers.factories import factory_spec
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
-from ddct_controllers.linear import HOLD, Given, linear_spec
+from ddct_controllers.linear import HOLD, LinearSystem, linear_spec
 from ddct_controllers.lti_objects import linear_system
 from ddct_controllers.registry import Chosen, controller_names
 from ddct_plant.base.errors import ParameterError, require_name
 
 _LINEAR = 'linear'
-"""What a linear system is called that was given no name."""
+"""Name of a linear system without a name of its own."""
 
 
 def chosen_from(controller: Any, name: str = '') -> Chosen:
@@ -59,8 +59,8 @@ def _same(controller: Controller) -> Any:
     return make
 
 
-def _linear_system(system: Any, name: str) -> Given | None:
-    """Return a linear system in our form, None for what is none."""
+def _linear_system(system: Any, name: str) -> LinearSystem | None:
+    """Return a linear system in our form, None for any other object."""
     try:
         return linear_system(system)
     except ParameterError as error:

@@ -14,7 +14,11 @@ from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 
 TORQUE_RATE_WEIGHT = 0.03
-"""rho, rad/s per N m/s: price of torque beyond the static law; docs/controllers/feedforward.md."""
+"""
+Weight rho in rad/s per N m/s: price of torque beyond the static law.
+
+docs/controllers/feedforward.md has the argument.
+"""
 
 _ENGINE, _CLUTCH, _LOAD = range(3)
 
@@ -66,7 +70,7 @@ class _Problem:
     """
     x_(k+1) = a x + b u + g w, w_(k+1) = s w; minimise the sum of |c x + d u + f w|^2.
 
-    w = [C_m, C_m less that of the period before, C_load]: all is known at k, nothing ahead.
+    w = [C_m, C_m less that of the period before, C_load]: all is known at k, no future values.
     """
 
     a: np.ndarray

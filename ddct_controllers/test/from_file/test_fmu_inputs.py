@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from ddct_controllers.from_file import fmu
-from ddct_controllers.from_file.fmu_unit import Fed
+from ddct_controllers.from_file.fmu_unit import FmuInput
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
@@ -28,7 +28,7 @@ NOW = Measurement(
     open_loop_torque=105.0,
 )
 """No two of its numbers are alike."""
-GIVEN = {
+SIGNALS = {
     'slip_error_rpm': rpm_from_rad_s(31.0 - (211.0 - 173.0)),
     'slip_speed_rad_s': 38.0,
     'engine_speed_rad_s': 211.0,
@@ -49,7 +49,7 @@ GIVEN = {
 
 
 @pytest.fixture
-def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     """Return a function that gives what the inputs in a file become."""
 
     def variable(name: str, causality: str) -> SimpleNamespace:
@@ -57,15 +57,15 @@ def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             name=name, causality=causality, type='Real', unit=None, declaredType=None, shape=()
         )
 
-    def inputs(*names: str) -> list[Fed]:
-        taken: list[Fed] = []
+    def inputs(*names: str) -> list[FmuInput]:
+        found_inputs: list[FmuInput] = []
         known = {f'x{i}': variable(f'x{i}', 'input') for i in range(len(names))}
         known['u'] = variable('u', 'output')
         unit = SimpleNamespace(path=tmp_path / 'mine.fmu', variables=known)
         monkeypatch.setattr(fmu, 'Fmu', lambda path: unit)
 
-        def controller(file: object, unit: object, fed: list[Fed], *_: object) -> Any:
-            taken.extend(fed)
+        def controller(file: object, unit: object, inputs: list[FmuInput], *_: object) -> Any:
+            found_inputs.extend(inputs)
             return SimpleNamespace()
 
         monkeypatch.setattr(fmu, 'FmuController', controller)
@@ -77,20 +77,20 @@ def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             'outputs: {u: clutch_torque_n_m}}\n'
         )
         make_controller(str(file), SETTINGS)
-        return taken
+        return found_inputs
 
     return inputs
 
 
-def test_every_name_is_known_here() -> None:
-    assert {name.partition('[')[0] for name in GIVEN} == {*fmu.SCALARS, *fmu.AHEAD}
+def test_the_names_above_are_all_the_names() -> None:
+    assert {name.partition('[')[0] for name in SIGNALS} == {*fmu.SCALARS, *fmu.AHEAD}
 
 
-def test_each_input_is_given_what_its_name_says(fed: Any) -> None:
-    taken = fed(*GIVEN)
-    assert [each.variable.name for each in taken] == [f'x{i}' for i in range(len(GIVEN))]
-    found = dict(zip(GIVEN, (each.read(NOW) for each in taken), strict=True))
-    assert found == pytest.approx(GIVEN)
+def test_each_input_is_given_what_its_name_says(inputs_in_file: Any) -> None:
+    found_inputs = inputs_in_file(*SIGNALS)
+    assert [each.variable.name for each in found_inputs] == [f'x{i}' for i in range(len(SIGNALS))]
+    found = dict(zip(SIGNALS, (each.read(NOW) for each in found_inputs), strict=True))
+    assert found == pytest.approx(SIGNALS)
 
 
 @pytest.mark.parametrize(
@@ -102,5 +102,7 @@ def test_each_input_is_given_what_its_name_says(fed: Any) -> None:
         ('open_loop_torque_n_m', 0),
     ],
 )
-def test_the_preview_is_as_long_as_the_index_says(fed: Any, name: str, ahead: int) -> None:
-    assert [each.ahead for each in fed(name)] == [ahead]
+def test_the_preview_is_as_long_as_the_index_says(
+    inputs_in_file: Any, name: str, ahead: int
+) -> None:
+    assert [each.ahead for each in inputs_in_file(name)] == [ahead]

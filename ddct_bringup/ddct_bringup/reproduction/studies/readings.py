@@ -18,7 +18,7 @@ from ddct_bringup.verdict.metric_figures import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow
-from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, Knowledge
+from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, ObserverInputs
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
@@ -34,7 +34,7 @@ class Reading:
 
     change: Change = lambda settings: settings
     """Change of what the row means by itself."""
-    knowledge: Knowledge = AS_DRAWN
+    knowledge: ObserverInputs = AS_DRAWN
     model: TransmissionModel | None = None
     """In place of the one that is known of."""
     noise_rpm: float = 1.0

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
@@ -86,14 +86,14 @@ def step_values(
     """Return `NAME.rise time` in s and `NAME.overshoot` in % of these controllers."""
     found: dict[str, float | None] = {}
     for name, controller in controllers.items():
-        rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
+        rise_time, over = rise_time_and_overshoot(continuous_loop(controller), _DURATION_S)
         found |= {f'{name}.rise time': rise_time, f'{name}.overshoot': 100.0 * over}
     return found
 
 
 def fulfilled(controller: FactoredTransferFunction, specifications: TimeSpecifications) -> str:
     """Return which specifications the step response meets, as far as a plot can tell."""
-    rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
+    rise_time, over = rise_time_and_overshoot(continuous_loop(controller), _DURATION_S)
     limit = specifications.rise_time_s
     quick = rise_time is not None and rise_time <= limit + max(
         _RISE_TOLERANCE[0] * limit, _RISE_TOLERANCE[1]

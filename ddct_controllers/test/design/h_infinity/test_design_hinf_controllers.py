@@ -32,7 +32,7 @@ HINF1 = H_INFINITY_CONTROLLERS['hinf1']
 STEP_S = 6.0
 
 
-def step_figures(controller: FactoredTransferFunction) -> tuple[float | None, float]:
+def rise_time_and_overshoot(controller: FactoredTransferFunction) -> tuple[float | None, float]:
     """Return t_r and overshoot in % of the loop as the thesis judges it."""
     response = step_response(continuous_loop(controller), STEP_S)
     return rise_time_s(*response), 100.0 * overshoot(*response)
@@ -112,7 +112,7 @@ def test_hinf_fitted_is_hinf1_times_a_gain():
 
 def test_hinf_fitted_has_the_step_response_that_table_3_1_gives_hinf1():
     """0.30 s and 8 %: within 0.02 s and 1 point; both specifications of Section 3.2 are met."""
-    rise_time, percent = step_figures(synthesised_design('hinf_fitted').cleaned)
+    rise_time, percent = rise_time_and_overshoot(synthesised_design('hinf_fitted').cleaned)
     assert rise_time == pytest.approx(0.30, abs=0.02)
     assert percent == pytest.approx(8.0, abs=1.0)
     assert rise_time < 0.3
@@ -122,16 +122,16 @@ def test_hinf_fitted_has_the_step_response_that_table_3_1_gives_hinf1():
 @pytest.mark.parametrize(('name', 'printed'), [('hinf2', (0.05, 19.0)), ('hinf3', (0.40, 7.0))])
 def test_two_rows_of_table_3_1_are_reproduced(name, printed):
     """Within 8 % or 0.02 s, and 1.5 points."""
-    rise_time, percent = step_figures(H_INFINITY_CONTROLLERS[name])
+    rise_time, percent = rise_time_and_overshoot(H_INFINITY_CONTROLLERS[name])
     assert abs(rise_time - printed[0]) <= max(0.02, 0.08 * printed[0])
     assert percent == pytest.approx(printed[1], abs=1.5)
 
 
 def test_the_row_of_hinf1_is_that_of_2_14_times_its_printed_gain():
-    rise_time, percent = step_figures(HINF1)
+    rise_time, percent = rise_time_and_overshoot(HINF1)
     assert rise_time == pytest.approx(0.550, abs=0.001)
     assert percent == pytest.approx(12.5, abs=0.05)
-    rise_time, percent = step_figures(FactoredTransferFunction(2.14) * HINF1)
+    rise_time, percent = rise_time_and_overshoot(FactoredTransferFunction(2.14) * HINF1)
     assert rise_time == pytest.approx(0.30, abs=0.005)
     assert percent == pytest.approx(8.0, abs=1.0)
 

@@ -38,7 +38,7 @@ TABLE_2_1 = {
 """Printed t_r in s and overshoot in %."""
 
 
-def step_figures(name: str) -> tuple[float, float]:
+def rise_time_and_overshoot(name: str) -> tuple[float, float]:
     time, output = step_response(continuous_loop(LOOP_SHAPING_CONTROLLERS[name]), 8.0)
     return rise_time_s(time, output), 100.0 * overshoot(time, output)
 
@@ -51,22 +51,24 @@ def sampled_margins(name: str) -> LoopMargins:
 @pytest.mark.parametrize('name', sorted(set(TABLE_2_1) - {'ls4'}))
 def test_rise_times_of_table_2_1_come_out_within_8_percent_or_20_ms(name):
     printed = TABLE_2_1[name][0]
-    assert step_figures(name)[0] == pytest.approx(printed, abs=max(0.02, 0.08 * printed))
+    assert rise_time_and_overshoot(name)[0] == pytest.approx(
+        printed, abs=max(0.02, 0.08 * printed)
+    )
 
 
 def test_ls4_rises_in_0_866_s_where_the_table_has_0_8():
     """8.2 % more. LS5, with 1.2 times the gain, has the 0.75 s of its row."""
-    assert step_figures('ls4')[0] == pytest.approx(0.866, abs=5e-4)
-    assert step_figures('ls5')[0] == pytest.approx(0.766, abs=5e-4)
+    assert rise_time_and_overshoot('ls4')[0] == pytest.approx(0.866, abs=5e-4)
+    assert rise_time_and_overshoot('ls5')[0] == pytest.approx(0.766, abs=5e-4)
 
 
 @pytest.mark.parametrize('name', sorted(set(TABLE_2_1) - {'ls3'}))
 def test_overshoots_of_table_2_1_come_out_within_1_5_points(name):
-    assert step_figures(name)[1] == pytest.approx(TABLE_2_1[name][1], abs=1.5)
+    assert rise_time_and_overshoot(name)[1] == pytest.approx(TABLE_2_1[name][1], abs=1.5)
 
 
 def test_ls3_overshoots_by_28_8_percent_and_not_by_21():
-    assert step_figures('ls3')[1] == pytest.approx(28.8, abs=0.05)
+    assert rise_time_and_overshoot('ls3')[1] == pytest.approx(28.8, abs=0.05)
 
 
 def test_the_networks_make_g_c1_exactly():
