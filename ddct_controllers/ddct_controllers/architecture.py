@@ -37,10 +37,10 @@ Function from measurement and C_load in N m to the torque in N m that is indepen
 
 class Architecture:
     """
-    C_f = open loop + feedback; feedback is held off until its first step.
+    C_f = open loop + feedback; feedback is off until its first step.
 
     The open loop takes the measurement, and C_load computed from V_x and the slope. A closing
-    stage, if there is one, adds to it and holds feedback off while it is closed.
+    stage, if there is one, adds to it and switches feedback off while it is closed.
     """
 
     def __init__(

@@ -46,7 +46,7 @@ class ClosingStage:
         C_load, the open loop and the request of the last period in N m; `feedback_on` is whether
         the architecture has started feedback.
         """
-        # Feedback that asks for more than the stage may is not at the edge, and stays.
+        # Feedback that requests more than the stage may is not at the limit of slip: it stays on.
         in_reach = self.closed or last_request <= self._parameters.most_n_m
         alike = feedback_on and in_reach and self._within_band(measurement)
         self._samples_within = self._samples_within + 1 if alike else 0

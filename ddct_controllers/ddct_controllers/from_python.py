@@ -17,14 +17,14 @@ _LINEAR = 'linear'
 
 def chosen_from(controller: Any, name: str = '') -> Chosen:
     """
-    Return a controller as `make_controller` takes it.
+    Return a choice of controller in the form that `make_controller` accepts.
 
     `controller` is a name or file of the registry; a `Controller` class, or another factory that
     takes a `ControllerContext`; a `Controller`, which each run resets; or G_c, from slip error in
     rpm to torque in N m, as a system of scipy.signal or python-control, continuous (then held over
-    10 ms) or with a period of 10 ms. `name` is what bags and tables call one that has no name of
-    the registry, by default the name of the class. Raise ParameterError for anything else, and for
-    a name that is taken.
+    10 ms) or with a period of 10 ms. `name` is the name in bags and tables of a controller that
+    has none in the registry, by default the name of the class. Raise ParameterError for anything
+    else, and for a name that is taken.
     """
     if isinstance(controller, (str, Path, ControllerSpec)):
         if name:

@@ -1,4 +1,4 @@
-"""What a trial of check-controller gives a controller, what it times, and what it scales."""
+"""Trials of check-controller: their measurements, times and scaled torques."""
 
 from typing import Any
 
@@ -26,11 +26,11 @@ def test_trials_leave_the_sensors_of_a_scenario_out():
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 QUICK_S, LATE_S = 0.001, 0.02
-"""Within the period of 10 ms and beyond it."""
+"""Update times in s, within the period of 10 ms and beyond it."""
 
 
 def timed(late: int, monkeypatch: pytest.MonkeyPatch) -> Subject:
-    """Return the subject of trials with 100 updates, of which so many are late."""
+    """Return the subject of trials with 100 updates, `late` of which are late."""
     subject = Subject('pi', SETTINGS, OutputMonitor())
     log = ClosedLoopLog(update_s=[LATE_S] * late + [QUICK_S] * (100 - late))
     monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: log)
@@ -55,7 +55,7 @@ def test_more_late_updates_fail_however_quick_the_quickest_are(
 
 
 class ConstantRequest(Controller):
-    """Asks for 10 N m of the clutch, and 5 N m of the engine beyond what the driver demands."""
+    """A controller that adds 10 N m of the clutch and 5 N m of the engine to the demand."""
 
     commands_engine = True
 
@@ -81,7 +81,7 @@ def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_d
     assert plain.update(measured).engine_torque == measured.engine_torque + 5.0
 
 
-def test_a_scaled_trial_of_a_controller_that_asks_nothing_is_the_driver_s_own() -> None:
+def test_a_scaled_trial_without_a_request_has_the_drivers_demand() -> None:
     """The plant gets the driver's demand, whatever the scale."""
 
     class Idle(ConstantRequest):

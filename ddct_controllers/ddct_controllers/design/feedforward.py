@@ -113,7 +113,7 @@ def _relative_driveline(driveline: DrivelineParameters) -> StateSpace:
     Return x = y = [w_d, w_sr, theta_sr] for [C_m, C_f, C_load]: the driveline of Section 1.5.
 
     The drags c_m and c_prim are left out: without them the common speed acts on nothing, and with
-    them the filter would remember it for minutes (the pole of C_1 at -0.0059 rad/s).
+    them the filter would keep it for minutes (the pole of C_1 at -0.0059 rad/s).
     """
     free = driveline_matrices(replace(driveline, engine_damping=0.0, shaft_damping=0.0))
     relative = np.vstack([free.c, [0.0, 0.0, 0.0, 1.0]])

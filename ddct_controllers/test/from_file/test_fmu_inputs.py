@@ -1,4 +1,4 @@
-"""Each input of an FMU is given the signal that its file names; no FMU is needed to see it."""
+"""Each input of an FMU receives the signal that its file names; no FMU is needed."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ NOW = Measurement(
     load_torque=64.0,
     open_loop_torque=105.0,
 )
-"""No two of its numbers are alike."""
+"""A measurement of which no two numbers are equal."""
 SIGNALS = {
     'slip_error_rpm': rpm_from_rad_s(31.0 - (211.0 - 173.0)),
     'slip_speed_rad_s': 38.0,
@@ -45,12 +45,12 @@ SIGNALS = {
     'slip_reference_rate_rad_s2': -200.0,
     'slip_reference_rate_rad_s2[2]': -400.0,
 }
-"""What each name of a file stands for in that measurement."""
+"""Value of each signal in that measurement, by its name in a file."""
 
 
 @pytest.fixture
 def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return a function that gives what the inputs in a file become."""
+    """Return a function that returns the inputs of an FMU for the signals in a file."""
 
     def variable(name: str, causality: str) -> SimpleNamespace:
         return SimpleNamespace(
@@ -86,7 +86,7 @@ def test_the_names_above_are_all_the_names() -> None:
     assert {name.partition('[')[0] for name in SIGNALS} == {*fmu.SCALARS, *fmu.AHEAD}
 
 
-def test_each_input_is_given_what_its_name_says(inputs_in_file: Any) -> None:
+def test_each_input_receives_the_signal_of_its_name(inputs_in_file: Any) -> None:
     found_inputs = inputs_in_file(*SIGNALS)
     assert [each.variable.name for each in found_inputs] == [f'x{i}' for i in range(len(SIGNALS))]
     found = dict(zip(SIGNALS, (each.read(NOW) for each in found_inputs), strict=True))
@@ -102,7 +102,5 @@ def test_each_input_is_given_what_its_name_says(inputs_in_file: Any) -> None:
         ('open_loop_torque_n_m', 0),
     ],
 )
-def test_the_preview_is_as_long_as_the_index_says(
-    inputs_in_file: Any, name: str, ahead: int
-) -> None:
+def test_the_preview_is_as_long_as_the_index(inputs_in_file: Any, name: str, ahead: int) -> None:
     assert [each.ahead for each in inputs_in_file(name)] == [ahead]

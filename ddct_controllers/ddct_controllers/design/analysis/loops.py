@@ -186,7 +186,7 @@ class LoopCurve:
     def critical_gains(self) -> list[float]:
         """Return every factor that puts L through -1: -1/L where L is real and negative."""
         crossings = self.crossings(lambda values: values.imag / np.abs(values))
-        # L is real at rest and at half the sampling rate too, where no sign tells a crossing.
+        # L is real at rest and at half the sampling rate too, without a change of sign.
         at_rest = () if self._integrates else (0.0,)
         at_half_rate = self.omega[-1:] if self._sampled else ()
         values = [self.at(omega) for omega in (*crossings, *at_rest, *at_half_rate)]

@@ -101,9 +101,9 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
     """
     Return the margins of L closed by unit negative feedback.
 
-    Crossings are bracketed on a grid, dense around every pole, and then solved for; peaks
-    likewise. The delay margin of a sampled loop counts a delay tau as exp(-j omega tau), which is
-    exact for whole samples.
+    Crossings and peaks are bracketed on a grid, dense around every pole, and then solved for. The
+    delay margin of a sampled loop counts a delay tau as exp(-j omega tau), which is exact for
+    whole samples.
     """
     if not closed_loop_stable(loop):
         return LoopMargins(stable=False)

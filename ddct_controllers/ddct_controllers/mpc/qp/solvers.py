@@ -75,8 +75,8 @@ class Daqp(QpBackend):
         changes = {'f': f, 'bupper': upper, 'blower': lower} if len(upper) else {'f': f}
         bounded = np.isfinite([lower, upper]).tobytes()
         if bounded != self._bounded:
-            # A row held at a bound that is now infinite would spoil the start: a given sense
-            # empties the active set.
+            # A row that is active at a bound that is now infinite would spoil the start: passing a
+            # sense empties the active set.
             changes['sense'], self._bounded = self._sense, bounded
         flag = self._model.update(**changes)
         if flag < 0:

@@ -42,11 +42,11 @@ class SlowClutch:
         self._initial_request = initial_state(context.settings).torque_request
         scenario = context.settings.scenario
         transmission = self.transmission = RigidTransmission(scenario.driveline)
-        """Transmission for which it plans and asks."""
+        """Rigid transmission that plan and request are computed for."""
         self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
         """Plan of the engine speed."""
         corner = 0.5 * transmission.rigid_below_rad_s
-        # At low frequency the shaft's acceleration is so far behind the wanted one.
+        # At low frequency the shaft's acceleration is so far behind the desired one.
         lag_s = 2.0 / corner + ACTUATION_LAG_S
         self.pid = Pid(bandwidth_rad_s, lag_s)
         """Controller from the error of the slow speed in rad/s to an acceleration in rad/s^2."""
