@@ -28,7 +28,7 @@ from ddct_plant.graph.topics import (
 )
 
 TIMING_BATCH = 20
-"""Update times are published in batches of this many steps."""
+"""Number of steps whose update times are published together."""
 
 
 class ControllerNode(FollowerNode):

@@ -147,7 +147,7 @@ def closed_loop_stable(loop: ContinuousLoop | StateSpace) -> bool:
 
 def unstable_poles(loop: ContinuousLoop | StateSpace) -> int:
     """
-    Return how many poles the closed loop has on or beyond the stability boundary.
+    Return the number of closed-loop poles on or beyond the stability boundary.
 
     With a dead time tau there are infinitely many poles, and all but a few are stable. Growing
     from 0, tau takes two across at w when L(jw) exp(-jw tau) = -1: outwards where |L| falls with

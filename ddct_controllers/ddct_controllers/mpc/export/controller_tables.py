@@ -134,7 +134,7 @@ def _rows(
 
 
 def _periods_ahead(program: CondensedProgram, of_input: int) -> np.ndarray:
-    """Return how far ahead each row limits the level of an input; 0 for other rows."""
+    """Return the number of periods ahead at which a row limits the input; 0 for other rows."""
     periods, rows = np.zeros(len(program.lower)), program.level_rows[of_input]
     periods[rows] = np.arange(1, len(rows) + 1)
     return periods
@@ -151,7 +151,7 @@ def _engine_macros(authority: EngineAuthority) -> dict[str, float]:
 
 
 def _iterations(settings: MpcSettings, form: DualForm) -> int:
-    """Return how often the solver may change its active set in one call."""
+    """Return the largest number of changes of the solver's active set in one call."""
     if settings.iteration_limit is not None and settings.backend == 'daqp':
         return settings.iteration_limit  # counted in the same unit
     return CHANGES_PER_ROW * form.capacity

@@ -36,7 +36,7 @@ class DualForm:
     @property
     def capacity(self) -> int:
         """
-        Return how many rows can be active at once: the hard ones independent, the soft ones all.
+        Return the largest number of active rows: the hard ones independent, the soft ones all.
 
         At least 2, as compilers warn of loops over arrays of 1.
         """

@@ -51,7 +51,7 @@ class QpBackend(ABC):
         lengths = np.linalg.norm(constraints, axis=1)
         rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
         self._variables, self._rows = variables, rows
-        """(n,) and (m,), above 0."""
+        """Scale factors of the variables, (n,), and of the rows, (m,), above 0."""
         self._hessian = structure.hessian * variables * variables[:, None]
         """Scaled Hessian, (n, n), with a unit diagonal."""
         self._constraints = constraints * rows[:, None]
