@@ -69,8 +69,8 @@ def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path
     mine, out = tmp_path / 'mine.yaml', tmp_path / 'report.html'
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     rules = text[: text.index('limits:')]
-    limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true}'
-    mine.write_text(f'{rules}limits:\n{limit}\n', encoding='utf-8')
+    limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true'
+    mine.write_text(f'{rules}limits:\n{limit}, reason: as agreed}}\n', encoding='utf-8')
     assert main([str(demo), '--limits', str(mine), '--out', str(out)]) == 0
     shown = read(out).text
     assert f'Judged by the limits mine.yaml {load_limits(mine).origin["digest"]}' in shown

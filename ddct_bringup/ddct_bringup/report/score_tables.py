@@ -19,6 +19,7 @@ OF_NO_LOG = {
     'releases_after_lock': _NO_PHASES,
     'peak_temperature': 'a log has no temperature of the facing',
     'deadline_misses': 'a log has no steps of the controller',
+    'friction_work_over_least': 'a log has no inertias of the car',
 }
 """By criterion why no log of a car has a value."""
 NOT_JUDGED = 'the run failed or cannot be read'

@@ -287,7 +287,8 @@ def test_a_loaded_run_is_judged_by_the_limits_that_are_given(tmp_path):
     packaged = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     mine = tmp_path / 'mine.yaml'
     stricter = '{criterion: weighted_acceleration, value: 0.001, unit: m/s^2, applies_to: all'
-    mine.write_text(f'{packaged}  - {stricter}, convention: true}}\n', encoding='utf-8')
+    convention = f'{stricter}, convention: true, reason: to tell it from the packaged one}}'
+    mine.write_text(f'{packaged}  - {convention}\n', encoding='utf-8')
 
     def limit_of(run):
         criteria = run.entry['verdict']['criteria']
