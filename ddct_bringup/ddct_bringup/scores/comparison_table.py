@@ -1,4 +1,4 @@
-"""The table that `compare` prints: our scores beside Table 5.1 of the thesis."""
+"""The table that `compare` prints: computed scores next to Table 5.1 of the thesis."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -43,8 +43,8 @@ def print_comparison(
     """
     Print one row per run.
 
-    The thesis's figures, and the ranges of what the scenario predicts, are shown for the thesis's
-    own conditions only.
+    The values of the thesis, and the ranges of the predictions, are shown only for the conditions
+    of the thesis.
     """
     columns = [CONTROLLER, ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD]
     compared = is_thesis_run(settings)
@@ -72,12 +72,12 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
 
 
 def _with_range(column: RunColumn, name: str) -> RunColumn:
-    """Return a metric's column with the range of what is predicted beneath."""
+    """Return the column of a metric with the predicted range in a second line."""
     return replace(column, below=lambda run: predicted_range(run['controller'], name))
 
 
 def _thesis(figure: Figure) -> RunColumn:
-    """Return the column of the print, with the verdict beneath where it is predicted."""
+    """Return the column of the printed value, with hit or miss below where it is predicted."""
 
     def value(run: Entry) -> float | None:
         row = thesis_row(run['controller'])
