@@ -1,4 +1,4 @@
-"""Which runs can be computed in a batch, and the linear feedback of those that can."""
+"""Decide which runs can be computed in a batch, and find their linear feedback."""
 
 import dataclasses
 
@@ -20,17 +20,20 @@ HEEDED = frozenset(
         *('engine_authority', 'engine_speed_reference', 'pedal_position'),
     }
 )
-"""What a scenario may give: a batch has it too, or no linear controller has to do with it."""
+"""Scenario keys that a batch supports, or that have no effect with a linear controller."""
 _PLAYED_STEPS = 60
 _SAME = 1e-11
-"""Of the largest torque: how far `update` of somebody else's class may be off its model."""
+"""
+Largest difference between `update` of a foreign class and its model, relative to the largest
+torque.
+"""
 
 
 def batchable(settings: RunSettings, controller: Controller) -> str:
     """
-    Return in a line why a run cannot be computed in a batch, empty if it can.
+    Return in one line why a run cannot be computed in a batch, empty if it can.
 
-    The controller is not changed but for a reset.
+    The controller is not changed except for a reset.
     """
     return _why_not_plant(settings) or _why_not_controller(controller)
 
@@ -70,7 +73,9 @@ def _why_not_controller(controller: Controller) -> str:
 
 
 def _is_ours(kind: type[Controller]) -> bool:
-    """Say whether `update` and `linear_model` are those of one of our classes, which agree."""
+    """
+    Return whether `update` and `linear_model` belong to one packaged class, so that they agree.
+    """
     return any(
         kind.update is ours.update and kind.linear_model is ours.linear_model
         for ours in (LinearController, PiController)
@@ -78,7 +83,11 @@ def _is_ours(kind: type[Controller]) -> bool:
 
 
 def _acts_as(controller: Controller, model: object) -> bool:
-    """Say whether it answers played measurements, up to very large ones, as its model does."""
+    """
+    Return whether the controller and its model give equal outputs for random measurements.
+
+    The measurements grow up to very large values, so that a saturation shows.
+    """
     if not isinstance(model, StateSpace) or model.d.shape != (1, 1) or model.period_s != PERIOD_S:
         return False
     random, filtered = np.random.default_rng(0), DiscreteFilter(model)
@@ -92,7 +101,7 @@ def _acts_as(controller: Controller, model: object) -> bool:
 
 
 def _measurement(random: np.random.Generator, step: int, preview_steps: int) -> Measurement:
-    """Return speeds, torques and references in which nothing is related, larger step by step."""
+    """Return random speeds, torques and references without relation; they grow with the step."""
     size = 10.0 ** (3.0 * step / _PLAYED_STEPS)
     values = random.normal(scale=size, size=7).tolist()
     references = random.normal(scale=size, size=(2, preview_steps + 1)).tolist()
