@@ -1,4 +1,4 @@
-"""The figure of a campaign: how the main metrics are distributed, a curve for each controller."""
+"""Figure of a campaign: distributions of the main metrics, a curve for each controller."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -27,19 +27,19 @@ _ACROSS = 3
 _WIDTH_IN, _PANEL_IN, _LINE_IN = 11.0, 2.7, 0.25
 _LEGEND_COLUMNS = 5
 _TITLE_CHARACTERS = 120
-"""In a line."""
+"""Largest number of characters in a line of the title."""
 _MOST_STEPS = 500
-"""Of a curve: more cannot be told apart."""
+"""Largest number of steps of a curve: more cannot be distinguished."""
 
 
 def require_picture(target: str) -> None:
-    """Raise ParameterError unless a file's ending is that of a picture."""
+    """Raise ParameterError unless the extension of a file is that of a picture."""
     if Path(target).suffix not in PICTURES:
         raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
 
 
 def write_distributions(results: Results, scenario: str, path: Path) -> None:
-    """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
+    """Write the figure as PNG or SVG by the file's extension; raise DdctError where that fails."""
     with chart_style():
         save_chart(distributions_figure(results, scenario), path)
 
@@ -48,8 +48,8 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
     """
     Return the figure: a panel for each main metric, a curve for each controller.
 
-    A curve is the share of the valid runs that engaged with at most this value. So it ends at the
-    share of the runs that engaged and have a value; what is missing to 1 did not, or has none.
+    A curve is the share of the valid runs that engaged with at most this value. It ends at the
+    share of the runs that engaged and have a value; the rest up to 1 failed, or has no value.
     """
     metrics = [each for each in (*TABLE_5_1, *FURTHER) if each.key in _DRAWN]
     metrics = [each for each in metrics if each in results.quantities]

@@ -38,16 +38,18 @@ SUMMARY, PAGE = 'summary.json', 'report.html'
 THESIS = 'thesis'
 _ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
 _RAMP = tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))
-"""Dark to light, made for colour-blind eyes (Nunez, Anderton and Renslow 2018)."""
+"""
+Colours from dark to light, readable for colour-blind people (Nunez, Anderton and Renslow 2018).
+"""
 _SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
-"""The quantity of the maps when the page opens: the first of these that there is."""
+"""Quantities that the maps show when the page opens, the first available one of these."""
 
 
 def write_campaign_page(folder: Path) -> Summary:
     """
-    Write the summary and the page of a campaign into its folder, and return the summary.
+    Write the summary and the page of a campaign to its folder, and return the summary.
 
-    Raise DdctError for a folder that is no finished campaign, and when a file cannot be written.
+    Raise DdctError for a folder without a finished campaign, and when a file cannot be written.
     """
     manifest = Manifest.read(folder)
     results = results_of(manifest, read_table(folder, manifest))
@@ -65,7 +67,7 @@ def scenario_of(manifest: Manifest) -> str:
 
 
 def facts_of(manifest: Manifest) -> dict[str, Any]:
-    """Return in words where a campaign is from."""
+    """Return the origin of a campaign as text by label."""
     common = {key: manifest.spec[key] for key in COMMON if key in manifest.spec}
     limits = manifest.limits
     return {
@@ -83,7 +85,7 @@ def facts_of(manifest: Manifest) -> dict[str, Any]:
 def campaign_page(
     results: Results, summary: Summary, folder: str, facts: Mapping[str, str]
 ) -> str:
-    """Return the HTML over a campaign in a folder; `facts` are words about where it is from."""
+    """Return the HTML page of a campaign in a folder; `facts` describe its origin."""
     maps = campaign_maps(results)
     replay = words.replay_command(folder, 'INDEX')
     return page_template(_ROOM, 'campaign.html.j2').render(
@@ -112,13 +114,13 @@ def campaign_page(
 
 
 def _distributions(results: Results, scenario: str) -> str:
-    """Return the figure of the distributions as a part of a data URI."""
+    """Return the figure of the distributions, encoded for a data URI."""
     with chart_style():
         figure = distributions_figure(results, scenario)
         return b64encode(chart_bytes(figure, 'svg')).decode()
 
 
 def _chosen(quantities: list[dict[str, Any]]) -> int:
-    """Return the place of the quantity that the maps show when the page opens."""
+    """Return the index of the quantity that the maps show when the page opens."""
     keys = [each['key'] for each in quantities]
     return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)

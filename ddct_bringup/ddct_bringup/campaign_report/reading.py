@@ -1,4 +1,4 @@
-"""Read the results of a campaign, of this version or another, for what they have."""
+"""Read the results of a campaign of this version or another, with the columns that exist."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.settings import RunSettings
 
 REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', 'verdict_state')
-"""Columns without which nothing can be counted, besides those of what was varied."""
+"""Required columns, besides those of the varied keys."""
 _AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
 
 
@@ -26,8 +26,8 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     """
     Return the rows of a finished campaign, with the columns that its file has.
 
-    A version with fewer metrics, or with others, is read too. Raise DdctError without the rows,
-    or without a column that is needed.
+    Results of a version with fewer or other metrics are read too. Raise DdctError without the
+    rows, or without a required column.
     """
     path = folder / RESULTS
     try:
@@ -57,7 +57,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
 
 
 def results_of(manifest: Manifest, table: pa.Table) -> Results:
-    """Return the rows with what the manifest says of them."""
+    """Return the results from the rows and the manifest."""
     columns = {name: table[name].to_numpy() for name in table.column_names}
     ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
@@ -74,10 +74,10 @@ def results_of(manifest: Manifest, table: pa.Table) -> Results:
 
 def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     """
-    Return the numbers that a specification varies as they are without it.
+    Return the nominal values of the numbers that a specification varies.
 
-    That is in its scenario, the first of several; of what the scenario leaves out, by default.
-    Raise DdctError for a scenario that cannot be read any more.
+    They are those of its scenario, the first of several, or the default where the scenario has
+    none. Raise DdctError for a scenario that can no longer be read.
     """
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}

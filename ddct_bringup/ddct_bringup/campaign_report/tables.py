@@ -1,4 +1,4 @@
-"""The tables of a campaign as the terminal prints them."""
+"""Tables of a campaign for the terminal."""
 
 from collections.abc import Iterator, Sequence
 
@@ -10,11 +10,11 @@ from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_das
 
 _QUANTILES = ('p5', 'p50', 'p95')
 MAIN = (*(figure.key for figure in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
-"""The metrics whose differences and distributions come first."""
+"""Main metrics, whose differences and distributions are shown."""
 
 
 def summary_tables(summary: Summary) -> list[Table]:
-    """Return how often, where failure begins or what drives it, how badly, and differences."""
+    """Return the tables of failed runs, boundaries or causes, quantities, and differences."""
     return [
         _failed(summary),
         *_boundaries(summary),
@@ -25,7 +25,7 @@ def summary_tables(summary: Summary) -> list[Table]:
 
 
 def print_summary(summary: Summary, folder: str) -> None:
-    """Print what came out of the campaign in a folder."""
+    """Print the summary of the campaign in a folder."""
     print_tables(summary_tables(summary))
     for note in words.notes_of(summary):
         print(printable(note))
@@ -102,7 +102,7 @@ def _by_place(summary: Summary, name: str) -> Iterator[tuple[Summary, Summary]]:
 
 
 def _quantities(summary: Summary) -> Table:
-    """Return the metrics; the page has the other criteria too."""
+    """Return the table of the metrics; the page has the other criteria too."""
     rows = [
         _quantity(words.label_of(group), found)
         for group, found in _by_place(summary, 'quantities')
@@ -136,7 +136,7 @@ def _quantity(label: str, found: Summary) -> Sequence[str]:
 
 
 def _differences(summary: Summary) -> Iterator[Table]:
-    """Yield how the other controllers differ from the first in the main metrics."""
+    """Yield the differences of the other controllers from the first in the main metrics."""
     if not summary['pairs']:
         return
     first = summary['pairs'][0]['first']
