@@ -1,4 +1,4 @@
-"""What the words, symbols, signs and dashes of the page mean, so that it needs no other page."""
+"""Definitions of the terms, symbols, signs and dashes of the page."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from ddct_plant.program.table import Figure
 
 @dataclass(frozen=True)
 class Definition:
-    """One entry; a reader finds it by the text of the table or chart."""
+    """One definition; a reader finds it by the text of the table or chart."""
 
     term: str
     meaning: str
     unit: str = ''
-    """As it is printed, empty for a word or a pure number."""
+    """Unit as printed, empty for a term or a pure number."""
 
 
 _READING = (
@@ -106,9 +106,9 @@ def definitions(
     quantities: Iterable[Quantity], *, thesis: bool
 ) -> dict[str, tuple[Definition, ...]]:
     """
-    Return the entries of a page that draws these quantities, by subject.
+    Return the definitions for a page that draws these quantities, by subject.
 
-    `thesis` tells whether runs stand beside Table 5.1.
+    `thesis` is whether runs are compared with Table 5.1.
     """
     reading = _READING + (_THESIS if thesis else ())
     signals = tuple(
@@ -130,7 +130,7 @@ _METRIC_SYMBOLS = {metric.meaning: metric.symbol for metric in METRICS.values()}
 
 
 def _criteria() -> tuple[Definition, ...]:
-    """Return the criteria; one that is a metric too refers to it."""
+    """Return the definitions of the criteria; one that is a metric too refers to it."""
     return tuple(
         Definition(
             each.symbol, f'the metric {_METRIC_SYMBOLS[each.meaning]}.', unit_text(each.unit)

@@ -1,4 +1,4 @@
-"""The signals that the page draws, one chart each."""
+"""Signals that the page draws, one chart each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,22 +12,22 @@ from ddct_plant.base.units import rpm_from_rad_s
 
 @dataclass(frozen=True)
 class Quantity:
-    """What one chart shows."""
+    """Signal of one chart."""
 
     key: str
     title: str
     symbol: str
     unit: str
     meaning: str
-    """What it is measured between, and what its sign says."""
+    """Meaning of the signal: where it is measured, and its sign."""
     values: Callable[[Trajectory], np.ndarray]
-    """(N+1,) in the unit."""
+    """Function that returns the signal, (N+1,), in the unit."""
     limit: Callable[[Trajectory], np.ndarray] | None = None
-    """(N+1,) in the unit: what bounds its magnitude, drawn beside it."""
+    """Function that returns the bound of the magnitude, (N+1,), in the unit."""
 
     @property
     def limit_key(self) -> str:
-        """Name of the limit's column."""
+        """Name of the column of the limit."""
         return f'{self.key}_limit'
 
 
@@ -97,14 +97,14 @@ QUANTITIES = (
         lambda run: run.engine_torque,
     ),
 )
-"""Of every run."""
+"""Signals of every run."""
 
 
 def _capacity(run: Trajectory) -> np.ndarray:
     """
-    Return what the friction can carry in N m: the static capacity while it is locked.
+    Return the friction torque capacity in N m: the static capacity while locked.
 
-    NaN where that is not known, as of a log.
+    NaN where it is not known, as for a log.
     """
     if run.clutch_phase is None:
         return np.full(run.steps + 1, np.nan)
@@ -141,7 +141,7 @@ CLUTCH_QUANTITIES = (
         lambda run: run.clutch_temperature,
     ),
 )
-"""Of runs with a clutch that sticks."""
+"""Signals of runs with a stick-slip clutch."""
 
 
 SENSOR_QUANTITIES = (
@@ -154,7 +154,7 @@ SENSOR_QUANTITIES = (
         lambda run: rpm_from_rad_s(run.sensed_slip_speed - run.slip_speed),
     ),
 )
-"""Of runs with sensors."""
+"""Signals of runs with sensors."""
 
 
 LOG_QUANTITIES = (
@@ -184,11 +184,11 @@ LOG_QUANTITIES = (
         lambda run: run.joint_effort[:, 3],
     ),
 )
-"""Of logs of a car, and of the runs beside them."""
+"""Signals of logs of a car, and of the runs compared with them."""
 
 
 def quantities_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[Quantity, ...]:
-    """Return what there is to draw of a run; `with_log`: of a log, or of a run beside one."""
+    """Return the signals of a run that are drawn; `with_log`: it is a log or compared with one."""
     possible = (
         *QUANTITIES,
         *(() if trajectory.clutch_phase is None else CLUTCH_QUANTITIES),
