@@ -1,8 +1,8 @@
 """
-What a scenario predicts of the thesis's other results, by the ids that the thesis gate gives them.
+Predictions of a scenario for the thesis's other results, by the ids of the thesis gate.
 
-These took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2, of which the
-numbers behind the words are given too. Of a word, whether it is a hit or a miss.
+They took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2. For a
+qualitative rating of Table 5.2 the prediction is hit or miss, with the numbers behind it.
 """
 
 from collections.abc import Iterable
@@ -23,11 +23,13 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 OPEN_LOOP = 'C_fOL alone'
-"""In the place of a controller: the clutch left to C_fOL and the engine to the driver."""
+"""
+Name in place of a controller: the clutch has C_fOL alone, and the engine the driver's demand.
+"""
 
 
 def predict(frozen: Scenario, members: Iterable[Scenario], progress: Progress) -> Predictions:
-    """Return every prediction of the frozen scenario, with its values in the members."""
+    """Return every prediction for the frozen scenario, with its values in the members."""
     progress(f'predictions of {frozen.name}')
     of_frozen = predicted_values(frozen)
     found: dict[str, dict[str, Value]] = {}

@@ -2,8 +2,8 @@
 The calibration of the thesis scenario as a least-squares problem.
 
 The thesis prints no engine torque profile, no reference slope and no PI gains. They are fitted
-to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1; the MPC rows take no part.
-`parameters` has the parameters with their bounds, and the numbers.
+to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1, without the MPC rows.
+Parameters, bounds and numbers are in the module `parameters`.
 """
 
 import dataclasses
@@ -47,7 +47,7 @@ class Problem:
     """Residuals of some rows of the table for one score window."""
 
     window_end_s: float
-    """The window starts with control."""
+    """End of the score window in s; it starts with control."""
     rows: tuple[str, ...] = ROWS
     base: Scenario = BASE
 
@@ -63,12 +63,12 @@ class Problem:
         )
 
     def figures(self, values: Values) -> dict[str, dict[str, float]]:
-        """Return our figures by row, then metric name."""
+        """Return the computed values by row, then metric name."""
         scenario = self.scenario(values)
         return {row: row_figures(scenario, row) for row in self.rows}
 
     def residuals(self, values: Values) -> np.ndarray:
-        """Return (computed / printed - 1) / tolerance, (3 rows,), three figures a row."""
+        """Return (computed / printed - 1) / tolerance, (3 rows,), three values a row."""
         rows = residual_rows(self.figures(values))
         return np.array([row['deviation'] / row['tolerance'] for row in rows])
 
@@ -102,9 +102,9 @@ class Fit:
 
     problem: Problem
     values: tuple[float, ...]
-    """(6,) in the order of PARAMETERS."""
+    """Values of the parameters, (6,), in the order of PARAMETERS."""
     residuals: np.ndarray
-    """(3 rows,) scaled."""
+    """Scaled residuals, (3 rows,)."""
 
     @property
     def objective(self) -> float:
@@ -123,12 +123,12 @@ class Fit:
 
     @property
     def pi_kind(self) -> str:
-        """'P' or 'I': the part that moves the torque more in the about 1 s of an engagement."""
+        """Part of the PI that moves the torque more in an engagement of about 1 s: 'P' or 'I'."""
         proportional, integral = self.values[4:]
         return 'P' if proportional >= integral else 'I'
 
     def as_record(self) -> Record:
-        """Return what the record of a calibration has of every fit."""
+        """Return the entry of the fit in the record of a calibration."""
         return {
             'objective': self.objective,
             'worst_residual': float(self.residuals[np.argmax(np.abs(self.residuals))]),
@@ -138,11 +138,11 @@ class Fit:
 
 def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     """
-    Return the three figures of one controller, simulated to the end of the score window.
+    Return the three values of one controller, simulated to the end of the score window.
 
-    Where w_d does not reach zero by then, t_a is the time simulated since control start plus what
-    the reference's slope would need for the slip that is left: defined everywhere, continuous,
-    and the larger the worse. Raise DdctError for a run that is not finite.
+    Where w_d does not reach zero by then, t_a is the time simulated since control start plus the
+    time that the slope of the reference needs for the remaining slip: defined everywhere,
+    continuous, and larger for a worse run. Raise DdctError for a run that is not finite.
     """
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
@@ -163,7 +163,7 @@ def fit(
     """
     Return the local optimum from (6,) start values; parameters not in `free` keep theirs.
 
-    A trust-region method within the bounds, each parameter measured by its range.
+    A trust-region method within the bounds, each parameter scaled by its range.
     """
     free = list(free)
     origin = np.asarray(start, dtype=float)

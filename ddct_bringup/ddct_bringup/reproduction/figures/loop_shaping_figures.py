@@ -31,14 +31,14 @@ from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 _PRINTED_PRODUCT = 2.02
-"""t_r w_c that Section 2.2 reads off the curve for its zeta."""
+"""Product t_r w_c that Section 2.2 reads off the curve for its zeta."""
 _G_C1 = LOOP_SHAPING_CONTROLLERS['ls2']
 _G_C2 = LOOP_SHAPING_CONTROLLERS['ls7']
 _RATIOS = (2.0, 3.0, 4.0, 6.0, 10.0, 16.0)
-"""m_d and m_i of the normalised networks; the thesis's G_c1 has 16."""
+"""Ratios m_d and m_i of the normalised networks; G_c1 of the thesis has 16."""
 _SLOWEST_RAD_S, _FASTEST_RAD_S = 1e-3, 1e4
 _INDENTATION = np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, 200))
-"""s / radius on the quarter circle that passes the poles at 0 on the right."""
+"""Values of s / radius on the quarter circle that passes the poles at 0 on the right."""
 
 
 def _draw_rise_time_crossover(axes: Axes) -> str:
@@ -99,7 +99,7 @@ def _draw_nyquist(whole: Axes, zoom: Axes, gain: float, printed_encirclements: i
 
 
 def _compressed(values: np.ndarray) -> np.ndarray:
-    """Return the values with their size replaced by log10(1 + size), so that all is in sight."""
+    """Return the values with magnitude log10(1 + magnitude), so that all are visible."""
     size = np.abs(values)
     return values / size * np.log10(1.0 + size)
 
@@ -185,4 +185,4 @@ LOOP_SHAPING_FIGURES = (
         printed=(0.52, 0.13),
     ),
 )
-"""Those of Section 2.2."""
+"""Figures of Section 2.2."""

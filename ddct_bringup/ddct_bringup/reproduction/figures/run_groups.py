@@ -1,4 +1,4 @@
-"""Which controllers the thesis shows together, in which loop, and what it says of them."""
+"""Groups of controllers that the thesis shows together: the loop, and the thesis's claims."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,17 @@ class RunGroup:
     """Figures of the same runs."""
 
     numbers: tuple[str, ...]
-    """Figures of w_d, w_sr and A_x, or of w_d alone."""
+    """Numbers of the figures of w_d, w_sr and A_x, or of w_d alone."""
     architecture: str
     controllers: tuple[str, ...]
-    """Registry names."""
+    """Registry names of the controllers."""
     thesis_says: str
-    """What its text says of these figures."""
+    """Claim of the thesis about these figures."""
     verdict: str
-    """How far ours agree."""
+    """Agreement of the computed figures with the claim."""
     wear_gains: tuple[float, ...] = (1.0,)
     compared: tuple[str, ...] = ()
-    """Registry names of runs that are scored beside these and not drawn."""
+    """Registry names of runs that are scored for comparison and not drawn."""
 
 
 _OSCILLATING = 'w_d good, but oscillations in w_sr and A_x'
@@ -93,4 +93,4 @@ RUN_GROUPS = (
         wear_gains=(0.7, 1.3),
     ),
 )
-"""Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
+"""Groups for Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""

@@ -1,4 +1,6 @@
-"""The kept admissible scenarios, what they predict, and what the MPC rows become in them."""
+"""
+Studies of the admissible scenarios: fitted values, predictions, and readings of the MPC rows.
+"""
 
 import dataclasses
 
@@ -37,7 +39,7 @@ _MORE_KNOWN = dataclasses.replace(
 
 
 def admissible_scenarios() -> Study:
-    """Return the fitted values of each kept scenario and how well it fits."""
+    """Return the fitted values of each admissible scenario and the quality of its fit."""
     return Study(
         'Admissible scenarios',
         (
@@ -64,7 +66,7 @@ def _scenario_row(scenario: Scenario) -> tuple[str, ...]:
 
 
 def prediction_ranges() -> Study:
-    """Return the MPC rows of Table 5.1 as value and range beside the print."""
+    """Return the MPC rows of Table 5.1 as value and range with the printed value."""
     rows = []
     for row in PREDICTED_ROWS:
         for name, printed in row.figures().items():
@@ -95,7 +97,7 @@ def prediction_ranges() -> Study:
 
 
 def _hits_at_once(row: ThesisRow) -> str:
-    """Return in how many scenarios all figures of a row are hits, and its sigmas."""
+    """Return the number of scenarios with hits for all values of a row, and for its sigmas."""
     values = [_kept(f'5.1 {row.controller} {name}').values for name in FIGURES]
     hits = [
         [row.hit(name, value) for name, value in zip(FIGURES, figures, strict=True)]
@@ -108,7 +110,7 @@ def _hits_at_once(row: ThesisRow) -> str:
 
 
 def worn_ranges() -> Study:
-    """Return the words of Table 5.2 as hit or miss, and their numbers, with their ranges."""
+    """Return hit or miss for the ratings of Table 5.2, and their numbers, with their ranges."""
     rows: list[tuple[str, ...]] = []
     for gain in WORN:
         for name in SLIP_WORDS:

@@ -1,4 +1,4 @@
-"""Table 5.2 in numbers, with the clutch of the thesis and with one that sticks."""
+"""Table 5.2 in numbers, with the thesis's linear clutch and with the stick-slip clutch."""
 
 import math
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 def table_5_2_in_numbers() -> Study:
-    """Return the figures, the words that they come to and the printed ones."""
+    """Return the values, the ratings that follow from them and the printed ones."""
     return Study(
         f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}',
         (
@@ -71,7 +71,7 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
 
 
 def _with_states(row: Row, states: Mapping[str, str]) -> Row:
-    """Return the figures, infinite for a run that got out of hand: however small, none is good."""
+    """Return the values, infinite for a failed run: a small one is no good result there."""
     return {
         name: figure if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
         for name, figure in row.items()
@@ -79,7 +79,7 @@ def _with_states(row: Row, states: Mapping[str, str]) -> Row:
 
 
 def _printed(finding: Finding | None, word: str) -> str:
-    """Return the printed word and whether it holds; a dash where the thesis prints none."""
+    """Return the printed rating and whether it holds; a dash where the thesis prints none."""
     if finding is None:
         return '-'
     return f'{word}: {"holds" if finding.holds else "does not hold"}'

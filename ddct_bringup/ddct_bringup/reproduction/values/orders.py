@@ -1,9 +1,10 @@
 """
-Figures of several runs by controller, and how they order them: what claims in words rest on.
+Metrics of several runs by controller and their order, the basis of qualitative claims.
 
-The thesis names no limits for the words of Table 5.2; what a word says is an order. They are
-judged by one rule that was set after looking at the figures: a row of words holds where every
-figure grows with the word, and within one word the largest is at most twice the smallest.
+The thesis defines no limits for the ratings of Table 5.2, such as `good`; a rating states an
+order. They are judged by one rule that was set after the values were known: a row of ratings holds
+where every value increases with the rating, and within one rating the largest is at most twice the
+smallest.
 """
 
 import math
@@ -15,26 +16,26 @@ from ddct_bringup.thesis.table_5_1 import FIGURES
 from ddct_plant.base.timebase import steps_in
 
 CLEARLY = 2.0
-"""Factor behind `huge`, `very bad`, `no oscillations` and the only one that does something."""
+"""Factor that `huge`, `very bad`, `no oscillations` and "the only one with an effect" require."""
 WORN = (0.7, 1.3)
-"""The two critical values of K_usura, inequality (3.2)."""
+"""Critical values of K_usura, inequality (3.2)."""
 WORN_ARCHITECTURE = 'feedforward'
-"""That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
+"""Architecture of Figure 5.1, the only run with a worn clutch in the thesis."""
 SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
-"""Table 5.2: w_d, at both values of K_usura."""
+"""Ratings of w_d in Table 5.2, equal for both values of K_usura."""
 OSCILLATION_WORDS = {
     0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
     1.3: dict.fromkeys(SLIP_WORDS, 'average'),
 }
-"""Table 5.2: w_sr and A_x by K_usura."""
+"""Ratings of w_sr and A_x in Table 5.2, by K_usura."""
 
 _RANKS = {'good': 0, 'low': 0, 'average': 1, 'bad': 2, 'high': 2}
-"""Of the words, from the best to the worst."""
+"""Ranks of the ratings, from the best to the worst."""
 _ALIKE = 2.0
-"""Largest ratio of two figures that have the same word."""
+"""Largest ratio of two values with the same rating."""
 
 Row = Mapping[str, float]
-"""One figure by controller; infinite where it does not exist."""
+"""Values of one metric by controller; infinite where it does not exist."""
 
 
 def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed') -> Row:
@@ -74,7 +75,9 @@ def is_extreme(
 
 
 def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = True) -> Finding:
-    """Return whether each controller, or none, is lower in every row than the same elsewhere."""
+    """
+    Return whether each controller, or none, is lower in every row of `ours` than of `others`.
+    """
     names = list(ours[0])
     lower = [
         name
@@ -88,7 +91,7 @@ def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = Tru
 
 
 def text(unit: str, row: Row) -> str:
-    """Return the figures of a row for a reader."""
+    """Return the values of a row as text."""
     parts = (
         f'{name} {value:.3g}' if value < math.inf else f'{name} -' for name, value in row.items()
     )
@@ -96,13 +99,15 @@ def text(unit: str, row: Row) -> str:
 
 
 def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
-    """Return the two standard deviations of some controllers for a reader."""
+    """Return the two standard deviations of some controllers as text."""
     twist, acceleration = ({name: row[name] for name in names} for row in rows)
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
 
 
 def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
-    """Return |w_d| as the score window ends in rad/s, std w_sr in rpm and std A_x in m/s^2."""
+    """
+    Return |w_d| at the end of the score window in rad/s, std w_sr in rpm and std A_x in m/s^2.
+    """
     slips = {}
     for name, run in runs.items():
         end = steps_in('score_window_s', run.settings.scenario.score_window_s[1])
@@ -111,7 +116,7 @@ def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
 
 
 def judge_table_5_2(wear_gain: float, rows: Sequence[Row]) -> dict[str, Finding]:
-    """Return what the printed words come to, by the gate's ids, of `rows_of_table_5_2`."""
+    """Return the findings on the printed ratings by the gate's ids, from `rows_of_table_5_2`."""
     slips, twist, acceleration = rows
     words = {
         'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
@@ -130,10 +135,10 @@ def judge_words(
     words: Mapping[str, str], figures: Sequence[tuple[str, Row]]
 ) -> dict[str, Finding]:
     """
-    Return what each controller's word comes to, by its name.
+    Return the finding on each controller's rating, by its name.
 
-    `words` has the printed word by controller; `figures` a unit and the figures by controller, for
-    each quantity that the words are about. A word holds when it is right beside all the others.
+    `words` has the printed rating by controller; `figures` a unit and the values by controller,
+    for each metric that is rated. A rating holds when it is right relative to all the others.
     """
     return {
         name: Finding(
@@ -146,10 +151,11 @@ def judge_words(
 
 def words_of(row: Row) -> dict[str, str]:
     """
-    Return the word that each controller's figure comes to by the rule of `judge_words`.
+    Return the rating of each controller's value by the rule of `judge_words`.
 
-    From the least on, figures within twice the least of them have one word. The words are good,
-    average and bad; of more groups than three all between are average, one group is alike.
+    In increasing order, values within twice the smallest of them have one rating. The ratings are
+    good, average and bad; of more than three groups all inner ones are average, one group is
+    alike.
     """
     groups: list[list[str]] = []
     for name in sorted(row, key=row.__getitem__):
@@ -166,7 +172,7 @@ def words_of(row: Row) -> dict[str, str]:
 
 
 def _stands(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
-    """Return whether the figures of two controllers are as their words say."""
+    """Return whether the values of two controllers are in the order of their ratings."""
     order = _RANKS[words[name]] - _RANKS[words[other]]
     if order == 0:
         return max(row[name], row[other]) <= _ALIKE * min(row[name], row[other])
