@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
-from ddct_bringup.reproduction.values.orders import SLIP_WORDS, WORN
+from ddct_bringup.reproduction.values.orders import SLIP_RATINGS, WORN
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NEARLY_ENGAGED, RUNAWAY
 from ddct_plant.program.table import UNDEFINED, Table
 from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
@@ -49,7 +49,7 @@ def _wear_table(found: StateMap) -> Table:
         for clutch in PLANTS:
             line = found.line(name, architecture, clutch, NOMINAL_DELAY_S)
             cells += [ranges_text(wears, line), *(_word(line[wears.index(w)]) for w in WORN)]
-        rows.append((architecture, name, *cells, SLIP_WORDS.get(name, UNDEFINED)))
+        rows.append((architecture, name, *cells, SLIP_RATINGS.get(name, UNDEFINED)))
     headers = [
         heading
         for plant in PLANTS.values()

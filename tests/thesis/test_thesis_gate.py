@@ -200,7 +200,7 @@ def test_list_has_table_5_1_as_the_calibration_uses_it() -> None:
     assert printed_in('5, Table 5.1') == {
         f'{row.label}: {figure}': value
         for row in THESIS_TABLE
-        for figure, value in zip(figures, row.figures().values(), strict=True)
+        for figure, value in zip(figures, row.printed_values().values(), strict=True)
     }
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from matplotlib.figure import Figure
 
 from ddct_bringup.api.runs import Run, as_runs
-from ddct_bringup.report.quantities import Quantity, quantities_of
+from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.runs import common_conditions, run_labels, varied_conditions
 from ddct_controllers.design.drawing.chart_style import (
     chart_style,
@@ -68,7 +68,7 @@ def _title(runs: Sequence[Run]) -> str:
     return headed(title, f'{"; ".join(scenarios)}; {shared}', _WIDTH_IN)
 
 
-def _quantity(run: Run, key: str) -> Quantity:
-    known = {quantity.key: quantity for quantity in quantities_of(run.trajectory)}
+def _quantity(run: Run, key: str) -> ChartSignal:
+    known = {quantity.key: quantity for quantity in chart_signals_of(run.trajectory)}
     require_known([key], known, 'quantity')
     return known[key]

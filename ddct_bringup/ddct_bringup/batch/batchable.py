@@ -12,7 +12,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
 from ddct_plant.scenario.settings import RunSettings
 
-HEEDED = frozenset(
+SUPPORTED_KEYS = frozenset(
     {
         *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
@@ -21,8 +21,8 @@ HEEDED = frozenset(
     }
 )
 """Scenario keys that a batch supports, or that have no effect with a linear controller."""
-_PLAYED_STEPS = 60
-_SAME = 1e-11
+_TRIAL_STEPS = 60
+_MODEL_TOLERANCE = 1e-11
 """
 Largest difference between `update` of a foreign class and its model, relative to the largest
 torque.
@@ -47,7 +47,7 @@ def _why_not_plant(settings: RunSettings) -> str:
         return f'reference.shape is {ENGINE_SPEED_TARGET}'
     scenario = settings.scenario
     for field in dataclasses.fields(scenario):
-        if field.name not in HEEDED and getattr(scenario, field.name) != field.default:
+        if field.name not in SUPPORTED_KEYS and getattr(scenario, field.name) != field.default:
             return f'the scenario gives {field.name}'
     return ''
 
@@ -58,31 +58,29 @@ def _why_not_controller(controller: Controller) -> str:
     kind = type(controller)
     if kind.hold is not Controller.hold:
         return 'the controller does more than reset while feedback is held off'
-    if _is_ours(kind):
+    if _is_packaged(kind):
         return ''
     try:
         model = controller.linear_model()
         if model is None:
             return 'the controller is not linear'
         controller.reset()
-        same = _acts_as(controller, model)
+        same = _matches_model(controller, model)
         controller.reset()
     except FOREIGN_FAILURES as error:
         return f'the controller failed when it was tried ({type(error).__name__}: {error})'
     return '' if same else 'the controller does not do what its linear_model says'
 
 
-def _is_ours(kind: type[Controller]) -> bool:
-    """
-    Return whether `update` and `linear_model` belong to one packaged class, so that they agree.
-    """
+def _is_packaged(kind: type[Controller]) -> bool:
+    """Return whether `update` and `linear_model` belong to one packaged class and so agree."""
     return any(
         kind.update is ours.update and kind.linear_model is ours.linear_model
         for ours in (LinearController, PiController)
     )
 
 
-def _acts_as(controller: Controller, model: object) -> bool:
+def _matches_model(controller: Controller, model: object) -> bool:
     """
     Return whether the controller and its model give equal outputs for random measurements.
 
@@ -92,17 +90,17 @@ def _acts_as(controller: Controller, model: object) -> bool:
         return False
     random, filtered = np.random.default_rng(0), DiscreteFilter(model)
     largest = worst = 0.0
-    for step in range(_PLAYED_STEPS):
+    for step in range(_TRIAL_STEPS):
         played = _measurement(random, step, controller.preview_steps)
         torque = filtered.update(played.slip_error_rpm)
         largest = max(largest, abs(torque))
         worst = max(worst, abs(controller.update(played).clutch_torque - torque))
-    return bool(worst <= _SAME * largest or worst == 0.0)
+    return bool(worst <= _MODEL_TOLERANCE * largest or worst == 0.0)
 
 
 def _measurement(random: np.random.Generator, step: int, preview_steps: int) -> Measurement:
     """Return random speeds, torques and references without relation; they grow with the step."""
-    size = 10.0 ** (3.0 * step / _PLAYED_STEPS)
+    size = 10.0 ** (3.0 * step / _TRIAL_STEPS)
     values = random.normal(scale=size, size=7).tolist()
     references = random.normal(scale=size, size=(2, preview_steps + 1)).tolist()
     return Measurement(step, *values[:5], *references, *values[5:])

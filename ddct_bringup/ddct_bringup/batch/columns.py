@@ -22,9 +22,7 @@ def stacked(things: Sequence[Any]) -> Any:
 
 
 def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
-    """
-    Return the index of the first occurrence of each key, and per key its index among those, (R,).
-    """
+    """Return the index of each key's first occurrence, and per key its index among those, (R,)."""
     places: dict[Any, int] = {}
     first: list[int] = []
     inverse = []

@@ -86,7 +86,7 @@ class Plants:
     def advance(self, step: int, load_torque: np.ndarray, request: np.ndarray) -> None:
         """Advance by 10 ms with C_m and C_load held and the clutch request, (R,) in N m each."""
         values, engine_torque = self._values, self.engine_torque[step]
-        self._actuators.ask(step, request)
+        self._actuators.request(step, request)
         values[_ENGINE], values[_LOAD] = engine_torque, load_torque
         values[_ACTUATOR] = self._actuators.values
         values[_STATES] = product(self._step, values)
@@ -127,21 +127,21 @@ class Actuators:
         self._rows = rows[..., 0] if len(first) == 1 else np.take(rows, places, axis=-1)
         delayed = np.maximum(requests, 0.0)
         self.values = np.zeros((_LATER + 1, len(parameters)))
-        """States and requests in effect, (6, R); the requests are valid after `ask`."""
+        """States and requests in effect, (6, R); the requests are valid after `request`."""
         self.values[_LAG_STATES] = np.take(rest.T, places, axis=-1) * delayed
         self._before = int(periods.max()) + 1
-        self._asked = np.empty((self._before + steps, len(parameters)))
-        self._asked[: self._before] = delayed
+        self._requests = np.empty((self._before + steps, len(parameters)))
+        self._requests[: self._before] = delayed
         alike = bool((periods == periods[0]).all())
         self._later = self._before - (int(periods[0]) if alike else periods)
         self._columns = slice(None) if alike else np.arange(len(parameters))
 
-    def ask(self, step: int, requests: np.ndarray) -> None:
+    def request(self, step: int, requests: np.ndarray) -> None:
         """Store the requests of step k, (R,) in N m, saturated at zero."""
-        np.maximum(requests, 0.0, out=self._asked[self._before + step])
+        np.maximum(requests, 0.0, out=self._requests[self._before + step])
         later = self._later + step
-        self.values[_EARLIER] = self._asked[later - 1, self._columns]
-        self.values[_LATER] = self._asked[later, self._columns]
+        self.values[_EARLIER] = self._requests[later - 1, self._columns]
+        self.values[_LATER] = self._requests[later, self._columns]
 
     def advance(self) -> np.ndarray:
         """Advance to the end of the period; return the torque there, (R,) in N m."""

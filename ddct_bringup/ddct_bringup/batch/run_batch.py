@@ -27,11 +27,11 @@ from ddct_plant.scenario.settings import RunSettings
 
 MOST_RUNS = 1000
 """Largest number of runs at once: their matrices of a step fit the processor's cache."""
-_FEW_CUTS = 5
+_FEWEST_SWITCHES = 5
 """Fewest saturation switches that trigger the rounding test."""
-_MOVED = 1.0 + 2.0**-46
+_FEEDBACK_FACTOR = 1.0 + 2.0**-46
 """Factor on the feedback in the rounding test, several times the rounding error."""
-_SAME = 1e-10
+_SLIP_TOLERANCE = 1e-10
 """Largest change of the slip in the rounding test, relative to the largest slip."""
 Run = tuple[RunSettings, Controller]
 _Linear = tuple[RunSettings, StateSpace]
@@ -67,9 +67,7 @@ def trajectories(runs: Sequence[Run]) -> Trajectory:
 
 
 def _linear(runs: Sequence[Run]) -> list[_Linear]:
-    """
-    Return the runs with the linear feedback of their controllers, computed once per controller.
-    """
+    """Return the runs with the linear feedback of their controllers, one per controller."""
     controllers = {id(controller): controller for _, controller in runs}
     models: dict[int, Any] = {key: each.linear_model() for key, each in controllers.items()}
     assert None not in models.values(), 'run_batch takes batchable runs'
@@ -133,18 +131,18 @@ def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
     pass may amplify a difference, until the metrics are those of another run.
     """
     cut = stack.torque_request < 0.0
-    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEW_CUTS)
+    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEWEST_SWITCHES)
     repeatable = np.ones(len(runs), dtype=bool)
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
         moved = [
-            (settings, replace(model, c=_MOVED * model.c, d=_MOVED * model.d))
+            (settings, replace(model, c=_FEEDBACK_FACTOR * model.c, d=_FEEDBACK_FACTOR * model.d))
             for settings, model in suspected
         ]
         slip = stack.slip_speed[suspects]
         again = _stack(moved).slip_speed
         difference = np.max(np.abs(again - slip), axis=-1)
-        repeatable[suspects] = difference <= _SAME * np.max(np.abs(slip), axis=-1)
+        repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)
     return repeatable
 
 

@@ -55,10 +55,8 @@ def shard_bytes(schema: pa.Schema, rows: Iterable[Mapping[str, Any]]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def holds_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
-    """
-    Return whether a file is complete and contains the rows `first` to `last`, `last` excluded.
-    """
+def contains_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
+    """Return whether a file is complete, with the rows `first` to `last`, `last` excluded."""
     try:
         table = parquet.read_table(path)
     except (OSError, pa.ArrowException):

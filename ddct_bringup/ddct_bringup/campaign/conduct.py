@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
+from ddct_bringup.campaign.columns import contains_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
@@ -25,7 +25,7 @@ _AHEAD = 2
 """Number of shards queued per worker, so that none waits for the next."""
 _MOST_DEATHS = 3
 """Largest number of failed workers in succession without a completed shard."""
-_LOOK_S = 0.2
+_POLL_S = 0.2
 """Time in s between two checks of signals and workers."""
 
 
@@ -52,7 +52,7 @@ def carry_out(
         missing = {
             file: job
             for file, job in shards.items()
-            if not holds_rows(file, schema, job.first, job.last)
+            if not contains_rows(file, schema, job.first, job.last)
         }
         done = manifest.runs - sum(job.last - job.first for job in missing.values())
         progress = Progress('runs', manifest.runs, done=done)
@@ -146,7 +146,7 @@ class _Conduct:
                 running[executor.submit(timed_shard, shards[file])] = file
             if not running:
                 return
-            finished = wait(running, _LOOK_S, FIRST_COMPLETED).done
+            finished = wait(running, _POLL_S, FIRST_COMPLETED).done
             require_going_on(self.stopped)
             if not finished:
                 self.workers.require_alive()

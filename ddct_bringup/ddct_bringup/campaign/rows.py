@@ -14,7 +14,7 @@ from ddct_bringup.run.plan import require_headless
 from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable

@@ -52,9 +52,7 @@ class CampaignSpec:
         return self.grid[key] if key in self.grid else self.vary[key].values
 
     def scenario_file(self, name: str) -> ScenarioFile:
-        """
-        Return a scenario that a specification names; raise DdctError with the reason if invalid.
-        """
+        """Return a scenario that a specification names; raise DdctError for an invalid one."""
         return ScenarioFile.read(name if is_packaged(name) else str(self.folder / name))
 
     def text(self) -> str:

@@ -124,9 +124,7 @@ def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _ratio(runs: np.ndarray, failed: np.ndarray) -> np.ndarray:
-    """
-    Return the share of the variance of failure between parts, (...,), from (..., parts) counts.
-    """
+    """Return the share of failure's variance between parts, (...,), from (..., parts) counts."""
     total = runs.sum(axis=-1)
     mean = failed.sum(axis=-1) / total
     with np.errstate(all='ignore'):

@@ -41,9 +41,7 @@ def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[s
 
 
 def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) -> Boundary:
-    """
-    Return the boundary along (n,) distances from the start; negative ones are on the other side.
-    """
+    """Return the boundary along (n,) distances from the start; those behind it are negative."""
     ahead = distance >= 0.0
     failure = _least(distance, ahead & (outcomes == FAILED))
     doubt = _least(distance, ahead & (outcomes == INVALID))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as Drawing
 
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, look_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
@@ -20,7 +20,7 @@ from ddct_plant.program.table import Figure
 
 PICTURES = ('.png', '.svg')
 _DRAWN = (
-    *(figure.key for figure in TABLE_5_1),
+    *(quantity.key for quantity in TABLE_5_1),
     *('slip_rmse_rpm', 'peak_jerk_m_s3', 'friction_energy_j'),
 )
 _ACROSS = 3
@@ -59,10 +59,10 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
     drawing.suptitle(f'{_title(results, scenario)}\n{_conditions(results)}', fontsize=11)
     panels = drawing.subplots(rows, _ACROSS, squeeze=False, sharey=True)
     looks = looks_of(group.names['controller'] for group in results.groups)
-    for axes, figure in zip(panels.flat, metrics, strict=False):
+    for axes, quantity in zip(panels.flat, metrics, strict=False):
         for group, look in zip(results.groups, looks, strict=True):
-            _draw(axes, results, group, figure, look_style(look))
-        axes.set_xlabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
+            _draw(axes, results, group, quantity, look_style(look))
+        axes.set_xlabel(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit)))))
         axes.set_ylim(0.0, 1.02)
     for axes in panels[:, 0]:
         axes.set_ylabel('share of valid runs')
@@ -85,11 +85,11 @@ def _conditions(results: Results) -> str:
 
 
 def _draw(
-    axes: Axes, results: Results, group: Group, figure: Figure, style: Mapping[str, Any]
+    axes: Axes, results: Results, group: Group, quantity: Figure, style: Mapping[str, Any]
 ) -> None:
     """Draw one curve; a controller without an engaged run has a line at zero."""
     outcomes = results.outcomes[group.rows]
-    values = results.columns[figure.key][group.rows]
+    values = results.columns[quantity.key][group.rows]
     taken = np.sort(values[(outcomes == ENGAGED) & ~np.isnan(values)])
     valid = max(int(np.sum(outcomes != INVALID)), 1)
     if not len(taken):

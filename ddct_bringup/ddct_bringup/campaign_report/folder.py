@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.manifest import Manifest
-from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.distributions import distributions_figure
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.outcome import FAILED
@@ -27,7 +27,7 @@ from ddct_bringup.report.page_parts import (
     value_text,
 )
 from ddct_bringup.run.output_folder import held
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.output_file import write_json, write_text
@@ -87,7 +87,7 @@ def campaign_page(
 ) -> str:
     """Return the HTML page of a campaign in a folder; `facts` describe its origin."""
     maps = campaign_maps(results)
-    replay = words.replay_command(folder, 'INDEX')
+    replay = texts.replay_command(folder, 'INDEX')
     return page_template(_ROOM, 'campaign.html.j2').render(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
@@ -101,7 +101,7 @@ def campaign_page(
         distributions=_distributions(results, facts[SCENARIO]),
         main=MAIN,
         second_rank=len(set(results.outcomes.tolist()) - {ENGAGED, FAILED, INVALID}) > 0,
-        words=words,
+        texts=texts,
         value_text=value_text,
         number_text=number_text,
         figures={figure.key: figure for figure in results.quantities},

@@ -13,7 +13,7 @@ METHOD = 'sign test'
 
 
 @dataclass(frozen=True)
-class Together:
+class JointOutcomes:
     """Number of cases in which both, one or none of two controllers engaged."""
 
     cases: int
@@ -23,11 +23,11 @@ class Together:
     neither: int
 
 
-def together(first: np.ndarray, second: np.ndarray) -> Together:
+def joint_outcomes(first: np.ndarray, second: np.ndarray) -> JointOutcomes:
     """Return the counts of joint outcomes of two controllers from (n,) outcomes, case by case."""
     ours, theirs = first == ENGAGED, second == ENGAGED
     counts = (ours & theirs, ours & ~theirs, ~ours & theirs, ~ours & ~theirs)
-    return Together(len(first), *(int(np.sum(each)) for each in counts))
+    return JointOutcomes(len(first), *(int(np.sum(each)) for each in counts))
 
 
 @dataclass(frozen=True)

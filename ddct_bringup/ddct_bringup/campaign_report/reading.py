@@ -19,7 +19,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', 'verdict_state')
 """Required columns, besides those of the varied keys."""
-_AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
+_RESUME_ADVICE = 'give --resume to ddct campaign, which writes it from what is done'
 
 
 def read_table(folder: Path, manifest: Manifest) -> pa.Table:
@@ -38,20 +38,20 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
         )
     except FileNotFoundError as error:
         raise DdctError(
-            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_AGAIN}'
+            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_RESUME_ADVICE}'
         ) from error
     except ParameterError as error:
         raise DdctError(f'{path}: {error}') from error
     except (OSError, ValueError, pa.ArrowException) as error:
         why = next(iter(str(error).splitlines()), type(error).__name__)
-        raise DdctError(f'{path}: it is damaged ({why}): {_AGAIN}') from error
+        raise DdctError(f'{path}: it is damaged ({why}): {_RESUME_ADVICE}') from error
     for name in (*REQUIRED, *manifest.grid, *manifest.random):
         if name not in table.column_names:
-            raise DdctError(f'{path}: it has no column {name}: {_AGAIN}')
+            raise DdctError(f'{path}: it has no column {name}: {_RESUME_ADVICE}')
     if table[INDEX].to_pylist() != list(range(manifest.runs)):
         raise DdctError(
             f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '
-            f'{_AGAIN}'
+            f'{_RESUME_ADVICE}'
         )
     return table
 

@@ -58,7 +58,7 @@ def _group(results: Results, group: Group) -> Summary:
         'failed': _failed(results, group),
         'boundaries': [_boundary(results, group, key) for key in results.lines],
         'attribution': _attribution(results, group) if results.random else None,
-        'quantities': [_quantity(results, group, figure) for figure in results.quantities],
+        'quantities': [_quantity(results, group, quantity) for quantity in results.quantities],
     }
 
 
@@ -159,13 +159,13 @@ def _attribution(results: Results, group: Group) -> Summary:
     }
 
 
-def _quantity(results: Results, group: Group, figure: Figure) -> Summary:
+def _quantity(results: Results, group: Group, quantity: Figure) -> Summary:
     """Return the distribution of a quantity over the engaged runs, and its worst cases."""
-    values = results.columns[figure.key][group.rows]
+    values = results.columns[quantity.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])
     return {
-        'name': figure.key,
-        'unit': figure.unit,
+        'name': quantity.key,
+        'unit': quantity.unit,
         'engaged': spread.engaged,
         'with_value': spread.with_value,
         **spread.quantiles,
@@ -180,13 +180,13 @@ def _pair(results: Results, first: Group, second: Group) -> Summary:
     outcomes = results.outcomes[first.rows], results.outcomes[second.rows]
     sample = results.is_sample(first)
     differences = []
-    for figure in results.quantities:
-        column = results.columns[figure.key]
+    for quantity in results.quantities:
+        column = results.columns[quantity.key]
         found = paired.difference_of(column[first.rows], column[second.rows], outcomes)
         differences.append(
             {
-                'name': figure.key,
-                'unit': figure.unit,
+                'name': quantity.key,
+                'unit': quantity.unit,
                 'cases': found.cases,
                 **found.quantiles,
                 'interval': list(found.interval) if found.interval and sample else None,
@@ -196,7 +196,7 @@ def _pair(results: Results, first: Group, second: Group) -> Summary:
         'first': first.names[CONTROLLER],
         'second': second.names[CONTROLLER],
         'varied': first.varied,
-        **asdict(paired.together(*outcomes)),
+        **asdict(paired.joint_outcomes(*outcomes)),
         'no_interval': '' if sample else NO_SAMPLE,
         'differences': differences,
     }

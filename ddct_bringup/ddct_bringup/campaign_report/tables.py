@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.summary import Summary
-from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import METRICS, TABLE_5_1
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 
@@ -27,19 +27,19 @@ def summary_tables(summary: Summary) -> list[Table]:
 def print_summary(summary: Summary, folder: str) -> None:
     """Print the summary of the campaign in a folder."""
     print_tables(summary_tables(summary))
-    for note in words.notes_of(summary):
+    for note in texts.notes_of(summary):
         print(printable(note))
-    print(f'the bag of a run: {words.replay_command(folder, "I")}')
+    print(f'the bag of a run: {texts.replay_command(folder, "I")}')
 
 
 def _failed(summary: Summary) -> Table:
     rows = [
         (
-            words.label_of(group),
-            words.share_text(failed['share']),
-            words.interval_text(failed['interval']),
+            texts.label_of(group),
+            texts.share_text(failed['share']),
+            texts.interval_text(failed['interval']),
             *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
-            words.states_text(failed) or UNDEFINED,
+            texts.states_text(failed) or UNDEFINED,
         )
         for group in summary['groups']
         for failed in [group['failed']]
@@ -54,14 +54,14 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             found['key'],
-            words.label_of(group),
-            words.value_text(found['start']),
+            texts.label_of(group),
+            texts.value_text(found['start']),
             *(
                 text(found[side])
                 for side in ('below', 'above')
-                for text in (words.good_text, words.boundary_text)
+                for text in (texts.good_text, texts.boundary_text)
             ),
-            ', '.join(f'{key} {words.value_text(at)}' for key, at in found['others'].items())
+            ', '.join(f'{key} {texts.value_text(at)}' for key, at in found['others'].items())
             or UNDEFINED,
         )
         for group, found in _by_place(summary, 'boundaries')
@@ -74,13 +74,13 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
 def _attribution(summary: Summary) -> Iterator[Table]:
     rows = [
         (
-            words.label_of(group),
+            texts.label_of(group),
             each['key'],
             'yes' if each['drives'] else 'no evidence',
             f'{each["explained"]:.2f}',
             '{:.2f} to {:.2f}'.format(*each['interval']),
-            words.p_text(each['p_value']),
-            words.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
+            texts.p_text(each['p_value']),
+            texts.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
         )
         for group in summary['groups']
         if group['attribution']
@@ -104,7 +104,7 @@ def _by_place(summary: Summary, name: str) -> Iterator[tuple[Summary, Summary]]:
 def _quantities(summary: Summary) -> Table:
     """Return the table of the metrics; the page has the other criteria too."""
     rows = [
-        _quantity(words.label_of(group), found)
+        _quantity(texts.label_of(group), found)
         for group, found in _by_place(summary, 'quantities')
         if found['name'] in METRICS
     ]
@@ -131,7 +131,7 @@ def _quantity(label: str, found: Summary) -> Sequence[str]:
         text_or_dash(worst['value'], figure.form),
         UNDEFINED
         if worst['index'] is None
-        else f'{worst["index"]} ({words.spoken(worst["state"])})',
+        else f'{worst["index"]} ({texts.state_text(worst["state"])})',
     )
 
 
@@ -144,7 +144,7 @@ def _differences(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             METRICS[found['name']].heading,
-            words.pair_label(pair),
+            texts.pair_label(pair),
             str(found['cases']),
             *(text_or_dash(found[name], METRICS[found['name']].form) for name in _QUANTILES),
             UNDEFINED
@@ -159,5 +159,5 @@ def _differences(summary: Summary) -> Iterator[Table]:
     headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
     title = 'Differences on the same cases, where both engaged (interval: sign test)'
     yield Table(title, headers, rows, numbers=[False, False, *[True] * 4])
-    both = [(words.pair_label(pair), words.together_text(pair)) for pair in pairs]
+    both = [(texts.pair_label(pair), texts.joint_outcomes_text(pair)) for pair in pairs]
     yield Table('Cases of these differences', ('controllers', 'both engaged'), both)

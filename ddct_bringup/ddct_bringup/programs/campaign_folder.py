@@ -25,7 +25,7 @@ from ddct_bringup.campaign_report.distributions import require_picture, write_di
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.tables import print_summary
-from ddct_bringup.campaign_report.words import RULES
+from ddct_bringup.campaign_report.texts import RULES
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder

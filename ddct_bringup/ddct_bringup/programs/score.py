@@ -21,7 +21,7 @@ from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
-from ddct_bringup.verdict.metric_figures import VDV_WEIGHTING
+from ddct_bringup.verdict.metric_definitions import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_json, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns

@@ -21,8 +21,8 @@ from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
-from ddct_bringup.report.quantities import Quantity, quantities_of
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -60,7 +60,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     sources = [_source(run.trajectory, of) for run, of in zip(runs, drawn, strict=True)]
     document = Document()
     roots = {}
-    for quantity in charted_quantities(runs):
+    for quantity in charted_signals(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs[0].facts)
         for run, source, of in zip(runs, sources, drawn, strict=True):
             if quantity in of:
@@ -80,8 +80,8 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     return dict(document.to_json(deferred=False)), roots
 
 
-def charted_quantities(runs: Sequence[ChartRun]) -> list[Quantity]:
-    """Return the quantities that at least one run has, in the order of the page."""
+def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
+    """Return the signals that at least one run has, in the order of the page."""
     return list(dict.fromkeys(each for of in _drawn(runs) for each in of))
 
 
@@ -90,13 +90,13 @@ def has_reference(runs: Sequence[ChartRun]) -> bool:
     return any(np.isfinite(run.trajectory.slip_reference[:, 0]).any() for run in runs)
 
 
-def _drawn(runs: Sequence[ChartRun]) -> list[tuple[Quantity, ...]]:
-    """Return the drawn quantities of each run; next to a log also those of a log."""
+def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
+    """Return the drawn signals of each run; next to a log also those of a log."""
     with_log = any(run.facts.mode == MEASURED for run in runs)
-    return [quantities_of(run.trajectory, with_log=with_log) for run in runs]
+    return [chart_signals_of(run.trajectory, with_log=with_log) for run in runs]
 
 
-def _source(trajectory: Trajectory, quantities: Sequence[Quantity]) -> ColumnDataSource:
+def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> ColumnDataSource:
     """Return the data of the charts; single precision draws the same and halves the page."""
     columns = {'t': trajectory.time_s}
     for quantity in quantities:
@@ -151,7 +151,7 @@ def _mark_window(chart: figure, facts: RunFacts) -> None:
     )
 
 
-def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
+def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource) -> None:
     line = chart.line(
         't',
         quantity.key,
@@ -176,7 +176,9 @@ def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSo
         _switch(limit, [run], alpha=FAINT)
 
 
-def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
+def _mark_line(
+    chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource
+) -> None:
     """Draw the marks of a line that has some, at separate times for each run."""
     steps = len(run.trajectory.time_s)
     spacing = max(1, round(_MARK_SPACING * steps))

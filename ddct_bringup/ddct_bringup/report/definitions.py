@@ -3,10 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.report.quantities import Quantity
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.program.table import Figure
 
@@ -103,10 +103,10 @@ _ORIGIN = (
 
 
 def definitions(
-    quantities: Iterable[Quantity], *, thesis: bool
+    quantities: Iterable[ChartSignal], *, thesis: bool
 ) -> dict[str, tuple[Definition, ...]]:
     """
-    Return the definitions for a page that draws these quantities, by subject.
+    Return the definitions for a page that draws these signals, by subject.
 
     `thesis` is whether runs are compared with Table 5.1.
     """
@@ -141,7 +141,7 @@ def _criteria() -> tuple[Definition, ...]:
     )
 
 
-def _defined(figure: Figure) -> Definition:
-    meaning = figure.meaning.removeprefix(f'{figure.symbol}, ')
-    missing = f' No value: {figure.undefined}.' if figure.undefined else ''
-    return Definition(figure.symbol, f'{meaning}.{missing}', unit_text(figure.unit))
+def _defined(quantity: Figure) -> Definition:
+    meaning = quantity.meaning.removeprefix(f'{quantity.symbol}, ')
+    missing = f' No value: {quantity.undefined}.' if quantity.undefined else ''
+    return Definition(quantity.symbol, f'{meaning}.{missing}', unit_text(quantity.unit))

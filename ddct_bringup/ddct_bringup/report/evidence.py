@@ -85,9 +85,7 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
 
 
 def _has_actuator_of(run: ReportRun, conditions: Evidence) -> bool:
-    """
-    Return whether a file was computed with the run's actuator; older ones have the printed one.
-    """
+    """Return whether a file has the run's actuator; older ones have the printed one."""
     if run.settings is None:
         return True
     older = actuator_conditions(ActuatorParameters())

@@ -15,7 +15,7 @@ from ddct_bringup.report.charts import (
     NEUTRAL,
     ChartRun,
     chart_document,
-    charted_quantities,
+    charted_signals,
     has_reference,
 )
 from ddct_bringup.report.definitions import definitions
@@ -35,7 +35,7 @@ from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
@@ -68,7 +68,7 @@ def report_page(
     thesis_rows = [run['thesis'] for run in shown]
     charted = [_chart_run(run) for run in shown if run['charted']]
     document, roots = chart_document(charted)
-    quantities = charted_quantities(charted)
+    quantities = charted_signals(charted)
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)

@@ -60,8 +60,10 @@ def metric_cells(
 ) -> list[Cell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
-    printed = [row if row is not None and column.key in row.figures() else None for row in rows]
-    figures = [row.figures()[column.key] for row in printed if row is not None]
+    printed = [
+        row if row is not None and column.key in row.printed_values() else None for row in rows
+    ]
+    figures = [row.printed_values()[column.key] for row in printed if row is not None]
     largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
     return [
         _cell(column, value, row, largest or 1.0, valid=run.entry['valid'])
@@ -81,7 +83,7 @@ def _cell(
     share = 0.0 if value is None else abs(value) / largest
     if row is None:
         return Cell(value, text, share)
-    thesis = row.figures()[column.key]
+    thesis = row.printed_values()[column.key]
     predicted = row.use == PREDICTED
     return Cell(
         value,

@@ -11,7 +11,7 @@ from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.scoring import score_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.verdict import Verdict
 from ddct_controllers.interface import Command, Controller, Measurement
@@ -43,9 +43,9 @@ class HeadlessRun:
         )
 
     @property
-    def figures(self) -> dict[str, Any]:
+    def table_values(self) -> dict[str, Any]:
         """Values of the three metrics of Table 5.1 by name; None for an undefined one."""
-        return {name: getattr(self.metrics, name) for name in FIGURES}
+        return {name: getattr(self.metrics, name) for name in TABLE_METRICS}
 
     @cached_property
     def verdict(self) -> Verdict:

@@ -31,9 +31,7 @@ def scores_csv(runs: Sequence[Entry]) -> str:
 
 
 def rows_csv(rows: Sequence[Mapping[str, Any]]) -> str:
-    """
-    Return rows as CSV below the names of their columns; at least one row, all of equal columns.
-    """
+    """Return rows of equal columns, at least one, as CSV below the names of the columns."""
     return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 

@@ -9,8 +9,8 @@ import scipy
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.verdict.criteria import finite
-from ddct_bringup.verdict.meeting import first_lock, first_meeting
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
+from ddct_bringup.verdict.zero_slip import first_lock, first_zero_slip
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -124,7 +124,7 @@ def metric_values(
     with np.errstate(all='ignore'):  # what is not finite becomes None
         engagement_time, lockup_slope = _first_sign_change(slip, start)
         if trajectory.phase_events is not None:
-            engagement_time = _first_meeting_time(trajectory, start, engagement_time)
+            engagement_time = _zero_slip_time(trajectory, start, engagement_time)
             lockup_slope = _slip_acceleration_at_lock(trajectory, start)
         return {
             'engagement_time_s': engagement_time,
@@ -140,9 +140,7 @@ def metric_values(
 
 
 def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.ndarray]:
-    """
-    Return the time in s from step `start` to the first sign change of the slip, and its slope.
-    """
+    """Return the time in s from `start` to the first sign change of the slip, and its slope."""
     if start >= slip.shape[-1]:
         never = np.full(slip.shape[:-1], math.nan)
         return never, never
@@ -156,14 +154,14 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.nda
     return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
 
 
-def _first_meeting_time(trajectory: Trajectory, start: int, crossing_s: np.ndarray) -> np.ndarray:
+def _zero_slip_time(trajectory: Trajectory, start: int, crossing_s: np.ndarray) -> np.ndarray:
     """
     Return the time in s from step `start` to the first lock or reversal, NaN without one.
 
     `crossing_s` is the time of the first sign change of the samples. It is returned where a bag
     from before reversals were events has a sign change without an event.
     """
-    found = first_meeting(trajectory, start)
+    found = first_zero_slip(trajectory, start)
     if found is None:
         return crossing_s
     step, event = found

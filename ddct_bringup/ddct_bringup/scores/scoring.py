@@ -154,9 +154,7 @@ def entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
 def not_computed(
     recording: Recording, metrics: Mapping[str, Any], verdict: Mapping[str, Any]
 ) -> dict[str, str]:
-    """
-    Return the reason for each metric and criterion that is null because the log lacks a quantity.
-    """
+    """Return the reasons for metrics and criteria that are null for lack of a log quantity."""
     values = {each['name']: each['value'] for each in verdict['criteria']} | dict(metrics)
     return {
         name: recording.absent[quantity]

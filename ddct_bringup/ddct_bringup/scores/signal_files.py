@@ -62,9 +62,7 @@ def _stem(name: str) -> str:
 
 
 def write_signals(folder: Path, file: str, recording: Recording) -> None:
-    """
-    Write a run's signals to a file of a folder, which is created; the extension is the format.
-    """
+    """Write a run's signals to a file in a folder, made if need be, in its extension's format."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

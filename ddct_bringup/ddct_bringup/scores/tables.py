@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.text import Text
 
 from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
-from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, TRACTION
 from ddct_plant.base.errors import printable
@@ -28,13 +28,13 @@ def fact(name: str, heading: str, form: str = '', *, number: bool = False) -> Ru
     return Column(heading, form, lambda run: run[name], number=number)
 
 
-def metric(figure: Figure, heading: str = '') -> RunColumn:
+def metric(quantity: Figure, heading: str = '') -> RunColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
     return Column(
-        heading or f'{figure.symbol}\n{figure.unit}',
-        figure.form,
-        lambda run: run['metrics'][figure.key],
-        undefined=figure.undefined,
+        heading or f'{quantity.symbol}\n{quantity.unit}',
+        quantity.form,
+        lambda run: run['metrics'][quantity.key],
+        undefined=quantity.undefined,
     )
 
 

@@ -52,9 +52,7 @@ class Axis:
 
 
 def axis_of(text: str) -> Axis:
-    """
-    Return the axis for `KEY=START:STOP:COUNT` or `KEY=A,B,C`; raise ParameterError for others.
-    """
+    """Return the axis for `KEY=START:STOP:COUNT` or `KEY=A,B,C`, else raise ParameterError."""
     key, _, given = text.partition('=')
     if not key or not given:
         raise ParameterError(f'--over {printable(text)}: {_HOW}')

@@ -73,9 +73,7 @@ class Sweep:
 
     @property
     def conditions(self) -> str:
-        """
-        Common conditions of all runs, for a heading: scenario, architecture, clutch and wear gain.
-        """
+        """Common conditions of all runs as a heading: scenario, architecture, clutch, wear."""
         settings = self.settings[0]
         changes = [f'{key}={value}' for key, value in self.base.changes.items()]
         swept = [axis.key for axis in self.axes]

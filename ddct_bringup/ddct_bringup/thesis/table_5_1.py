@@ -28,17 +28,17 @@ class ThesisRow:
     use: str
     """Use of the row: CALIBRATED, the scenario was fitted to it, or PREDICTED, it was not."""
 
-    def figures(self) -> dict[str, float]:
+    def printed_values(self) -> dict[str, float]:
         """Return the three printed values by metric name."""
-        return {name: getattr(self, name) for name in FIGURES}
+        return {name: getattr(self, name) for name in TABLE_METRICS}
 
     def cells(self) -> tuple[str, ...]:
         """Return the three values as text, with the printed digits."""
-        return tuple(f'{value:g}' for value in self.figures().values())
+        return tuple(f'{value:g}' for value in self.printed_values().values())
 
     def hit(self, name: str, value: float | None) -> bool:
         """Return whether a predicted value is within the tolerance; an undefined one is not."""
-        printed = self.figures()[name]
+        printed = self.printed_values()[name]
         return value is not None and abs(value / printed - 1.0) <= PREDICTION_TOLERANCE
 
     def verdict(self, name: str, value: float | None) -> str:
@@ -46,11 +46,11 @@ class ThesisRow:
         return 'hit' if self.hit(name, value) else 'miss'
 
 
-FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
+TABLE_METRICS = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
 """Metrics of Table 5.1, in the order of its columns."""
-FORMS = dict(zip(FIGURES, ('.3f', '.2f', '.3f'), strict=True))
+FORMS = dict(zip(TABLE_METRICS, ('.3f', '.2f', '.3f'), strict=True))
 """Formats of the computed values by metric."""
-TOLERANCES = dict(zip(FIGURES, (0.05, 0.10, 0.10), strict=True))
+TOLERANCES = dict(zip(TABLE_METRICS, (0.05, 0.10, 0.10), strict=True))
 """
 Largest relative deviation of each fitted value from the printed one.
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.meeting import SLIPPING, events_of, first_lock, locked_at
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.vibration import (
     SHORTEST_JUDDER_S,
@@ -18,6 +17,7 @@ from ddct_bringup.verdict.vibration import (
     strongest_stretch,
     weighted_acceleration,
 )
+from ddct_bringup.verdict.zero_slip import SLIPPING, events_of, first_lock, locked_at
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline import RELEASE

@@ -37,9 +37,7 @@ def _rule(unit: str, at_least: float | None = None) -> float:
 
 @dataclass(frozen=True)
 class Rules:
-    """
-    Thresholds of the states, and assumptions of the criteria; the limits file gives the reasons.
-    """
+    """Thresholds of the states, and assumptions of the criteria; the file gives the reasons."""
 
     engaged_slip: float = _rule('rpm')
     """Magnitude of w_d in rpm below which the plates of a linear clutch count as engaged."""

@@ -18,9 +18,9 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
-from ddct_bringup.verdict.meeting import LOCKED
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.swings import FEWEST_SWINGS, cycle_of, free_turns
+from ddct_bringup.verdict.zero_slip import LOCKED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
@@ -85,9 +85,7 @@ def _success(
 
 
 def _keeps_within(band: float, least_s: float, slip: np.ndarray, cycle: float | None) -> bool:
-    """
-    Return whether the slip stays within a band at the end for `least_s` and for half a cycle.
-    """
+    """Return whether the slip stays within a band at the end, `least_s` and half a cycle long."""
     # An oscillation leaves the band again within its longest half cycle.
     return _time_within(slip, band) >= max(least_s, cycle or 0.0)
 
@@ -163,13 +161,13 @@ def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:
     at = np.asarray(turns)
     middles = ((slip[at[1:]] + slip[at[:-1]]) / 2.0)[(len(at) - 1) // 2 :]
     times = ((at[1:] + at[:-1]) * PERIOD_S / 2.0)[(len(at) - 1) // 2 :]
-    if len(middles) < FEWEST_SWINGS or _met(cycle, rules.engaged_slip):
+    if len(middles) < FEWEST_SWINGS or _reaches(cycle, rules.engaged_slip):
         return False
     (slope, _), spread = np.polyfit(times, np.sign(middles[-1]) * middles, 1, cov=True)
     return bool(slope - DOUBT * np.sqrt(spread[0, 0]) >= rules.runaway_growth)
 
 
-def _met(slip: np.ndarray, band: float) -> bool:
+def _reaches(slip: np.ndarray, band: float) -> bool:
     return bool(slip.min() <= band and slip.max() >= -band)
 
 

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ddct_bringup.batch.batchable import HEEDED, batchable
+from ddct_bringup.batch.batchable import SUPPORTED_KEYS, batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -111,9 +111,9 @@ def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
 
 def test_what_a_batch_does_not_know_keeps_a_run_out_of_it():
     names = {field.name for field in dataclasses.fields(Scenario)}
-    assert names > HEEDED
+    assert names > SUPPORTED_KEYS
     stick_slip = {f.name for f in dataclasses.fields(Scenario) if f.metadata.get('stick_slip')}
-    assert names - HEEDED >= {*stick_slip, 'engine_limits'}
+    assert names - SUPPORTED_KEYS >= {*stick_slip, 'engine_limits'}
 
 
 def test_somebodys_linear_controller_gives_what_it_gives_step_by_step():

@@ -6,7 +6,7 @@ from made_results import made_results
 
 from ddct_bringup.campaign_report.boundaries import Boundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.words import boundary_text, good_text
+from ddct_bringup.campaign_report.texts import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]

@@ -11,9 +11,9 @@ from bokeh.models.renderers import GlyphRenderer
 from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.chart_signals import chart_signals_of
 from ddct_bringup.report.charts import ChartRun, chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
-from ddct_bringup.report.quantities import quantities_of
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent
@@ -89,7 +89,7 @@ def lines(chart) -> list[GlyphRenderer]:
 
 
 def test_every_signal_has_its_chart(charts):
-    assert list(charts) == list(SHOWN) == [quantity.key for quantity in quantities_of(RUN)]
+    assert list(charts) == list(SHOWN) == [quantity.key for quantity in chart_signals_of(RUN)]
 
 
 @pytest.mark.parametrize('key', SHOWN)
@@ -99,7 +99,7 @@ def test_a_chart_draws_its_signal_over_time(charts, key):
     np.testing.assert_allclose(time, np.arange(STEPS + 1) / 100.0, rtol=1e-6)
     np.testing.assert_allclose(shown, values, rtol=1e-6)
     assert charts[key].yaxis[0].axis_label == unit
-    (quantity,) = [each for each in quantities_of(RUN) if each.key == key]
+    (quantity,) = [each for each in chart_signals_of(RUN) if each.key == key]
     assert (quantity.unit, charts[key].xaxis[0].axis_label) == (unit, 'time, s')
 
 

@@ -2,15 +2,15 @@
 
 import pytest
 
+from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SENSOR_SIGNALS
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.report.quantities import CLUTCH_QUANTITIES, QUANTITIES, SENSOR_QUANTITIES
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 
-SIGNALS = (*QUANTITIES, *CLUTCH_QUANTITIES, *SENSOR_QUANTITIES)
+SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SENSOR_SIGNALS)
 GROUPS = definitions(SIGNALS, thesis=True)
 
 

@@ -11,7 +11,7 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

@@ -12,7 +12,7 @@ from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
 from ddct_bringup.sweep.sweep import OVER, Sweep
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
 from ddct_controllers.design.drawing.chart_style import chart_style, controller_style, save_chart
 from ddct_plant.scenario.file import ScenarioFile

@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     Values,
     residual_rows,
 )
-from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_figures
+from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_values
 from ddct_bringup.reproduction.calibration.search import STARTS, Progress
 from ddct_plant.scenario.scenario import Scenario
 
@@ -63,14 +63,12 @@ class Identifiability:
         `gradient` (6,) is the gradient of the function, per unit of each parameter.
         """
         roots = (self.covariance_root, self.covariance_root_given_start)
-        free, held = (float(np.linalg.norm(np.asarray(gradient) @ root)) for root in roots)
-        return free, held
+        free, fixed = (float(np.linalg.norm(np.asarray(gradient) @ root)) for root in roots)
+        return free, fixed
 
     @property
     def weakest(self) -> np.ndarray:
-        """
-        Change of the parameters with the least effect on the residuals, (6,), in their units.
-        """
+        """Change of the parameters with the least effect on residuals, (6,), in their units."""
         change = self.directions[-1] * RANGE
         return change / change[np.argmax(np.abs(self.directions[-1]))]
 
@@ -81,12 +79,12 @@ def identifiability(optimum: Fit) -> Identifiability:
     degrees = len(optimum.residuals) - FITTED_NUMBERS
     variance = float(np.sum(optimum.residuals**2)) / degrees
     _, singular_values, directions = np.linalg.svd(jacobian)
-    held = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
-    held_std = np.sqrt(np.diag(held))
+    fixed = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
+    fixed_std = np.sqrt(np.diag(fixed))
     # The SVD keeps the digits of the weakest direction, which J^T J would lose.
     root = np.sqrt(variance) * directions.T / singular_values
     std = np.sqrt(np.sum(root**2, axis=1))
-    held_root = np.vstack([np.zeros(len(held)), np.linalg.cholesky(held)])
+    fixed_root = np.vstack([np.zeros(len(fixed)), np.linalg.cholesky(fixed)])
     return Identifiability(
         degrees_of_freedom=degrees,
         residual_std=float(np.sqrt(variance)),
@@ -94,10 +92,10 @@ def identifiability(optimum: Fit) -> Identifiability:
         singular_values=singular_values,
         directions=directions,
         std=std * RANGE,
-        std_given_start=np.array([0.0, *(held_std * RANGE[1:])]),
-        correlation_given_start=held / np.outer(held_std, held_std),
+        std_given_start=np.array([0.0, *(fixed_std * RANGE[1:])]),
+        correlation_given_start=fixed / np.outer(fixed_std, fixed_std),
         covariance_root=RANGE[:, None] * root,
-        covariance_root_given_start=RANGE[:, None] * held_root,
+        covariance_root_given_start=RANGE[:, None] * fixed_root,
     )
 
 
@@ -122,7 +120,7 @@ def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
             alone = dataclasses.replace(problem, rows=('pi',))
             gains = _best_fit(alone, best.values, PI_ONLY)
             best = dataclasses.replace(best, values=gains.values)
-        figures = row_figures(problem.scenario(best.values), row)
+        figures = row_values(problem.scenario(best.values), row)
         results.append(
             {
                 'row': row,

@@ -81,7 +81,7 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
     growth = pi_growth_rate(scenario.driveline, *values[4:])
     if growth >= 0.0:
         against.append(f'the PI loop grows by {growth:.2g}/s')
-    figures = _figures(scenario)
+    figures = _row_values(scenario)
     for row, found in figures.items():
         missing = [name for name, value in found.items() if value is None]
         if missing:
@@ -92,12 +92,12 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
 
 def fitted_rows(scenario: Scenario) -> list[Record]:
     """Return the nine values of the whole run, as in the record of the calibration."""
-    return residual_rows(_figures(scenario))
+    return residual_rows(_row_values(scenario))
 
 
-def _figures(scenario: Scenario) -> dict[str, dict[str, float]]:
+def _row_values(scenario: Scenario) -> dict[str, dict[str, float]]:
     """Return the values of the fitted rows by name; None where one is undefined."""
-    return {row: headless_run(RunSettings(scenario), row).figures for row in ROWS}
+    return {row: headless_run(RunSettings(scenario), row).table_values for row in ROWS}
 
 
 def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:

@@ -6,7 +6,7 @@ from ddct_bringup.reproduction.calibration.parameters import NAMES, Record
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_plant.program.table import Table
 
-_FIGURE_LABELS = {
+_METRIC_LABELS = {
     'engagement_time_s': 't_a, s',
     'torsion_speed_std_rpm': 'sigma w_sr, rpm',
     'acceleration_std_m_s2': 'sigma A_x, m/s^2',
@@ -20,7 +20,7 @@ def residual_table(record: Record) -> Table:
     return Table(
         'Fit residuals of the frozen scenario (not reproductions: these numbers were fitted)',
         ('row', 'figure', 'printed', 'fitted', 'residual, %', 'tolerance, %'),
-        [figure_cells(entry) for entry in record['residuals']],
+        [value_cells(entry) for entry in record['residuals']],
     )
 
 
@@ -125,11 +125,11 @@ def fit_table(record: Record) -> Table:
     )
 
 
-def figure_cells(entry: Record) -> tuple[str, ...]:
+def value_cells(entry: Record) -> tuple[str, ...]:
     """Return a printed value, the computed one, the deviation and its tolerance."""
     return (
         ROW_OF[entry['row']].label,
-        _FIGURE_LABELS[entry['figure']],
+        _METRIC_LABELS[entry['figure']],
         f'{entry["printed"]:.2f}',
         f'{entry["computed"]:.3f}',
         signed(100.0 * entry['deviation'], 1),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.thesis.table_5_1 import CALIBRATED, FIGURES, THESIS_TABLE, TOLERANCES
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, TABLE_METRICS, THESIS_TABLE, TOLERANCES
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S
@@ -18,7 +18,7 @@ Record = dict[str, Any]
 """Plain JSON content."""
 Values = Sequence[float] | np.ndarray
 """Values of the parameters, (6,), in the order of PARAMETERS."""
-TARGETS = {row.controller: row.figures() for row in THESIS_TABLE if row.use == CALIBRATED}
+TARGETS = {row.controller: row.printed_values() for row in THESIS_TABLE if row.use == CALIBRATED}
 ROWS = tuple(TARGETS)
 """Controllers whose rows are fitted."""
 
@@ -140,7 +140,7 @@ def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[Record]:
             'tolerance': TOLERANCES[name],
         }
         for row, computed in figures.items()
-        for name in FIGURES
+        for name in TABLE_METRICS
     ]
 
 

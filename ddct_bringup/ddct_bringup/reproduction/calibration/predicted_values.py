@@ -10,14 +10,14 @@ from collections.abc import Iterable
 from ddct_bringup.reproduction.calibration.search import Progress
 from ddct_bringup.reproduction.runs import StaticControllerAlone, headless_run
 from ddct_bringup.reproduction.values.orders import (
-    SLIP_WORDS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     judge_table_5_2,
     rows_of_table_5_2,
 )
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
-from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED_ROWS
+from ddct_bringup.thesis.table_5_1 import PREDICTED_ROWS, TABLE_METRICS
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -60,13 +60,13 @@ def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     return {
         f'5.1 {name} {figure}': value
         for name, run in runs.items()
-        for figure, value in run.figures.items()
+        for figure, value in run.table_values.items()
     }
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
     rows = rows_of_table_5_2(runs)
     found: dict[str, Value] = {
         name: 'hit' if finding.holds else 'miss'
@@ -74,5 +74,8 @@ def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     }
     for name, run in runs.items():
         found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = rows[0][name]
-        found |= {f'5.2 {name} {what} {wear_gain:g}': run.figures[what] for what in FIGURES[1:]}
+        found |= {
+            f'5.2 {name} {what} {wear_gain:g}': run.table_values[what]
+            for what in TABLE_METRICS[1:]
+        }
     return found

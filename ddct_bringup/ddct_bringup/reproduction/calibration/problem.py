@@ -28,7 +28,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     residual_rows,
 )
 from ddct_bringup.reproduction.runs import headless_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
@@ -62,14 +62,14 @@ class Problem:
             controllers={'pi': {'proportional_gain': proportional, 'integral_gain': integral}},
         )
 
-    def figures(self, values: Values) -> dict[str, dict[str, float]]:
+    def computed_values(self, values: Values) -> dict[str, dict[str, float]]:
         """Return the computed values by row, then metric name."""
         scenario = self.scenario(values)
-        return {row: row_figures(scenario, row) for row in self.rows}
+        return {row: row_values(scenario, row) for row in self.rows}
 
     def residuals(self, values: Values) -> np.ndarray:
         """Return (computed / printed - 1) / tolerance, (3 rows,), three values a row."""
-        rows = residual_rows(self.figures(values))
+        rows = residual_rows(self.computed_values(values))
         return np.array([row['deviation'] / row['tolerance'] for row in rows])
 
     def objective(self, values: Values) -> float:
@@ -79,7 +79,7 @@ class Problem:
     def jacobian(self, values: Values) -> np.ndarray:
         """Return d residuals / d (value / range) by one-sided differences, (3 rows, 6)."""
         origin = np.asarray(values, dtype=float)
-        before = self.residuals(origin).reshape(-1, len(FIGURES))
+        before = self.residuals(origin).reshape(-1, len(TABLE_METRICS))
         columns = []
         for index, parameter in enumerate(PARAMETERS):
             step = _STEP * RANGE[index]
@@ -136,7 +136,7 @@ class Fit:
         }
 
 
-def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
+def row_values(scenario: Scenario, controller: str) -> dict[str, float]:
     """
     Return the three values of one controller, simulated to the end of the score window.
 
@@ -147,7 +147,7 @@ def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
     run = headless_run(RunSettings(shortened), controller)
-    figures, final_rpm = run.figures, run.metrics.slip_final_rpm
+    figures, final_rpm = run.table_values, run.metrics.slip_final_rpm
     if figures['engagement_time_s'] is None and final_rpm is not None:
         left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2
         figures['engagement_time_s'] = end - scenario.control_start_s + left

@@ -57,7 +57,7 @@ def calibrate(progress: Progress) -> Record:
         'score_window_s': [BASE.control_start_s, optimum.problem.window_end_s],
         'parameters': _parameters(optimum.values, frozen, analysis),
         'torque_and_slopes': _torque_and_slopes(optimum.values, analysis),
-        'residuals': residual_rows(optimum.problem.figures(frozen)),
+        'residuals': residual_rows(optimum.problem.computed_values(frozen)),
         'frozen_objective': optimum.problem.objective(frozen),
         'windows': [_optimum(one) for one in windows],
         'starts': [_optimum(one) for one in starts],
@@ -90,7 +90,7 @@ def check_frozen(scenario: Scenario, progress: Progress) -> Record:
     moved = [float(change[1] - change[0]) / RANGE[1], *(change[2:] / RANGE[2:]).tolist()]
     return {
         'score_window_s': list(scenario.score_window_s),
-        'residuals': residual_rows(problem.figures(frozen)),
+        'residuals': residual_rows(problem.computed_values(frozen)),
         'frozen_objective': problem.objective(frozen),
         'refit': refit.as_record(),
         'moved': dict(zip(MOVES, moved, strict=True)),

@@ -2,7 +2,6 @@
 
 from ddct_bringup.reproduction.calibration.fit_tables import (
     VALUE_HEADERS,
-    figure_cells,
     fit_cells,
     fit_table,
     number,
@@ -11,6 +10,7 @@ from ddct_bringup.reproduction.calibration.fit_tables import (
     residual_table,
     signed,
     torque_table,
+    value_cells,
 )
 from ddct_bringup.reproduction.calibration.parameters import Record
 from ddct_plant.program.table import Table
@@ -81,7 +81,7 @@ def left_out_table(record: Record) -> Table:
         ('row', 'figure', 'printed', 'computed', 'deviation, %', 'tolerance, %', 'what it is'),
         [
             (
-                *figure_cells(entry),
+                *value_cells(entry),
                 'not predictable: gains fitted to it' if one['gains_from_row'] else 'prediction',
             )
             for one in record['left_out']

@@ -131,13 +131,13 @@ def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:
     except OSError as error:
         raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
     page = folder / _PAGE
-    if page.exists() and not _is_ours(page):
+    if page.exists() and not _is_own_page(page):
         raise DdctError(f'{page} is not a page of ours: choose another --out')
     if taken and not overwrite:
         raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')
 
 
-def _is_ours(page: Path) -> bool:
+def _is_own_page(page: Path) -> bool:
     try:
         return gallery.GENERATOR in read_text_file(page)
     except OSError:

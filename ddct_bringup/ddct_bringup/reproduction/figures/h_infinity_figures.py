@@ -127,7 +127,7 @@ H_INFINITY_FIGURES = (
         controller=_G_C,
         styled_as='hinf1',
         specifications=THESIS_SPECIFICATIONS,
-        thesis_says='the requirements are met',
+        thesis_claim='the requirements are met',
     ),
 )
 """Figures of Section 3.2."""

@@ -159,7 +159,7 @@ LOOP_SHAPING_FIGURES = (
         name='L with G_c = -1/s',
         controller=integrators(-1.0, 1),
         specifications=NETWORK_SPECIFICATIONS,
-        thesis_says='very close to -1, and 70° of phase are missing',
+        thesis_claim='very close to -1, and 70° of phase are missing',
     ),
     nichols_figure(
         *('2.8', 'Nichols chart with G_c1(s)'),
@@ -167,7 +167,7 @@ LOOP_SHAPING_FIGURES = (
         controller=_G_C1,
         styled_as='ls2',
         specifications=NETWORK_SPECIFICATIONS,
-        thesis_says='far from -1, but crosses the circle',
+        thesis_claim='far from -1, but crosses the circle',
     ),
     nichols_figure(
         *('2.9', 'Nichols chart with G_c2(s)'),
@@ -175,7 +175,7 @@ LOOP_SHAPING_FIGURES = (
         controller=_G_C2,
         styled_as='ls7',
         specifications=PLACEMENT_SPECIFICATIONS,
-        thesis_says='the specifications are met; it does not mention the curve',
+        thesis_claim='the specifications are met; it does not mention the curve',
     ),
     step_figure(
         *('2.10', 'Step response with G_c2(s)'),

@@ -72,7 +72,7 @@ def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str
     end_s = max(time[-1] for time, _ in lines.values())
     draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, styles)
     return (
-        f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
+        f'Thesis: {group.thesis_claim}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)
     )
 
@@ -106,7 +106,7 @@ def _table_5_1(group: RunGroup, quantity: str) -> str:
     found = ''
     for use, kind in ((CALIBRATED, 'used'), (PREDICTED, 'not used')):
         printed = [
-            f'{thesis_label(row.controller)} {row.figures()[metric]:.2f}'
+            f'{thesis_label(row.controller)} {row.printed_values()[metric]:.2f}'
             for row in rows
             if row and row.use == use
         ]

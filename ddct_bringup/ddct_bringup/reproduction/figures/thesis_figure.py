@@ -1,6 +1,4 @@
-"""
-Figure of the thesis that can be computed, and the kinds of figure that several chapters have.
-"""
+"""Figure of the thesis that can be computed, and kinds of figure that several chapters have."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -91,7 +89,7 @@ def nichols_figure(
     name: str,
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
-    thesis_says: str,
+    thesis_claim: str,
     styled_as: str | None = None,
 ) -> ThesisFigure:
     """
@@ -107,7 +105,7 @@ def nichols_figure(
         draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
         margins = loop_margins(loop)
         if not margins.stable:
-            return f'The closed loop is unstable. Thesis: {thesis_says}.'
+            return f'The closed loop is unstable. Thesis: {thesis_claim}.'
         crossed = [
             f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
             for found in contours(curve, specifications)
@@ -116,7 +114,7 @@ def nichols_figure(
         return (
             f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
             f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
-            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
+            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_claim}.'
         )
 
     return ThesisFigure(number, title, draw)

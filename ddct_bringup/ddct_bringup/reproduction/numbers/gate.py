@@ -55,15 +55,13 @@ class GateRow:
         return f'{verdict} {"hit" if self.hit else "miss"}'
 
     def as_dict(self) -> dict[str, Any]:
-        """
-        Return the entry of the number in `ddct reproduce numbers --json`; missing values are None.
-        """
+        """Return the entry in `ddct reproduce numbers --json`; missing values are None."""
         number, value = self.number, self.computed
         return {
             'section': number.section,
             'item': number.item,
             'printed': float(number.printed) if number.is_number else number.printed,
-            'computed': value.figures if isinstance(value, Finding) else value,
+            'computed': value.evidence if isinstance(value, Finding) else value,
             'unit': number.unit,
             'tolerance': number.absolute_tolerance,
             'verdict': number.verdict,
@@ -206,5 +204,5 @@ def _agrees(value: Value, stated: str, tolerance: Tolerance | None) -> bool:
 
 def _text(value: Value) -> str:
     if isinstance(value, Finding):
-        return value.figures
+        return value.evidence
     return value if isinstance(value, str) else f'{value:.6g}'

@@ -70,7 +70,7 @@ def computed_text(row: GateRow) -> str:
     """Return the computed value with one digit more than the print; - without one."""
     value = row.computed
     if isinstance(value, Finding):
-        return value.figures
+        return value.evidence
     if value is None or isinstance(value, str):
         return value or '-'
     if not row.hit and row.number.verdict != ERRATUM:

@@ -13,7 +13,7 @@ class Finding:
     """Result of a check of a qualitative claim, with the values behind it."""
 
     holds: bool
-    figures: str
+    evidence: str
 
 
 Value = float | str | Finding

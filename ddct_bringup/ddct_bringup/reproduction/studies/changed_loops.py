@@ -103,9 +103,7 @@ class _Direct:
 
 
 class MeasuredState(Observer):
-    """
-    Observer with w_m, w_p, w_r and theta_sr measured; the actuator's states follow the model.
-    """
+    """Observer with w_m, w_p, w_r and theta_sr measured; actuator states follow the model."""
 
     def __init__(self, settings: RunSettings, model: TransmissionModel) -> None:
         super().__init__(model, np.eye(len(model.a), MEASURED + 1), run_start(settings))

@@ -146,9 +146,7 @@ def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
 
 
 def _range(slips: Sequence[Slip]) -> tuple[float, float]:
-    """
-    Return the range in rpm of the panels: of (nearly) engaged runs, or of all if there is none.
-    """
+    """Return the range in rpm of the panels: of (nearly) engaged runs, or of all without one."""
     together = [slip.rpm for slip in slips if slip.state in SUCCESSES]
     shown = together or [slip.rpm for slip in slips]
     low, high = min(rpm.min() for rpm in shown), max(rpm.max() for rpm in shown)

@@ -150,9 +150,7 @@ def mpc4_readings() -> Study:
 
 
 def torque_level() -> Study:
-    """
-    Return the effect of a pull towards the demand on the torque level, which the cost leaves free.
-    """
+    """Return the effect of a pull towards the demand on the free torque level."""
     driveline = THESIS_SCENARIO.driveline
     model = transmission_model(driveline)
     worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]

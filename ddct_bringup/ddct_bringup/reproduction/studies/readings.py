@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.studies.study import (
     metric_column,
 )
 from ddct_bringup.thesis.table_5_1 import ROW_OF
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow
@@ -69,7 +69,7 @@ def readings() -> Study:
     )
 
 
-class OpenLoopUnknown(Controller):
+class OpenLoopNotModelled(Controller):
     """The MPC models its own torque alone, while C_fOL is added to it."""
 
     def __init__(self, controller: MpcController) -> None:
@@ -160,7 +160,7 @@ READINGS: Mapping[str, Reading] = {
     'C_fOL off from 0.6 s, moves from 0': Reading(
         beside=lambda controller: OpenLoopOff(controller, from_zero=True)
     ),
-    'C_fOL on, unknown to it': Reading(beside=OpenLoopUnknown),
+    'C_fOL on, unknown to it': Reading(beside=OpenLoopNotModelled),
     'base architecture': Reading(architecture='base'),
     'as mpc_preview': Reading(_coming, FULL),
     'as mpc_preview, reference held': Reading(knowledge=FULL),

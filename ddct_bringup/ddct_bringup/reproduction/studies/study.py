@@ -10,7 +10,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import HeadlessRun
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Column, Figure, Table
@@ -84,9 +84,9 @@ def friction_kj(run: HeadlessRun) -> float | None:
     return None if energy is None else energy / 1000.0
 
 
-def metric_column(figure: Figure, form: str, heading: str = '') -> StudyColumn:
+def metric_column(quantity: Figure, form: str, heading: str = '') -> StudyColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
-    return Column(heading or figure.heading, form, attrgetter(f'metrics.{figure.key}'))
+    return Column(heading or quantity.heading, form, attrgetter(f'metrics.{quantity.key}'))
 
 
 def close_column(header: str) -> StudyColumn:

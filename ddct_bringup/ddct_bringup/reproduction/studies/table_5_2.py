@@ -7,14 +7,14 @@ from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, headless_run
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
 from ddct_bringup.reproduction.values.orders import (
-    OSCILLATION_WORDS,
-    SLIP_WORDS,
+    OSCILLATION_RATINGS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     Row,
     judge_table_5_2,
+    ratings_of,
     rows_of_table_5_2,
-    words_of,
 )
 from ddct_bringup.verdict.state import NOT_ENGAGED, SUCCESSES
 from ddct_plant.models.clutch import CLUTCHES
@@ -46,11 +46,11 @@ def table_5_2_in_numbers() -> Study:
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return a row per controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.verdict['state'] for name, run in runs.items()}
     figures = rows_of_table_5_2(runs)
     ranked = [_with_states(row, states) for row in figures]
-    words = [words_of(row) for row in ranked]
+    words = [ratings_of(row) for row in ranked]
     printed = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
         (
@@ -60,13 +60,13 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
             *(f'{row[name]:.3g}' for row in figures),
             states[name],
             *(row[name] for row in words),
-            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_WORDS[name]),
+            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_RATINGS[name]),
             _printed(
                 printed.get(f'5.2 {name} w_sr {wear_gain:g}'),
-                OSCILLATION_WORDS.get(wear_gain, {}).get(name, ''),
+                OSCILLATION_RATINGS.get(wear_gain, {}).get(name, ''),
             ),
         )
-        for name in SLIP_WORDS
+        for name in SLIP_RATINGS
     ]
 
 

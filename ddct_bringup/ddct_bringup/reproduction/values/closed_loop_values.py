@@ -9,7 +9,7 @@ from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
 from ddct_bringup.reproduction.runs import thesis_run
 from ddct_bringup.reproduction.values.orders import (
     CLEARLY,
-    SLIP_WORDS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     below,
@@ -23,7 +23,7 @@ from ddct_bringup.reproduction.values.orders import (
     text,
 )
 from ddct_bringup.reproduction.values.plant_values import deviation_bound_percent
-from ddct_bringup.thesis.table_5_1 import FIGURES, ROW_OF
+from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 
 LOOP_SHAPING = tuple(f'ls{number}' for number in range(1, 10))
 H_INFINITY = ('hinf1', 'hinf2', 'hinf3')
@@ -91,9 +91,7 @@ def _mpc_oscillates_less() -> Finding:
 
 
 def _table_claims() -> dict[str, Value | None]:
-    """
-    Return the values for claims on the five controllers of Table 5.1, by the ids of the files.
-    """
+    """Return the values for claims on the five controllers of Table 5.1, by gate id."""
     times, rows = metric('engagement_time_s', ROW_OF), sigmas(tuple(ROW_OF))
     of_time, of_all = text('s', times), sigma_text(rows, ROW_OF)
     four = (*_FREQUENCY, *_PREDICTIVE)
@@ -125,9 +123,9 @@ def _table_claims() -> dict[str, Value | None]:
 def _printed_order() -> str:
     """Return the order of MPC3's printed sigmas relative to those of the earlier chapters."""
     better = all(
-        ROW_OF['mpc3'].figures()[name] < ROW_OF[before].figures()[name]
+        ROW_OF['mpc3'].printed_values()[name] < ROW_OF[before].printed_values()[name]
         for before in _FREQUENCY
-        for name in FIGURES[1:]
+        for name in TABLE_METRICS[1:]
     )
     return 'better' if better else 'not better'
 
@@ -135,7 +133,7 @@ def _printed_order() -> str:
 def _table_5_1() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     for controller in ROW_OF:
-        figures = thesis_run(controller, 'detailed', 1.0).figures
+        figures = thesis_run(controller, 'detailed', 1.0).table_values
         if figures['engagement_time_s'] is None:
             figures['engagement_time_s'] = NOT_REACHED
         found |= {f'5.1 {controller} {name}': value for name, value in figures.items()}
@@ -147,7 +145,7 @@ def _table_5_2() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     ends = {}
     for wear in WORN:
-        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
+        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_RATINGS}
         rows = rows_of_table_5_2(runs)
         ends[wear] = rows[0]
         found |= judge_table_5_2(wear, rows)

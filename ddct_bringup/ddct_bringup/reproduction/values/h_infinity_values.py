@@ -39,7 +39,7 @@ RAW_CONTROLLER = FactoredTransferFunction(
 """G_c(s) of hinflmi (Section 3.2.2) as printed, before it is cleaned."""
 _WORN_ERROR = 0.3
 """Relative error |G_p/G_pn - 1| at the ends of 0.7 <= K_usura <= 1.3."""
-_SAME = 0.1
+_CANCELLATION_TOLERANCE = 0.1
 """Relative distance within which a printed factor may cancel one of the plant."""
 
 
@@ -59,9 +59,7 @@ def h_infinity_values() -> dict[str, Value | None]:
 
 
 def _rise_formula() -> str:
-    """
-    Return the numerator that gives the printed w_n >= 9.6 rad/s for zeta = 0.63, t_r = 0.3 s.
-    """
+    """Return the numerator for the printed w_n >= 9.6 rad/s with zeta = 0.63, t_r = 0.3 s."""
     angle = math.acos(THESIS_SPECIFICATIONS.damping)
     numerators = {'pi - arccos(zeta)': math.pi - angle, 'pi arccos(zeta)': math.pi * angle}
     fall = THESIS_SPECIFICATIONS.rise_time_s * math.sin(angle)
@@ -76,9 +74,7 @@ def _synthesised_weight() -> str:
 
 
 def _norm_values() -> dict[str, Value | None]:
-    """
-    Return the values of Section 3.2: the weights, and norms of the printed and rescaled Hinf1.
-    """
+    """Return the values of Section 3.2: weights, and norms of the printed and rescaled Hinf1."""
     hinf1 = H_INFINITY_CONTROLLERS['hinf1']
     # The slow pole pair of the raw controller is (s + epsilon)^2.
     _, square = numbers_of(RAW_CONTROLLER.denominator[4])
@@ -93,19 +89,17 @@ def _norm_values() -> dict[str, Value | None]:
         'W_u constant': _WORN_ERROR * -float(PRINTED_W_U.poles[0].real),
         'epsilon / w_c': epsilon_rad_s / crossover if crossover else None,
         'gain of Hinf1.gain': cleaned.gain,
-        **_figures('gain of Hinf1', hinf1),
+        **_printed_values('gain of Hinf1', hinf1),
         'raw gain times 30/pi.gain': rescaled,
-        **_figures(
+        **_printed_values(
             'raw gain times 30/pi',
             FactoredTransferFunction(rescaled, hinf1.numerator, hinf1.denominator),
         ),
     }
 
 
-def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value | None]:
-    """
-    Return every value that Sections 3.2.2 and 3.3 print for Hinf1, computed for `controller`.
-    """
+def _printed_values(name: str, controller: FactoredTransferFunction) -> dict[str, Value | None]:
+    """Return every value that Sections 3.2.2 and 3.3 print for Hinf1, for `controller`."""
     loop = continuous_loop(controller)
     w_s, w_t = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
     norms = weighted_norms(loop, w_s, w_t, PRINTED_W_U)
@@ -150,5 +144,8 @@ def _cancelled() -> dict[str, Value | None]:
     del found['cancelled.gain']
     fast = max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1])
     numerator = H_INFINITY_CONTROLLERS['hinf2'].numerator
-    has = any(isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _SAME for f in numerator)
+    has = any(
+        isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _CANCELLATION_TOLERANCE
+        for f in numerator
+    )
     return found | {'hinf2 fast pair': Finding(has, f's^2 + {fast[0]:g} s + {fast[1]:g}')}

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
 
 CLEARLY = 2.0
@@ -21,11 +21,11 @@ WORN = (0.7, 1.3)
 """Critical values of K_usura, inequality (3.2)."""
 WORN_ARCHITECTURE = 'feedforward'
 """Architecture of Figure 5.1, the only run with a worn clutch in the thesis."""
-SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+SLIP_RATINGS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
 """Ratings of w_d in Table 5.2, equal for both values of K_usura."""
-OSCILLATION_WORDS = {
+OSCILLATION_RATINGS = {
     0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
-    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
+    1.3: dict.fromkeys(SLIP_RATINGS, 'average'),
 }
 """Ratings of w_sr and A_x in Table 5.2, by K_usura."""
 
@@ -53,7 +53,7 @@ def _metric_of(name: str, runs: Mapping[str, HeadlessRun]) -> Row:
 
 def sigmas(controllers: Sequence[str], architecture: str = 'detailed') -> tuple[Row, Row]:
     """Return the standard deviations of w_sr in rpm and of A_x in m/s^2."""
-    twist, acceleration = (metric(name, controllers, architecture) for name in FIGURES[1:])
+    twist, acceleration = (metric(name, controllers, architecture) for name in TABLE_METRICS[1:])
     return twist, acceleration
 
 
@@ -75,9 +75,7 @@ def is_extreme(
 
 
 def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = True) -> Finding:
-    """
-    Return whether each controller, or none, is lower in every row of `ours` than of `others`.
-    """
+    """Return whether each controller, or none, is lower in all rows of `ours` than of `others`."""
     names = list(ours[0])
     lower = [
         name
@@ -105,53 +103,51 @@ def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
 
 
 def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
-    """
-    Return |w_d| at the end of the score window in rad/s, std w_sr in rpm and std A_x in m/s^2.
-    """
+    """Return |w_d| at the window's end in rad/s, std w_sr in rpm and std A_x in m/s^2."""
     slips = {}
     for name, run in runs.items():
         end = steps_in('score_window_s', run.settings.scenario.score_window_s[1])
         slips[name] = abs(float(run.trajectory.slip_speed[end]))
-    return [slips, *(_metric_of(name, runs) for name in FIGURES[1:])]
+    return [slips, *(_metric_of(name, runs) for name in TABLE_METRICS[1:])]
 
 
 def judge_table_5_2(wear_gain: float, rows: Sequence[Row]) -> dict[str, Finding]:
     """Return the findings on the printed ratings by the gate's ids, from `rows_of_table_5_2`."""
     slips, twist, acceleration = rows
-    words = {
-        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-        'w_sr': judge_words(
-            OSCILLATION_WORDS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
+    ratings = {
+        'w_d': judge_ratings(SLIP_RATINGS, [('rad/s', slips)]),
+        'w_sr': judge_ratings(
+            OSCILLATION_RATINGS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
         ),
     }
     return {
         f'5.2 {name} {what} {wear_gain:g}': finding
-        for what, found in words.items()
+        for what, found in ratings.items()
         for name, finding in found.items()
     }
 
 
-def judge_words(
-    words: Mapping[str, str], figures: Sequence[tuple[str, Row]]
+def judge_ratings(
+    ratings: Mapping[str, str], figures: Sequence[tuple[str, Row]]
 ) -> dict[str, Finding]:
     """
     Return the finding on each controller's rating, by its name.
 
-    `words` has the printed rating by controller; `figures` a unit and the values by controller,
+    `ratings` has the printed rating by controller; `figures` a unit and the values by controller,
     for each metric that is rated. A rating holds when it is right relative to all the others.
     """
     return {
         name: Finding(
-            all(_stands(name, other, words, row) for _, row in figures for other in words),
+            all(_in_order(name, other, ratings, row) for _, row in figures for other in ratings),
             ', '.join(_text(row[name], unit) for unit, row in figures),
         )
-        for name in words
+        for name in ratings
     }
 
 
-def words_of(row: Row) -> dict[str, str]:
+def ratings_of(row: Row) -> dict[str, str]:
     """
-    Return the rating of each controller's value by the rule of `judge_words`.
+    Return the rating of each controller's value by the rule of `judge_ratings`.
 
     In increasing order, values within twice the smallest of them have one rating. The ratings are
     good, average and bad; of more than three groups all inner ones are average, one group is
@@ -171,7 +167,7 @@ def words_of(row: Row) -> dict[str, str]:
     }
 
 
-def _stands(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
+def _in_order(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
     """Return whether the values of two controllers are in the order of their ratings."""
     order = _RANKS[words[name]] - _RANKS[words[other]]
     if order == 0:

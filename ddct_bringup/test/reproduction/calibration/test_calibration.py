@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     ROWS,
     values_of,
 )
-from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_figures
+from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_values
 from ddct_bringup.reproduction.calibration.record import check_frozen
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
@@ -130,14 +130,14 @@ def test_engagement_time_without_engagement_is_the_time_that_the_reference_would
     end = round(100 * scenario.score_window_s[1])
     assert np.all(slip[60 : end + 1] > 0.0)
     expected = (end - 60) / 100 + slip[end] / scenario.reference.slope_rad_s2
-    assert row_figures(scenario, 'pi')['engagement_time_s'] == pytest.approx(expected, rel=1e-12)
+    assert row_values(scenario, 'pi')['engagement_time_s'] == pytest.approx(expected, rel=1e-12)
 
 
 def test_engagement_time_is_continuous_where_engagement_leaves_the_window():
     """Slip reaches zero later the lower the slope, until the window ends first."""
     slopes = np.linspace(40.0, 60.0, 41)
     times = [
-        row_figures(PROBLEM.scenario([*VALUES[:3], slope, *VALUES[4:]]), 'hinf1')[
+        row_values(PROBLEM.scenario([*VALUES[:3], slope, *VALUES[4:]]), 'hinf1')[
             'engagement_time_s'
         ]
         for slope in slopes

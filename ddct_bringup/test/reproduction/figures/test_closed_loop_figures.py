@@ -24,13 +24,13 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-FIGURES = {figure.number: figure for figure in collect_figures()}
+TABLE_METRICS = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 
 
 def drawing(number: str) -> tuple[Figure, str]:
     """Return the chart of a figure and the remark on it."""
-    return FIGURES[number].draw()
+    return TABLE_METRICS[number].draw()
 
 
 def lines(axes: Axes) -> dict[str, np.ndarray]:
@@ -164,11 +164,11 @@ def test_tanh_figure_reaches_zero_at_the_chosen_times():
 def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
     counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
     every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
-    assert sorted([*FIGURES, *NOT_DRAWN], key=figure_order) == every
+    assert sorted([*TABLE_METRICS, *NOT_DRAWN], key=figure_order) == every
 
 
 def test_page_of_the_documentation_is_what_the_command_writes():
-    drawn = {figure: drawing(number)[1] for number, figure in FIGURES.items()}
+    drawn = {figure: drawing(number)[1] for number, figure in TABLE_METRICS.items()}
     shown, computed = shown_tables('figures'), as_markdown(figure_tables(drawn))
     assert shown.keys() == computed.keys()
     page, written = (''.join(each[name] for name in computed) for each in (shown, computed))

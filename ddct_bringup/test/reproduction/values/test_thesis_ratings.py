@@ -10,10 +10,10 @@ from ddct_bringup.reproduction.values.orders import (
     below,
     each_lower,
     is_extreme,
-    judge_words,
+    judge_ratings,
+    ratings_of,
     sigma_text,
     text,
-    words_of,
 )
 
 WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
@@ -21,7 +21,7 @@ SLIPS = {'ls8': 30.0, 'hinf2': 1.0, 'mpc3': 20.0, 'mpc4': 10.0}
 
 
 def judged(**changed: float) -> dict[str, bool]:
-    findings = judge_words(WORDS, [('rad/s', {**SLIPS, **changed})])
+    findings = judge_ratings(WORDS, [('rad/s', {**SLIPS, **changed})])
     return {name: finding.holds for name, finding in findings.items()}
 
 
@@ -40,19 +40,19 @@ def test_figures_of_one_word_are_at_most_twice_one_another(slip, holds):
 
 def test_one_word_for_four_spreads_that_differ_more_is_a_miss():
     spreads = {'ls8': 1.0, 'hinf2': 4.6, 'mpc3': 1.2, 'mpc4': 1.5}
-    findings = judge_words(dict.fromkeys(spreads, 'average'), [('rpm', spreads)])
+    findings = judge_ratings(dict.fromkeys(spreads, 'average'), [('rpm', spreads)])
     assert not any(finding.holds for finding in findings.values())
 
 
 def test_word_about_two_quantities_must_be_right_in_both_and_shows_both():
     rows = [('rpm', SLIPS), ('m/s^2', {**SLIPS, 'mpc4': 50.0})]
-    finding = judge_words(WORDS, rows)['mpc4']
-    assert not finding.holds and finding.figures == '10 rpm, 50 m/s^2'
+    finding = judge_ratings(WORDS, rows)['mpc4']
+    assert not finding.holds and finding.evidence == '10 rpm, 50 m/s^2'
 
 
 def test_figure_that_does_not_exist_is_the_worst():
     assert not judged(mpc4=math.inf)['mpc4']
-    figures = judge_words(WORDS, [('rad/s', {**SLIPS, 'mpc4': math.inf})])['mpc4'].figures
+    figures = judge_ratings(WORDS, [('rad/s', {**SLIPS, 'mpc4': math.inf})])['mpc4'].evidence
     assert figures == 'no figure'
 
 
@@ -90,7 +90,7 @@ def test_each_lower_counts_those_that_are_lower_in_every_row():
     lower = {'pi': 3.0, 'ls8': 1.0, 'mpc4': 0.5}
     assert each_lower([lower], [ROW]).holds
     mixed = each_lower([lower, ROW], [ROW, ROW])
-    assert not mixed.holds and mixed.figures == '0 of 3 lower in both'
+    assert not mixed.holds and mixed.evidence == '0 of 3 lower in both'
     assert each_lower([lower, ROW], [ROW, ROW], wanted=False).holds
     assert not each_lower([lower], [ROW], wanted=False).holds
 
@@ -108,9 +108,9 @@ def test_figure_that_does_not_exist_is_infinite(monkeypatch):
 def test_figures_within_twice_the_least_share_a_word():
     row = {'a': 1.0, 'b': 2.0, 'c': 2.1, 'd': 9.0, 'e': math.inf}
     expected = {'a': 'good', 'b': 'good', 'c': 'average', 'd': 'average', 'e': 'bad'}
-    assert words_of(row) == expected
+    assert ratings_of(row) == expected
 
 
 def test_no_word_tells_figures_apart_that_are_alike():
-    assert set(words_of({'a': 0.0, 'b': 0.0}).values()) == {'alike'}
-    assert words_of({'a': 0.0, 'b': 0.1}) == {'a': 'good', 'b': 'bad'}
+    assert set(ratings_of({'a': 0.0, 'b': 0.0}).values()) == {'alike'}
+    assert ratings_of({'a': 0.0, 'b': 0.1}) == {'a': 'good', 'b': 'bad'}

@@ -29,7 +29,7 @@ def first_lock(trajectory: Trajectory, start: int) -> PhaseEvent | None:
     return next(events_of(trajectory, LOCK, after=start), None)
 
 
-def first_meeting(trajectory: Trajectory, start: int) -> tuple[int, PhaseEvent] | None:
+def first_zero_slip(trajectory: Trajectory, start: int) -> tuple[int, PhaseEvent] | None:
     """
     Return the first lock or reversal after step `start`, and the step that ends its period.
 

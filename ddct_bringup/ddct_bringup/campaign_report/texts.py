@@ -64,7 +64,7 @@ def interval_text(interval: list[float] | None) -> str:
 def states_text(failed: Summary) -> str:
     """Return the numbers of runs in states other than engaged, with the shares of a sample."""
     return ', '.join(
-        f'{found["runs"]} {spoken(state)}'
+        f'{found["runs"]} {state_text(state)}'
         + (f' ({interval_text(found["interval"])})' if found['interval'] else '')
         for state, found in failed['states'].items()
         if state != 'engaged'
@@ -77,7 +77,7 @@ def boundary_text(side: Summary) -> str:
         return 'no run on this side' if side['last_good'] is None else 'none in the range'
     several = f', {side["failed"]} of {side["runs"]} runs' if side['runs'] > 1 else ''
     first = _apart(side['first_failure'], side['last_good'])
-    return f'{first} ({spoken(side["state"])}, run {side["index"]}{several})'
+    return f'{first} ({state_text(side["state"])}, run {side["index"]}{several})'
 
 
 def good_text(side: Summary) -> str:
@@ -117,7 +117,7 @@ def part_text(part: Summary) -> str:
     return f'{part["failed"]} of {part["runs"]} at {range_text(part["low"], part["high"])}'
 
 
-def spoken(state: str) -> str:
+def state_text(state: str) -> str:
     """Return the name of a state as text."""
     return state.replace('_', ' ')
 
@@ -132,7 +132,7 @@ def pair_label(pair: Summary) -> str:
     return ', '.join([f'{pair["first"]} less {pair["second"]}', *pair['varied'].values()])
 
 
-def together_text(pair: Summary) -> str:
+def joint_outcomes_text(pair: Summary) -> str:
     """Return the number of cases in which both, one or none of two controllers engaged."""
     return (
         f'{pair["both"]} of {pair["cases"]} cases (only {pair["first"]} {pair["first_only"]}, '
