@@ -1,4 +1,4 @@
-"""Metrics, criteria and limits as the programs name them."""
+"""Tables of metrics, criteria and limits with the names of the programs."""
 
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import packaged_limits

@@ -47,7 +47,7 @@ def test_the_thesis_s_conditions_are():
     assert [row and row.label for row in rows] == ['LS8', None]
 
 
-def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
+def test_a_cell_has_the_computed_value_the_printed_one_and_their_difference():
     runs = [
         run('ls8', RunSettings(THESIS), engagement_time_s=0.781),
         run('ls1', RunSettings(THESIS), engagement_time_s=1.562),
@@ -61,7 +61,7 @@ def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
     assert (cells[2].value, cells[2].text, cells[2].share) == (None, '–', 0.0)
 
 
-def test_a_predicted_figure_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
+def test_a_predicted_value_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
     runs = [
         run('mpc3', RunSettings(THESIS), engagement_time_s=0.62),
         run('mpc4', RunSettings(THESIS)),

@@ -128,18 +128,21 @@ def judge_table_5_2(wear_gain: float, rows: Sequence[Row]) -> dict[str, Finding]
 
 
 def judge_ratings(
-    ratings: Mapping[str, str], figures: Sequence[tuple[str, Row]]
+    ratings: Mapping[str, str], quantities: Sequence[tuple[str, Row]]
 ) -> dict[str, Finding]:
     """
     Return the finding on each controller's rating, by its name.
 
-    `ratings` has the printed rating by controller; `figures` a unit and the values by controller,
-    for each metric that is rated. A rating holds when it is right relative to all the others.
+    `ratings` has the printed rating by controller; `quantities` a unit and the values by
+    controller, for each metric that is rated. A rating holds when it is right relative to all the
+    others.
     """
     return {
         name: Finding(
-            all(_in_order(name, other, ratings, row) for _, row in figures for other in ratings),
-            ', '.join(_text(row[name], unit) for unit, row in figures),
+            all(
+                _in_order(name, other, ratings, row) for _, row in quantities for other in ratings
+            ),
+            ', '.join(_text(row[name], unit) for unit, row in quantities),
         )
         for name in ratings
     }
@@ -167,13 +170,13 @@ def ratings_of(row: Row) -> dict[str, str]:
     }
 
 
-def _in_order(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
+def _in_order(name: str, other: str, ratings: Mapping[str, str], row: Row) -> bool:
     """Return whether the values of two controllers are in the order of their ratings."""
-    order = _RANKS[words[name]] - _RANKS[words[other]]
+    order = _RANKS[ratings[name]] - _RANKS[ratings[other]]
     if order == 0:
         return max(row[name], row[other]) <= _ALIKE * min(row[name], row[other])
     return row[name] > row[other] if order > 0 else row[name] < row[other]
 
 
-def _text(figure: float, unit: str) -> str:
-    return f'{figure:.3g} {unit}' if figure < math.inf else 'no figure'
+def _text(value: float, unit: str) -> str:
+    return f'{value:.3g} {unit}' if value < math.inf else 'no figure'

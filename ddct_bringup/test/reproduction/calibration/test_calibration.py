@@ -1,4 +1,4 @@
-"""The calibration fits what it says it fits, and its analysis of the fit holds."""
+"""The calibration fits its stated parameters, and its analysis of the fit is correct."""
 
 import dataclasses
 
@@ -90,7 +90,7 @@ def test_weakest_direction_moves_no_residual():
 
 
 def test_same_rise_of_torque_by_another_path_does_move_residuals():
-    """The sloppy direction is one: raising only the end shows at once."""
+    """There is one insensitive direction: raising the end alone changes the residuals."""
     change = np.array([0.0, 10.0, 0.0, 0.0, 0.0, 0.0])
     difference = PROBLEM.residuals(VALUES + change) - PROBLEM.residuals(VALUES)
     assert np.max(np.abs(difference)) > 0.2
@@ -107,7 +107,7 @@ def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations():
 
 
 def test_standard_error_of_a_function_is_that_of_the_normal_equations():
-    """Of the slope of C_m, against the covariance and a difference quotient."""
+    """The function is the slope of C_m, compared with the covariance and a difference quotient."""
     optimum = fit(PROBLEM, VALUES)
     values = np.array(optimum.values)
 

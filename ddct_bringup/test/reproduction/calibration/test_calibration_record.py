@@ -1,4 +1,4 @@
-"""The kept record, the scenario file, the page and the simulation tell the same."""
+"""The stored record, the scenario file, the page and the simulation agree."""
 
 import importlib.resources
 import json
@@ -86,7 +86,7 @@ def test_only_the_pi_row_is_marked_as_not_predictable():
     assert [one['row'] for one in RECORD['left_out'] if one['gains_from_row']] == ['pi']
 
 
-def test_longer_windows_leave_a_sigma_of_ls8_out_of_tolerance_as_the_page_says():
+def test_longer_windows_leave_a_sigma_of_ls8_out_of_tolerance_as_on_the_page():
     beyond = [one for one in RECORD['windows'] if one['pi_stable'] and one['window_end_s'] > 1.85]
     assert len(beyond) >= 12
     assert all(one['worst_residual'] < -1.0 for one in beyond)

@@ -48,7 +48,7 @@ def lines(axes: Axes) -> dict[str, np.ndarray]:
         ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
     ],
 )
-def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
+def test_run_figure_contains_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number)[0].axes[0]
     run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
     signals = {
@@ -132,7 +132,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6')[1]
 
 
-def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():
+def test_remarks_distinguish_fitted_and_predicted_rows_of_table_5_1():
     assert drawing('2.27')[1].endswith('used in the calibration: LS8 1.15, PI 0.70.')
     assert drawing('4.4')[1].endswith('not used in the calibration: MPC3 0.90.')
 

@@ -1,4 +1,4 @@
-"""What `compare` prints beside Table 5.1, and when it does."""
+"""Values that `compare` prints with Table 5.1, and the conditions for it."""
 
 import dataclasses
 import io
@@ -68,7 +68,7 @@ def test_predicted_row_has_value_and_range_print_and_verdict():
     assert 'below the print hit (within 25 % of it) or miss.' in lines
 
 
-def test_undefined_figure_is_a_miss():
+def test_undefined_value_is_a_miss():
     lines = printed(run('mpc3', (None, 0.9, 0.19)))
     assert '0.550 to - miss 0.50 to 1.50 hit 0.300 to 0.300 hit' in lines
 
