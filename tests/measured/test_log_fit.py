@@ -89,9 +89,7 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
 
 
 def test_a_start_that_is_far_off_is_not_taken_for_noise() -> None:
-    """
-    With 2 N m on the torques, which hide the effects of J_p and c_sa: both are named instead.
-    """
+    """With 2 N m on the torques, which hide the effects of J_p and c_sa: these are named."""
     fit = fit_log(log_of(drive(2).noisy(0, 2.0)), START, drag)
     assert {'engine_damping', 'halfshaft_stiffness'} <= set(fit.std)
     assert 'shaft_inertia' in fit.undetermined

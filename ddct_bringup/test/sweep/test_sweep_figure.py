@@ -1,6 +1,4 @@
-"""
-Failed runs are drawn differently from good ones: lines join engaged runs, others are crosses.
-"""
+"""Failed runs differ from good ones in the figure: lines join engaged runs, others are crosses."""
 
 from typing import Any
 

@@ -378,7 +378,7 @@ limits:
         judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'
     )  # the judder has no value
     assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
-    # A criterion that is undefined for the plant does not count; without a limit there is no result.
+    # An undefined criterion of a plant does not count; without a limit there is no result.
     without = judged(slip_acceleration_at_lock=-40.0, without=['judder'])
     assert without[0]['limits'] == 'within'
     assert [without[1]['judder'][key] for key in ('limit', 'state')] == [None, 'no_limit']
