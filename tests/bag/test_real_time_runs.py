@@ -8,7 +8,7 @@ from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.writer import new_bag
 from ddct_bringup.programs import bringup, compare, score
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.topics import DIAGNOSTICS, RunKind, recorded_topics
 

@@ -16,7 +16,7 @@ from support.runs import expected, plan
 from support.tampering import Tamperer, tampered_remap
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.run.beside_bag import read_timing
+from ddct_bringup.run.timing_and_failure import read_timing
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step

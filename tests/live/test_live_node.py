@@ -29,9 +29,9 @@ class Served:
     """A node `live` and another that plays the graph, in this process."""
 
     def __init__(self, context: Context) -> None:
-        """Serve on a free port; what `live` says goes to `said`."""
-        self.said: list[str] = []
-        self.node = live_node.LiveNode('127.0.0.1', 0, self.said.append, context=context)
+        """Serve on a free port; its printed lines go to `printed`."""
+        self.printed: list[str] = []
+        self.node = live_node.LiveNode('127.0.0.1', 0, self.printed.append, context=context)
         self.graph = Node('graph', context=context)
         self.executor: Executor = make_executor(context)
         for node in (self.node, self.graph):
@@ -39,7 +39,7 @@ class Served:
 
     @property
     def url(self) -> str:
-        return self.said[0].split()[-1]
+        return self.printed[0].split()[-1]
 
     def spin(self) -> bool:
         """Let the nodes work for a moment; True, so that it fits into a condition."""
@@ -114,12 +114,12 @@ def test_a_graph_sends_nothing_as_long_as_nobody_looks() -> None:
 def test_a_domain_without_a_graph_is_said_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_node, '_PATIENCE_S', 0.05)
     with served() as both:
-        wait_until(lambda: both.spin() and len(both.said) > 1, 'the remark')
+        wait_until(lambda: both.spin() and len(both.printed) > 1, 'the remark')
         for _ in range(10):
             both.spin()
-    assert len(both.said) == 2
-    assert 'no graph in ROS domain' in both.said[1]
-    assert 'ROS_DOMAIN_ID' in both.said[1]
+    assert len(both.printed) == 2
+    assert 'no graph in ROS domain' in both.printed[1]
+    assert 'ROS_DOMAIN_ID' in both.printed[1]
 
 
 def test_a_graph_that_is_there_is_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,4 +128,4 @@ def test_a_graph_that_is_there_is_not_missed(monkeypatch: pytest.MonkeyPatch) ->
         both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
         for _ in range(50):
             both.spin()
-    assert len(both.said) == 1
+    assert len(both.printed) == 1

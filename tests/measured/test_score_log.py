@@ -12,7 +12,7 @@ from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
 from ddct_bringup.programs import report, score
-from ddct_bringup.run.beside_bag import NOTE_FILE
+from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scoring import NEEDS, score_recording

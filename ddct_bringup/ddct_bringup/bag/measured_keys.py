@@ -1,4 +1,4 @@
-"""What a log cannot say itself: `run` of a column map."""
+"""Keys under `run` of a column map: the facts of a run that its log does not contain."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from ddct_plant.base.options import OptionGroup, option
 
 @dataclass(frozen=True)
 class MeasuredRun(OptionGroup, prefix='run.'):
-    """The keys, their defaults and ranges."""
+    """Keys under `run` of a column map, with their defaults and ranges."""
 
     controller: str = option(MEASURED, 'what tables call the controller', kind=str)
     scenario: str = option(MEASURED, 'what tables call the drive; logs of one name compare')
@@ -45,7 +45,7 @@ class MeasuredRun(OptionGroup, prefix='run.'):
             raise ParameterError('run.score_window_s: give two times, [first, last]')
 
     def require_within(self, duration_s: float) -> None:
-        """Raise ParameterError for an engagement or a score window that the log does not hold."""
+        """Raise ParameterError for an engagement or a score window beyond the end of the log."""
         if self.control_start_s >= duration_s:
             raise ParameterError(
                 f'run.control_start_s is {self.control_start_s:g} s, but the log ends '

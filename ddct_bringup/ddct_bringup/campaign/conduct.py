@@ -12,7 +12,12 @@ from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import ShardJob, timed_shard
 from ddct_bringup.campaign.time_left import TimeLeft, each_controller_first
-from ddct_bringup.run.output_folder import MARKER, held, mark_folder, require_ours_or_empty
+from ddct_bringup.run.output_folder import (
+    MARKER,
+    locked_folders,
+    mark_folder,
+    require_ours_or_empty,
+)
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
@@ -45,7 +50,7 @@ def carry_out(
     Raise DdctError for unusable arguments and for a failure, KeyboardInterrupt when `stopped()`
     becomes true: completed shards stay, and `resume` continues with them.
     """
-    with held(out), workers_of(workers, scheduler) as ready:
+    with locked_folders(out), workers_of(workers, scheduler) as ready:
         manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
         schema = schema_of(campaign.spec)
         shards = _shards(campaign, limits, manifest, out)

@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import require_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits

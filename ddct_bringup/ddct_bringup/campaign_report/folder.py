@@ -26,7 +26,7 @@ from ddct_bringup.report.page_parts import (
     page_template,
     value_text,
 )
-from ddct_bringup.run.output_folder import held
+from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
@@ -55,7 +55,7 @@ def write_campaign_page(folder: Path) -> Summary:
     results = results_of(manifest, read_table(folder, manifest))
     summary = summary_of(results)
     page = campaign_page(results, summary, folder.as_posix(), facts_of(manifest))
-    with held(folder):
+    with locked_folders(folder):
         write_json(str(folder / SUMMARY), summary)
         write_text(str(folder / PAGE), page)
     return summary

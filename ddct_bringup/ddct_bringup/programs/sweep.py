@@ -99,7 +99,7 @@ def _sweep(argv: list[str]) -> int:
 
 
 def _planned(options: argparse.Namespace) -> Sweep:
-    """Return the sweep that the options describe; say on standard error what moves with it."""
+    """Return the sweep that the options describe; print its adjusted values on standard error."""
     names = controllers_of(options.controllers)
     base = base_of(options, [controller_label(name) for name in names])
     axes = [axis_of(text) for text in options.over]

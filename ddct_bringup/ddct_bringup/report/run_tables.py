@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import UNKNOWN
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import PERIOD_S
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')

@@ -13,7 +13,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import MEASURED
-from ddct_bringup.run.beside_bag import RunTiming, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scoring import (
     Entry,

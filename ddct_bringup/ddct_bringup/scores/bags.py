@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from ddct_bringup.run.beside_bag import NOTE_FILE
+from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_plant.base.errors import DdctError
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.criteria import finite
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
 from ddct_bringup.verdict.zero_slip import first_lock, first_zero_slip

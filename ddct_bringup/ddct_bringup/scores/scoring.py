@@ -10,7 +10,7 @@ from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming, failed_run, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid

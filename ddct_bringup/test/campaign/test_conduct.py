@@ -19,7 +19,7 @@ from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.run.output_folder import held
+from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files import output_file
@@ -238,7 +238,7 @@ def test_a_folder_with_other_content_is_not_touched(whole: Path, tmp_path: Path)
 
 def test_two_campaigns_into_one_folder_are_one(tmp_path: Path) -> None:
     out = tmp_path / 'out'
-    with held(out), pytest.raises(DdctError, match='is writing there'):
+    with locked_folders(out), pytest.raises(DdctError, match='is writing there'):
         carried_out(out)
     assert not out.exists()
 

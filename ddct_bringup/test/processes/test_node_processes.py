@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 
 LIVE = """
 import os, signal, sys, time
-from ddct_plant.program.supervision import beat, farewell
+from ddct_plant.program.supervision import announce_exit, beat
 def run():
     print('ready', flush=True)
     while True:
@@ -38,7 +38,7 @@ DEAF = (
 HANGS_LEAVING = (
     'def leave(*_):\n'
     '    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])\n'
-    '    farewell({code})\n'
+    '    announce_exit({code})\n'
     '    time.sleep(60)\n'
     'signal.signal(signal.SIGINT, leave)\n'
 )
@@ -87,7 +87,7 @@ def test_a_stopped_driveline_is_noticed_within_the_stated_time_and_everything_en
 ):
     monkeypatch.setattr(node_process, 'ANSWER_TIMEOUT_S', 1.0)
     nodes = processes(driveline=OBEDIENT, load=OBEDIENT)
-    nodes._look(0.0)
+    nodes._check(0.0)
     nodes._nodes[0].process.send_signal(signal.SIGSTOP)
     started = time.monotonic()
     reason = wait_as_supervisor(nodes)
@@ -107,9 +107,9 @@ def test_a_node_that_never_begins_is_noticed_too(processes, monkeypatch):
 def test_silence_while_the_supervisor_itself_was_stopped_is_none(processes):
     nodes = processes(driveline=OBEDIENT)
     nodes._nodes[0].process.send_signal(signal.SIGSTOP)
-    nodes._look(0.0)
+    nodes._check(0.0)
     for _ in range(19):
-        nodes._look(3600.0)
+        nodes._check(3600.0)
     nodes.__exit__()
 
 

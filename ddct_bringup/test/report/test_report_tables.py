@@ -9,7 +9,7 @@ from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, wi
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.run.beside_bag import NOTE_FILE, failed_run, note_failure
 from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run, note_failure
 from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.scoring import unreadable_entry
 from ddct_plant.base.errors import DdctError

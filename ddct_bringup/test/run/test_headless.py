@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
 
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError

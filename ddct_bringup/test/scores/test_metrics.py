@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent

@@ -8,8 +8,8 @@ from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.validity import realtime_summary, why_invalid
 from ddct_bringup.verdict.limits import packaged_limits
@@ -112,11 +112,11 @@ def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
 
 
 def test_diagnostics_of_nodes_are_parsed():
-    heard = RealtimeFacts()
+    received = RealtimeFacts()
     counts = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
-    assert heard.hear('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
-    assert heard.hear('actuator: safe state', {'since_ns': '1870000000'})
-    assert heard == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
+    assert received.receive('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
+    assert received.receive('actuator: safe state', {'since_ns': '1870000000'})
+    assert received == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
 
 
 @pytest.mark.parametrize(
@@ -130,6 +130,6 @@ def test_diagnostics_of_nodes_are_parsed():
     ],
 )
 def test_diagnostics_of_other_nodes_are_ignored(name, pairs):
-    heard = RealtimeFacts()
-    assert not heard.hear(name, pairs)
-    assert heard == RealtimeFacts()
+    received = RealtimeFacts()
+    assert not received.receive(name, pairs)
+    assert received == RealtimeFacts()

@@ -51,7 +51,7 @@ def _time_of(message: Any) -> Any:
 
 @dataclass(frozen=True)
 class MessageKind:
-    """A kind of message, which begins with its stamp; this one only says that it has come."""
+    """Adapter for one message type; carries the stamp."""
 
     type: str
     """Such as 'sensor_msgs/msg/JointState'."""

@@ -21,7 +21,7 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import STEADY, GraphNode
 from ddct_plant.program.command_line import run_program
-from ddct_plant.program.supervision import beat, ends_at_once, farewell, stop_signals
+from ddct_plant.program.supervision import announce_exit, beat, ends_at_once, stop_signals
 
 SLICE_S = 0.1
 """How often signals are looked at, and the longest time the executor is left alone."""
@@ -174,7 +174,7 @@ def _leave(nodes: Sequence[GraphNode], code: int) -> None:
     Fast DDS may hang here for ever when other nodes leave at the same time. The supervisor then
     ends the process, and takes `code` for its exit code.
     """
-    farewell(code)
+    announce_exit(code)
     with ends_at_once():
         for node in nodes:
             node.destroy_node()

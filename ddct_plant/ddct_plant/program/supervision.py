@@ -2,7 +2,7 @@
 How a process ends, and what it tells whoever supervises it.
 
 What SIGINT and SIGTERM do for a while, what ends a process whose parent is gone; the pulse of a
-node that runs, and its farewell.
+node that runs, and its announced exit.
 """
 
 import ctypes
@@ -14,7 +14,7 @@ from typing import Any
 
 PULSE_FD = 'DDCT_PULSE_FD'
 """Environment variable with the file descriptor, not blocking, that a supervisor has opened."""
-FAREWELL = b'!'
+EXIT_MARK = b'!'
 """Comes before the exit code of a node whose work is over."""
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
@@ -69,9 +69,9 @@ def beat() -> None:
     _tell(b'.')
 
 
-def farewell(code: int) -> None:
+def announce_exit(code: int) -> None:
     """Say that the node's work is over with this exit code: it only has to leave the graph."""
-    _tell(FAREWELL + str(code).encode())
+    _tell(EXIT_MARK + str(code).encode())
 
 
 def _tell(what: bytes) -> None:
