@@ -1,4 +1,4 @@
-"""The warm parent: what it forks is like a process that was started anew, and nothing is left."""
+"""Forks of the warm parent are like processes started anew, and none is left behind."""
 
 import importlib.util
 import json
@@ -188,7 +188,7 @@ def test_its_numerics_have_one_thread_unless_the_user_wants_more(
     assert set(child.output_text().split()) == {'1'}
 
 
-def test_one_that_was_started_ahead_goes_to_the_first_who_asks_and_is_gone_at_the_end() -> None:
+def test_a_parent_started_ahead_is_returned_to_the_first_caller_and_closed_at_the_end() -> None:
     with warm_parent.started_ahead():
         (ahead,) = warm_parent._ahead
         with warm_parent.warm_parent() as first, warm_parent.warm_parent() as second:
@@ -222,7 +222,9 @@ def test_a_parent_that_is_killed_while_it_should_fork_is_named() -> None:
             parent.start([Job('ddct_bringup.processes.guardian')], stopped=stopped)
 
 
-def test_a_parent_that_cannot_work_says_why(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+def test_a_parent_that_cannot_import_is_reported_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+):
     (tmp_path / 'json.py').write_text('raise ImportError("of the test")')
     monkeypatch.setenv('PYTHONPATH', str(tmp_path), prepend=':')
     with WarmParent() as parent, pytest.raises(DdctError, match='ImportError: of the test$'):
@@ -246,7 +248,7 @@ def test_ctrl_c_while_it_imports_ends_it_at_once() -> None:
         assert parent.process.returncode == -signal.SIGKILL
 
 
-def test_no_fork_begins_before_whoever_watches_knows_of_all(
+def test_no_fork_begins_before_all_are_registered_for_supervision(
     parent: WarmParent, module: Callable[[str], str], tmp_path: Path
 ) -> None:
     name = module(f'import pathlib\npathlib.Path({str(tmp_path / "began")!r}).touch()\n')

@@ -1,4 +1,4 @@
-"""Our H-infinity controllers in the frozen scenario, beside the thesis's Hinf1 (Table 5.1)."""
+"""The project's H-infinity controllers in the frozen scenario, beside Hinf1 (Table 5.1)."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def integrated(request):
 
 
 def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
-    """Those of hinf_sampled.md and Table 5.1, signals and formulas from another source."""
+    """The values on hinf_sampled.md and in Table 5.1, from other code for signals and formulas."""
     name, signals = integrated
     time = np.arange(len(signals['w_d'])) / 100.0
     after = time >= SCENARIO.control_start_s - 1e-9
@@ -73,7 +73,7 @@ def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):
 
 
 def test_it_goes_further_through_zero_than_hinf1():
-    """The price of a slower, smoother loop."""
+    """A slower, smoother loop goes further through zero."""
     sampled, hinf1 = (
         run_headless(RunSettings(SCENARIO), name).slip_speed.min()
         for name in ('hinf_sampled', 'hinf1')

@@ -1,4 +1,4 @@
-"""Reading `timing.json`."""
+"""`timing.json` is read back, and unusable content is an error."""
 
 import json
 import os
