@@ -1,4 +1,4 @@
-"""Third parties' nodes in the graph: the recorder names what is missing of them."""
+"""Third parties' nodes in the graph: the recorder names their missing values."""
 
 import pytest
 from support.in_process_graph import GraphOf, node_class

@@ -51,7 +51,7 @@ class ExportedController(Controller):
     """Controller that runs the C code in a folder."""
 
     def __init__(self, folder: Path) -> None:
-        """Compile and load what was exported into `folder`."""
+        """Compile and load the C code in `folder`."""
         (folder / 'sizes.c').write_text(_SIZES)
         compile_c(folder, '-O1', '-shared', '-fPIC', 'ddct_mpc.c', 'sizes.c', '-o', 'ddct_mpc.so')
         self._library = ctypes.CDLL(str(folder / 'ddct_mpc.so'))

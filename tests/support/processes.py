@@ -52,10 +52,10 @@ class Program:
 
 
 class Programs:
-    """Starts programs and kills at the end what a failed test has left running."""
+    """Starter of programs that kills those still running after a failed test."""
 
     def __init__(self, logs: Path) -> None:
-        """Write what they print into `logs`."""
+        """Write the output of the programs into `logs`."""
         self._logs = logs
         self._started: list[Program] = []
 
@@ -86,7 +86,7 @@ class Programs:
         return self.start_module(module, *ros_arguments(parameters), **options)
 
     def kill(self) -> None:
-        """Kill what still runs and reap everything."""
+        """Kill and reap the programs that still run."""
         for program in self._started:
             if program.process.poll() is None:
                 program.send(signal.SIGKILL)

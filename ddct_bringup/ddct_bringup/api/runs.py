@@ -141,8 +141,8 @@ def run(
     an object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the
     options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
     of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
-    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; of a run that is not
-    valid, whose `reason` says why, as `<out>/<name>.partial/`. `beside` names other controllers
+    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
+    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `beside` names other controllers
     whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)

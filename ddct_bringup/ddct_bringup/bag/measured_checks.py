@@ -31,7 +31,7 @@ _SURE, _SURE_OF_SLOPE = 0.9, 10.0
 
 
 def require_no_contradiction(total_ratio: float | None, values: Values) -> None:
-    """Raise DdctError where signals contradict each other; its one line names what to mend."""
+    """Raise DdctError, in one line that names the values to mend, where signals disagree."""
     if 'wheel_speed' in values:
         if total_ratio is not None:
             _require_ratio(total_ratio, values)
@@ -63,11 +63,11 @@ def _require_ratio(given: float, values: Values) -> None:
 
 def _suspects(first: str, second: str, factor: float) -> str:
     """Return the suspected mistakes in two speeds of which one is `factor` times too large."""
-    what = f'unit or sign of {first} and {second}'
+    suspects = f'unit or sign of {first} and {second}'
     for unit, size in _PER_OTHER_UNIT.items():
         if min(abs(abs(factor) / size - 1.0), abs(abs(factor) * size - 1.0)) < 3.0 * _SAME_FACTOR:
-            return f'the {what} (the factor is that of {unit} to rad/s)'
-    return f'the {what}'
+            return f'the {suspects} (the factor is that of {unit} to rad/s)'
+    return f'the {suspects}'
 
 
 def _require_radius(values: Values) -> None:
@@ -150,10 +150,10 @@ def _require_friction(values: Values) -> None:
         )
 
 
-def _require_in(found: float, bounds: tuple[float, float], what: str, of: str) -> None:
+def _require_in(found: float, bounds: tuple[float, float], text: str, of: str) -> None:
     if not bounds[0] <= found <= bounds[1]:
         raise DdctError(
-            f'{what.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
+            f'{text.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
             f'signs of {of}'
         )
 

@@ -78,7 +78,7 @@ class Recording:
 
     @property
     def measured(self) -> bool:
-        """Whether this is the log of another tool, without the files that stand beside a bag."""
+        """Whether this is the log of another tool, without the files beside a bag."""
         return self.facts.mode == MEASURED
 
     @property

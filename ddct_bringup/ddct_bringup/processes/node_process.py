@@ -58,7 +58,7 @@ class Child:
         return lines[-1].strip() if lines else ''
 
     def close(self) -> None:
-        """Forget what it has printed."""
+        """Close the output of the process."""
         os.close(self._printed)
 
 

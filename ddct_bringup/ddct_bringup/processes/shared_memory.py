@@ -37,7 +37,7 @@ def remove_segments(segments: Iterable[str]) -> None:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             for file in (segment, f'sem.{segment}_mutex', lock.name):
                 (SHARED_MEMORY / file).unlink(missing_ok=True)
-        except OSError:  # locked by a live owner, or not ours
+        except OSError:  # locked by a live owner, or of another user
             continue
         finally:
             os.close(descriptor)

@@ -67,7 +67,7 @@ def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool])
     finally:
         # Otherwise the nodes and their latched messages stay in the domain of the next run.
         executor.shutdown()
-    # What failed first made others fail when they were closed.
+    # The first failure made other nodes fail when they were closed.
     for node in [*failed, *nodes]:
         error = failure(node)
         if error is not None:

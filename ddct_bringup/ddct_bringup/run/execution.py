@@ -89,8 +89,10 @@ def execute(
     `stopped()` becomes true; what was recorded until then stays in the folder.
     """
     if plan.layout == 'headless':
-        told, timing = simulate(plan)
-        write_trajectory(told.trajectory, folder, plan.name, told.custom_data, told.run_info)
+        recording, timing = simulate(plan)
+        write_trajectory(
+            recording.trajectory, folder, plan.name, recording.custom_data, recording.run_info
+        )
         timing.write(folder)
         return
     work = folder / WORK_FOLDER

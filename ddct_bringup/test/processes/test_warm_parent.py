@@ -1,4 +1,4 @@
-"""Forks of the warm parent are like processes started anew, and none is left behind."""
+"""Forks of the warm parent are like new processes, and none is left behind."""
 
 import importlib.util
 import json

@@ -137,7 +137,7 @@ def test_without_the_delay_in_its_model_the_level_runs_away_with_a_new_clutch():
 
 
 def test_a_measured_state_gives_what_the_filter_gives():
-    """Section 4.1 takes the state as measured; the twist is not, and an observer stands in."""
+    """Section 4.1 takes the state as measured; the twist is not, so an observer estimates it."""
     measured, filtered = (
         metrics(each) for each in (READINGS['state measured'].run(), run('mpc4'))
     )

@@ -110,7 +110,7 @@ def test_as_drawn_an_error_stays_that_section_6_1_would_remove_by_an_integrator(
 
 
 def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
-    """Only plant and start are the product's: toolbox filter and normal equations stand here."""
+    """Only plant and start are the product's; toolbox filter and normal equations are new here."""
     peer = run_headless(SETTINGS, AsDrawn(prediction_steps=22, control_steps=4))
     ours = thesis_run('mpc3', 'detailed', 1.0).trajectory
     np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
@@ -152,7 +152,7 @@ def test_every_option_changes_the_run_and_none_breaks_it(changes):
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
 def test_wear_leaves_an_error_that_the_thesis_rates_bad(wear_gain):
-    """Table 5.2; the model has no disturbance that could stand for the wear."""
+    """Table 5.2: the model has no disturbance that could represent the wear."""
     slip_rpm = thesis_run('mpc3', 'detailed', wear_gain).slip_rpm[-1]
     assert abs(slip_rpm) > 10.0
 
