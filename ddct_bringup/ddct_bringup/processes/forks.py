@@ -66,7 +66,7 @@ def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks)
     os.close(writer)
     os.waitpid(between, 0)
     with os.fdopen(reader, 'rb') as pipe:
-        channel.sendall(pipe.readline() or b'[]\n')
+        channel.sendall(pipe.readline() or b'\n')
 
 
 def _fork_all(
@@ -89,7 +89,7 @@ def _fork_all(
     except OSError:
         traceback.print_exc()
     finally:
-        os.write(writer, json.dumps(pids).encode() + b'\n')
+        os.write(writer, ' '.join(map(str, pids)).encode() + b'\n')
         os._exit(0)
 
 

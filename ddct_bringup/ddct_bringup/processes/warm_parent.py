@@ -6,7 +6,6 @@ parent become children of this process, like processes that it starts itself.
 """
 
 import contextlib
-import json
 import os
 import select
 import signal
@@ -96,7 +95,7 @@ class WarmParent:
                 with adopting_orphans():
                     with contextlib.suppress(BrokenPipeError, ConnectionResetError):
                         send_request(self._channel, jobs, reader)
-                    pids = json.loads(self._reply(stopped))
+                    pids = [int(pid) for pid in self._reply(stopped).split()]
             finally:
                 os.close(reader)
             forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids, jobs, strict=False)]
