@@ -81,7 +81,7 @@ def test_a_demand_that_leaves_the_limits_makes_no_empty_range():
     response = EngineResponse(limits)
     response.deliver(190.0, 200.0)
     lowest, highest = response.reachable(300.0, 1)
-    assert lowest == highest == pytest.approx(response.asked - 1.0)
+    assert lowest == highest == pytest.approx(response.requested - 1.0)
 
 
 @pytest.mark.parametrize(
