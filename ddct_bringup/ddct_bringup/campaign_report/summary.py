@@ -20,7 +20,7 @@ from ddct_bringup.campaign_report.outcome import (
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.spread import ONE_IN, spread_of
 from ddct_bringup.verdict.state import INVALID, STATES
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 Summary = dict[str, Any]
 """As the page on campaigns describes it."""
@@ -159,7 +159,7 @@ def _attribution(results: Results, group: Group) -> Summary:
     }
 
 
-def _quantity(results: Results, group: Group, figure: Figure) -> Summary:
+def _quantity(results: Results, group: Group, figure: Quantity) -> Summary:
     """Return how a quantity spreads over the engaged runs, and how bad it becomes."""
     values = results.columns[figure.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])

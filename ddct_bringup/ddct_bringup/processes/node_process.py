@@ -9,7 +9,7 @@ from ddct_bringup.processes.forked_process import ForkedProcess
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeSpec
 from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
-from ddct_plant.program.supervision import FAREWELL
+from ddct_plant.program.supervision import EXIT_MARK
 
 START_S = 60.0
 """How long a node may take to start before it counts as hung."""
@@ -94,7 +94,7 @@ class NodeProcess(Child):
         with contextlib.suppress(BlockingIOError):
             if said := os.read(self._pulse, _PIPE_BYTES):
                 self._silent_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
-                _, last, code = said.partition(FAREWELL)
+                _, last, code = said.partition(EXIT_MARK)
                 self._farewell = int(code) if last else None
         if self._farewell is not None and self._silent_s > LEAVE_S:
             self.process.kill()

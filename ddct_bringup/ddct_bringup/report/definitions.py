@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.report.quantities import Quantity
+from ddct_bringup.report.quantities import Quantity as ChartedQuantity
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ _ORIGIN = (
 
 
 def definitions(
-    quantities: Iterable[Quantity], *, thesis: bool
+    quantities: Iterable[ChartedQuantity], *, thesis: bool
 ) -> dict[str, tuple[Definition, ...]]:
     """
     Return the entries of a page that draws these quantities, by subject.
@@ -141,7 +141,7 @@ def _criteria() -> tuple[Definition, ...]:
     )
 
 
-def _defined(figure: Figure) -> Definition:
+def _defined(figure: Quantity) -> Definition:
     meaning = figure.meaning.removeprefix(f'{figure.symbol}, ')
     missing = f' No value: {figure.undefined}.' if figure.undefined else ''
     return Definition(figure.symbol, f'{meaning}.{missing}', unit_text(figure.unit))

@@ -12,14 +12,14 @@ from ddct_bringup.verdict.judged_run import JudgedRun, Values
 from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_negative_jerk
 from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
 from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 AXIS_FACTOR = 1.4
 """Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
 
 
 @dataclass(frozen=True)
-class Criterion(Figure):
+class Criterion(Quantity):
     """One quantity that an engagement is judged by; its key names it in `verdict`."""
 
     value: Callable[[JudgedRun], Values | None] = field(kw_only=True)

@@ -1,6 +1,6 @@
 """The metrics of a run as figures: name, unit, format, meaning, and why one may be undefined."""
 
-from ddct_plant.program.table import PURE, Figure
+from ddct_plant.program.table import PURE, Quantity
 
 NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
 NO_LOCKUP = (
@@ -14,7 +14,7 @@ VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100
 """The limit lies above the 50 Hz that a 100 Hz recording holds."""
 
 TABLE_5_1 = (
-    Figure(
+    Quantity(
         'engagement_time_s',
         't_a',
         's',
@@ -23,7 +23,7 @@ TABLE_5_1 = (
         'exact instant at which they first lock or pass through zero',
         NO_CROSSING,
     ),
-    Figure(
+    Quantity(
         'torsion_speed_std_rpm',
         'std w_sr',
         'rpm',
@@ -31,7 +31,7 @@ TABLE_5_1 = (
         'standard deviation of w_sr over the score window',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'acceleration_std_m_s2',
         'std A_x',
         'm/s^2',
@@ -42,7 +42,7 @@ TABLE_5_1 = (
 )
 """Those that the thesis prints."""
 FURTHER = (
-    Figure(
+    Quantity(
         'slip_rmse_rpm',
         'RMSE w_d',
         'rpm',
@@ -50,8 +50,8 @@ FURTHER = (
         'root mean square of reference less w_d over the score window',
         NO_WINDOW,
     ),
-    Figure('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'w_d at the end of the run', NOT_FINITE),
-    Figure(
+    Quantity('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'w_d at the end of the run', NOT_FINITE),
+    Quantity(
         'peak_jerk_m_s3',
         'peak jerk',
         'm/s^3',
@@ -60,7 +60,7 @@ FURTHER = (
         'without delay',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'vdv_m_s1_75',
         'VDV',
         'm/s^1.75',
@@ -68,7 +68,7 @@ FURTHER = (
         f'vibration dose over the score window, weighted by {VDV_WEIGHTING}',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'weighted_acceleration_m_s2',
         'weighted A_x',
         'm/s^2',
@@ -76,7 +76,7 @@ FURTHER = (
         'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'friction_energy_j',
         'friction energy',
         'J',
@@ -84,7 +84,7 @@ FURTHER = (
         'friction work of the clutch, whole run',
         NOT_FINITE,
     ),
-    Figure(
+    Quantity(
         'lockup_slip_acceleration_rad_s2',
         'dw_d/dt at lock-up',
         'rad/s^2',
@@ -93,7 +93,7 @@ FURTHER = (
         'before the first lock',
         NO_LOCKUP,
     ),
-    Figure(
+    Quantity(
         'torque_total_variation_n_m',
         'variation C_f',
         'N m',
@@ -101,7 +101,7 @@ FURTHER = (
         'sum of all changes of the torque request, whole run',
         NOT_FINITE,
     ),
-    Figure('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
+    Quantity('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
 )
 """The others but those of `timing.json`."""
 METRICS = {
@@ -109,7 +109,7 @@ METRICS = {
     for figure in (
         *TABLE_5_1,
         *FURTHER,
-        Figure(
+        Quantity(
             'missed_steps',
             'missed',
             PURE,

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 
 LIVE = """
 import os, signal, sys, time
-from ddct_plant.program.supervision import beat, farewell
+from ddct_plant.program.supervision import announce_exit, beat
 def run():
     print('ready', flush=True)
     while True:
@@ -38,7 +38,7 @@ DEAF = (
 HANGS_LEAVING = (
     'def leave(*_):\n'
     '    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])\n'
-    '    farewell({code})\n'
+    '    announce_exit({code})\n'
     '    time.sleep(60)\n'
     'signal.signal(signal.SIGINT, leave)\n'
 )
