@@ -24,7 +24,7 @@ class Sum(follower.FollowerNode):
         self.published = 0
         self.follow(JOINT_STATES, ENGINE_REQUEST)
 
-    def hear(self, *_: Any) -> None:
+    def subscribe_values(self, *_: Any) -> None:
         """Listen to nothing: the tests hand messages in."""
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> follower.Reply:

@@ -10,7 +10,7 @@ from ddct_plant.ticks.sequence import SequenceWatch
 def two_alive(numbers):
     watch = SequenceWatch()
     for number in numbers:
-        watch.hear(number)
+        watch.note(number)
     return watch.two_alive
 
 
