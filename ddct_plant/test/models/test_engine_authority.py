@@ -66,13 +66,13 @@ def test_the_torque_limits_come_last():
 def test_what_is_reachable_is_delivered_and_nothing_beyond(authority, periods):
     lowest, highest = EngineResponse(authority).reachable(DEMAND, periods)
     assert lowest <= 0.0 <= highest
-    for asked, expected in (
+    for request, expected in (
         (lowest, lowest),
         (highest, highest),
         (lowest - 5.0, lowest),
         (highest + 5.0, highest),
     ):
-        torques = delivered(authority, [DEMAND + asked] * periods)
+        torques = delivered(authority, [DEMAND + request] * periods)
         assert torques[-1] == pytest.approx(DEMAND + expected)
 
 

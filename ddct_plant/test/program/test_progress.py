@@ -1,4 +1,4 @@
-"""Long work says how far it is; short work says nothing."""
+"""Long work prints its progress; short work prints nothing."""
 
 import io
 
@@ -10,7 +10,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_the_rate_and_the_time_that_remains_are_told_after_two_seconds() -> None:
+def test_the_rate_and_the_time_that_remains_are_printed_after_two_seconds() -> None:
     class Clock:
         now = 0.0
 

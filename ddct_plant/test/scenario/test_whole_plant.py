@@ -1,4 +1,4 @@
-"""The plant without ROS: what it delivers and what resists at each step."""
+"""The plant without ROS: delivered and resisting torques at each step."""
 
 import pytest
 
@@ -28,7 +28,7 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
 
 
 def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
-    """At rest in gear: the shaft stands, and at its speed the engine would give nothing."""
+    """At rest in gear: the shaft has no speed, at which the engine would deliver nothing."""
     settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
     plant, engine = WholePlant(settings, two_input=True), make_engine(settings)
     observation = plant.observe(0)

@@ -18,7 +18,7 @@ def test_a_stamp_is_complete_when_every_input_has_it():
     assert join.take() == (0, {'a': 'a0', 'b': 'b0'})
 
 
-def test_only_the_trigger_asks_for_the_reply_again():
+def test_only_the_trigger_requests_the_reply_again():
     join = StampJoin(['a', 'b'])
     offer(join, 'a', 0)
     offer(join, 'b', 0)
@@ -42,7 +42,7 @@ def test_a_repeated_input_of_an_open_stamp_does_not_complete_it():
 
 
 @pytest.mark.parametrize('first', [1, 5])
-def test_a_node_that_joins_mid_run_says_so(first):
+def test_a_node_that_joins_mid_run_ends_with_an_error(first):
     with pytest.raises(DdctError, match=f'step {first} came where step 0 was due'):
         offer(StampJoin(['a']), 'a', first)
 
