@@ -14,7 +14,7 @@ PROGRAMS = [
     'new-controller = ddct_controllers.template.new_controller:main',
 ]
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
-"""Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
+"""Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""
 
 setup(
     name=PACKAGE,

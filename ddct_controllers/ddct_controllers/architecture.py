@@ -1,4 +1,4 @@
-"""Control architectures of the thesis: how open loop and feedback make one torque request."""
+"""Control architectures of the thesis: the torque request as open loop plus feedback."""
 
 from collections.abc import Callable
 from numbers import Real
@@ -19,26 +19,28 @@ _FEEDBACK_OFF = Command(0.0)
 
 
 class TorqueRequest(NamedTuple):
-    """What the clutch is asked over one period, before saturation, and what it is made of."""
+    """Clutch torque request for one period, before saturation, and its parts."""
 
     torque: float
-    """Sum of both parts in N m; the actuator cuts it off below zero."""
+    """Sum of open loop and feedback in N m; the actuator cuts it off below zero."""
     status: Status
     """Pairs for `controller/status`: both parts, saturation, then the controller's own."""
     engine_torque: float | None = None
-    """C_m asked of the engine in N m; None when the controller does not command it."""
+    """Request for C_m in N m; None when the controller does not command the engine."""
 
 
 OpenLoop = Callable[[Measurement, float], float]
-"""Returns the torque in N m that does not depend on the slip, for C_load in N m."""
+"""
+Function from measurement and C_load in N m to the torque in N m that is independent of the slip.
+"""
 
 
 class Architecture:
     """
-    C_f = open loop + feedback; feedback is held off until its first step.
+    C_f = open loop + feedback; feedback is off until its first step.
 
     The open loop takes the measurement, and C_load computed from V_x and the slope. A closing
-    stage, if there is one, adds to it and holds feedback off while it is closed.
+    stage, if there is one, adds to it and switches feedback off while it is closed.
     """
 
     def __init__(
@@ -49,7 +51,7 @@ class Architecture:
         feedback_start_step: int,
         closing: ClosingStage | None = None,
     ) -> None:
-        """Wire `controller` as the feedback, on from `feedback_start_step`."""
+        """Take `controller` as the feedback from step `feedback_start_step` on."""
         self._open_loop = open_loop
         self._load = load
         self._controller = controller
@@ -89,7 +91,7 @@ class Architecture:
         )
 
     def _command(self, measurement: Measurement, on: bool) -> Command:
-        """Return what the controller commands; DdctError with its name for whatever it raises."""
+        """Return the controller's command; raise DdctError that names it for any error."""
         try:
             if on:
                 return self._checked(self._controller.update(measurement), measurement.step)
@@ -110,7 +112,7 @@ class Architecture:
             ) from error
 
     def _feedback_off(self, measurement: Measurement) -> Command:
-        """Return no torque of the controller's own; the engine is, or goes back, to the driver."""
+        """Return no clutch torque; C_m is the driver's demand, or returns to it."""
         if not self._controller.commands_engine:
             return _FEEDBACK_OFF
         engine = measurement.engine_torque
@@ -119,7 +121,7 @@ class Architecture:
         return Command(0.0, engine_torque=engine)
 
     def _checked(self, command: object, step: int) -> Command:
-        """Return the command with plain floats; raise DdctError for any other answer."""
+        """Return the command with plain floats; raise DdctError for an unusable one."""
         try:
             return self._plain(command, step)
         except DdctError as error:
@@ -151,7 +153,7 @@ class Architecture:
 
 
 def _is_status(status: object) -> bool:
-    """Say whether the graph and a terminal can take it as `controller/status`."""
+    """Return whether `status` can be published as `controller/status` and printed."""
     return type(status) is tuple and all(
         type(pair) is tuple
         and len(pair) == 2

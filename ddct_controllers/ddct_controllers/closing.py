@@ -1,4 +1,4 @@
-"""The closing stage: once the plates are seen to turn alike, a request that keeps them so."""
+"""The closing stage: once both plates turn at the same speed, a request that keeps it so."""
 
 from ddct_controllers.interface import Measurement, Status
 from ddct_plant.base.timebase import PERIOD_S, steps_in
@@ -8,15 +8,15 @@ from ddct_plant.scenario.control import ClosingParameters
 
 class ClosingStage:
     """
-    Adds to the open loop what a locked clutch needs to stay locked.
+    Adds to the open loop the torque with which a locked clutch stays locked.
 
-    C_fOL is what a locked clutch carries, so a request of C_fOL is the edge at which it slips.
-    The stage closes when slip speed and reference have been within the band for the dwell time
-    with feedback on: a reference beyond it still asks for slip. The request then leaves from
-    where it was, without a jump, and its margin over |C_fOL| grows along the ramp; it never falls
-    below what feedback had locked a worn clutch with. A clutch that slips all the same has shown
-    that the margin is wrong, and only feedback can tell by how much: the stage opens, and what it
-    added fades along the ramp while feedback acts again.
+    A locked clutch carries C_fOL, so a request of C_fOL is the limit at which it slips. The stage
+    closes when slip speed and reference have been within the band for the dwell time with feedback
+    on: a reference beyond it still demands slip. The request then continues from its last value,
+    without a jump, and its margin over |C_fOL| grows along the ramp; it never falls below the
+    margin with which feedback had locked a worn clutch. If the clutch slips all the same, the
+    margin is wrong by an amount that only feedback can find: the stage opens, and what it added
+    fades along the ramp while feedback acts again.
     """
 
     def __init__(self, parameters: ClosingParameters, static_torque: StaticTorque) -> None:
@@ -29,7 +29,7 @@ class ClosingStage:
         self._samples_within = 0
         self._added = self._margin = self._least_margin = self._missing = 0.0
         self.closed = False
-        """Whether the clutch counts as locked, so that feedback is held."""
+        """Whether the clutch counts as locked, so that feedback is off."""
 
     def update(
         self,
@@ -41,12 +41,12 @@ class ClosingStage:
         feedback_on: bool,
     ) -> float:
         """
-        Return what to add to the open loop in N m over the coming period.
+        Return the torque in N m that is added to the open loop over the coming period.
 
         C_load, the open loop and the request of the last period in N m; `feedback_on` is whether
         the architecture has started feedback.
         """
-        # Feedback that asks for more than the stage may is not at the edge, and stays.
+        # Feedback that requests more than the stage may is not at the limit of slip: it stays on.
         in_reach = self.closed or last_request <= self._parameters.most_n_m
         alike = feedback_on and in_reach and self._within_band(measurement)
         self._samples_within = self._samples_within + 1 if alike else 0
@@ -72,13 +72,13 @@ class ClosingStage:
 
     @property
     def engine_share(self) -> float:
-        """Share of a controller's last deviation from the driver's demand of C_m that is left."""
+        """Remaining share of the controller's last deviation of C_m from the driver's demand."""
         passed = self._samples_within - self._dwell_steps
         return max(1.0 - passed / self._fade_steps, 0.0) if self._fade_steps else 0.0
 
     @property
     def status(self) -> Status:
-        """Say for `controller/status` what it does and what it adds."""
+        """Pairs for `controller/status`: state of the stage, and torque that it adds."""
         if self.closed:
             state = 'closing' if self._missing else 'closed'
         else:
@@ -90,7 +90,7 @@ class ClosingStage:
         return abs(measurement.slip_speed) <= band and abs(measurement.slip_reference[0]) <= band
 
     def _wanted_margin(self, carried: float) -> float:
-        """Return the margin over |C_fOL| in N m that the clutch's capacity leaves room for."""
+        """Return the target margin over |C_fOL| in N m within the clutch's capacity."""
         p = self._parameters
         wanted = max((p.margin - 1.0) * carried + p.reserve_n_m, self._least_margin)
         return max(min(wanted, p.most_n_m - carried), 0.0)

@@ -28,17 +28,17 @@ from ddct_plant.graph.topics import (
 )
 
 TIMING_BATCH = 20
-"""Update times are published in batches of this many steps."""
+"""Number of steps whose update times are published together."""
 
 
 class ControllerNode(FollowerNode):
     """
     Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
 
-    In a run with sensors the measurements are theirs.
-    A controller with two inputs also answers with `engine/torque_request`, and takes the driver's
-    demand in place of `engine/torque`. The options of the controller are parameters
-    `gains.<name>`; its gains among them may be changed while it runs.
+    In a run with sensors the measurements are those of the sensors. A controller with two inputs
+    also answers with `engine/torque_request`, and takes the driver's demand in place of
+    `engine/torque`. The options of the controller are parameters `gains.<name>`; its gains among
+    them may be changed while it runs.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = (
@@ -54,27 +54,27 @@ class ControllerNode(FollowerNode):
         )
         self._controller, info = self._make_controller(name)
         self._architecture = make_architecture(self.settings, self._controller)
-        self._seen = measurement_topics(sensed=self.settings.sensed)
+        self._measured_topics = measurement_topics(sensed=self.settings.sensed)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
             self._engine_request = Output(self, ENGINE_REQUEST)
             self._engine_topic = TORQUE_DEMAND
         else:
-            self._engine_topic = self._seen.engine_torque
+            self._engine_topic = self._measured_topics.engine_torque
         self._status = Output(self, CONTROLLER_STATUS)
         self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
         self.publish_run_info(info)
         self.follow(
-            self._seen.joint_states,
-            self._seen.vehicle_speed,
+            self._measured_topics.joint_states,
+            self._measured_topics.vehicle_speed,
             self._engine_topic,
             SLIP_REFERENCE,
             readers={SLIP_REFERENCE: self._read_reference},
         )
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return the request for the period of step k and what it is made of."""
+        """Return the request for the period of step k and its parts."""
         measurement = self._measure(step, inputs)
         started = time.perf_counter()
         request = self._architecture.update(measurement)
@@ -90,7 +90,7 @@ class ControllerNode(FollowerNode):
         return (self._engine_request.fill(stamp_ns, request.engine_torque), *reply)
 
     def close(self) -> None:
-        """Publish the update times that no batch has carried yet."""
+        """Publish the update times that are not in a batch yet."""
         if self._update_times_us:
             self._publish_timing(self.join.last_step)
 
@@ -98,14 +98,14 @@ class ControllerNode(FollowerNode):
         return SLIP_REFERENCE.read(message, preview_steps=self._controller.preview_steps)
 
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
-        engine, shaft, wheel = inputs[self._seen.joint_states.name][:3]
+        engine, shaft, wheel = inputs[self._measured_topics.joint_states.name][:3]
         speeds, rates = inputs[SLIP_REFERENCE.name]
         return Measurement(
             step=step,
             engine_speed=engine,
             shaft_speed=shaft,
             wheel_speed=wheel,
-            vehicle_speed=inputs[self._seen.vehicle_speed.name],
+            vehicle_speed=inputs[self._measured_topics.vehicle_speed.name],
             engine_torque=inputs[self._engine_topic.name],
             slip_reference=speeds,
             slip_reference_rate=rates,
@@ -119,9 +119,9 @@ class ControllerNode(FollowerNode):
 
     def _make_controller(self, name: str) -> tuple[Controller, dict[str, str]]:
         """
-        Build it with its options, which are declared as parameters `gains.<name>` first.
+        Build the controller, with its options declared as parameters `gains.<name>` first.
 
-        Return what it says of itself too: also the options that differ from the scenario's.
+        Return its pairs for `run_info` too, with the options that differ from the scenario's.
         """
         spec = controller_spec(name)
         section = spec.values(self.settings.scenario.controllers.get(spec.name, {}))

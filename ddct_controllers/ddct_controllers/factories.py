@@ -1,4 +1,4 @@
-"""How the controller of somebody's class, or other factory, is made, and what it may declare."""
+"""Controllers of third parties: construction from a class or factory, and its declarations."""
 
 from collections.abc import Callable, Mapping
 from numbers import Real
@@ -20,9 +20,9 @@ def factory_spec(
     name: str, factory: Callable[[ControllerContext], Any], source: str
 ) -> ControllerSpec[Controller]:
     """
-    Return how the controller of somebody's class, or other factory, is made.
+    Return the specification of a third party's controller from its class or factory.
 
-    `source` is where the factory is. Raise DdctError for what it declares and must not.
+    `source` is the place of the factory. Raise DdctError for a declaration that is not allowed.
     """
 
     def make(context: ControllerContext) -> Controller:
@@ -54,7 +54,7 @@ def factory_spec(
 
 
 def _plain(name: str, source: str, controller: object) -> Controller:
-    """Return it; raise DdctError unless what the graph is built from is of the declared types."""
+    """Return the controller; raise DdctError unless its declarations have the right types."""
     if not isinstance(controller, Controller):
         raise DdctError(
             f'controller {name!r}: {source} returned '
@@ -77,13 +77,13 @@ def _plain(name: str, source: str, controller: object) -> Controller:
 
 
 def _require(usable: bool, name: str, found: str, wanted: str) -> None:
-    """Raise DdctError that says what of the controller `name` was found, unless it is usable."""
+    """Raise DdctError with the value found in the controller `name`, unless it is usable."""
     if not usable:
         raise DdctError(f'controller {name!r}: its {found}: give {wanted}')
 
 
 def _is_mapping(content: object, kind: type) -> bool:
-    """Say whether something maps text to values of a kind."""
+    """Return whether `content` maps text to values of a kind."""
     return isinstance(content, Mapping) and all(
         isinstance(key, str) and isinstance(value, kind) for key, value in content.items()
     )

@@ -9,8 +9,8 @@ class Feedforward:
     """
     u = -C_1 C_m - C_2 C_load with proper, stable C_1 and C_2; see `design.feedforward`.
 
-    C_1 and C_2 are negative, as P_2 is, so that the request is about 0.88 C_m, led by what the
-    actuator lags.
+    C_1 and C_2 are negative, as P_2 is, so that the request is about 0.88 C_m, with a lead that
+    compensates the lag of the actuator.
     """
 
     def __init__(self, driveline: DrivelineParameters) -> None:

@@ -6,25 +6,25 @@ from typing import Any
 
 from ddct_controllers.factories import factory_spec
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
-from ddct_controllers.linear import HOLD, Given, linear_spec
+from ddct_controllers.linear import HOLD, LinearSystem, linear_spec
 from ddct_controllers.lti_objects import linear_system
 from ddct_controllers.registry import Chosen, controller_names
 from ddct_plant.base.errors import ParameterError, require_name
 
 _LINEAR = 'linear'
-"""What a linear system is called that was given no name."""
+"""Name of a linear system without a name of its own."""
 
 
 def chosen_from(controller: Any, name: str = '') -> Chosen:
     """
-    Return a controller as `make_controller` takes it.
+    Return a choice of controller in the form that `make_controller` accepts.
 
     `controller` is a name or file of the registry; a `Controller` class, or another factory that
     takes a `ControllerContext`; a `Controller`, which each run resets; or G_c, from slip error in
     rpm to torque in N m, as a system of scipy.signal or python-control, continuous (then held over
-    10 ms) or with a period of 10 ms. `name` is what bags and tables call one that has no name of
-    the registry, by default the name of the class. Raise ParameterError for anything else, and for
-    a name that is taken.
+    10 ms) or with a period of 10 ms. `name` is the name in bags and tables of a controller that
+    has none in the registry, by default the name of the class. Raise ParameterError for anything
+    else, and for a name that is taken.
     """
     if isinstance(controller, (str, Path, ControllerSpec)):
         if name:
@@ -59,8 +59,8 @@ def _same(controller: Controller) -> Any:
     return make
 
 
-def _linear_system(system: Any, name: str) -> Given | None:
-    """Return a linear system in our form, None for what is none."""
+def _linear_system(system: Any, name: str) -> LinearSystem | None:
+    """Return a linear system in our form, None for any other object."""
     try:
         return linear_system(system)
     except ParameterError as error:

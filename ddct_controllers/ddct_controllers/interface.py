@@ -1,4 +1,4 @@
-"""What a controller is: one small class that never reads a clock and knows nothing of ROS."""
+"""The interface of controllers: one small class that never reads a clock and does not use ROS."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -17,32 +17,36 @@ from ddct_plant.scenario.whole_plant import Observation
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """
-    Everything a controller may know at step k, all SI.
+    All signals that a controller receives at step k, in SI units.
 
     The transmitted torque C_f, the load C_load and the driveshaft twist are not measured in a car
     and are not here.
     """
 
     step: int
-    """k; scenario time is k x 10 ms."""
+    """Step k; scenario time is k x 10 ms."""
     engine_speed: float
-    """w_m in rad/s."""
+    """Engine speed w_m in rad/s."""
     shaft_speed: float
-    """w_p in rad/s."""
+    """Primary shaft speed w_p in rad/s."""
     wheel_speed: float
-    """w_r in rad/s."""
+    """Wheel speed w_r in rad/s."""
     vehicle_speed: float
-    """V_x in m/s."""
+    """Vehicle speed V_x in m/s."""
     engine_torque: float
-    """C_m in N m over the coming period; the driver's demand if the controller commands C_m."""
+    """Engine torque C_m in N m over the coming period; the driver's demand if C_m is commanded."""
     slip_reference: Sequence[float]
-    """(P + 1,) rad/s; entry i is i x 10 ms ahead, P the controller's `preview_steps`."""
+    """
+    Slip references in rad/s, (P + 1,).
+
+    Entry i is i x 10 ms ahead, P the controller's `preview_steps`.
+    """
     slip_reference_rate: Sequence[float]
-    """(P + 1,) rad/s^2."""
+    """Rates of the slip reference in rad/s^2, (P + 1,), at the same times."""
     load_torque: float = 0.0
-    """C_load in N m computed from V_x and the slope; the architecture fills it in."""
+    """Load torque C_load in N m, which the architecture computes from V_x and the slope."""
     open_loop_torque: float = 0.0
-    """What the architecture adds to the controller's clutch torque, in N m; it fills it in."""
+    """Torque in N m that the architecture adds to the controller's clutch torque."""
 
     @classmethod
     def of_plant(
@@ -52,7 +56,7 @@ class Measurement:
         slip_reference: Sequence[float],
         slip_reference_rate: Sequence[float],
     ) -> 'Measurement':
-        """Return what is measured of a plant at step k, beside the reference of that step."""
+        """Return the measured signals of a plant at step k, with the reference of that step."""
         engine_speed, shaft_speed, wheel_speed = observation.measured.joint_speed[:3]
         return cls(
             step=step,
@@ -67,16 +71,16 @@ class Measurement:
 
     @property
     def slip_speed(self) -> float:
-        """w_d = w_m - w_p in rad/s."""
+        """Slip speed w_d = w_m - w_p in rad/s."""
         return self.engine_speed - self.shaft_speed
 
     @property
     def slip_error_rpm(self) -> float:
-        """Reference less slip speed, in the rpm that the thesis's controllers act on."""
+        """Slip reference less slip speed in rpm, the input of the thesis's controllers."""
         return rpm_from_rad_s(self.slip_reference[0] - self.slip_speed)
 
     def within(self, load_torque: float, open_loop_torque: float) -> 'Measurement':
-        """Return the same with what the architecture fills in, both in N m."""
+        """Return the measurement completed with the architecture's two torques, in N m."""
         # dataclasses.replace takes three times as long, at every step of every controller.
         return Measurement(
             self.step,
@@ -85,7 +89,7 @@ class Measurement:
             self.wheel_speed,
             self.vehicle_speed,
             self.engine_torque,
-            tuple(self.slip_reference),  # the record has the list: what is told cannot be changed
+            tuple(self.slip_reference),  # a copy: a controller may not change the record
             tuple(self.slip_reference_rate),
             load_torque,
             open_loop_torque,
@@ -93,20 +97,20 @@ class Measurement:
 
 
 SCENARIO, THESIS, UNSTATED = 'scenario', 'thesis', 'not stated'
-"""What a controller is computed from: see `ControllerSpec.computed_from`."""
+"""Source of a controller's parameters: values of `ControllerSpec.computed_from`."""
 Status = tuple[tuple[str, str], ...]
-"""(key, value) pairs for `controller/status`; deterministic, so no wall time in them."""
+"""Pairs (key, value) for `controller/status`; deterministic, so no wall time in them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A controller's answer to one measurement."""
+    """Output of a controller for one measurement."""
 
     clutch_torque: float
     """Closed-loop part of the clutch torque request in N m."""
     status: Status = ()
     engine_torque: float | None = None
-    """C_m asked of the engine in N m, given by controllers that command it and by no other."""
+    """Request for C_m in N m, only of controllers that command the engine."""
 
 
 class Controller(ABC):
@@ -117,24 +121,24 @@ class Controller(ABC):
     """
 
     options: ClassVar[Options | None] = None
-    """What `controllers.<name>` of a scenario may hold, by name; None, as {}, is nothing."""
+    """Options by name in `controllers.<name>` of a scenario; None and {} are no options."""
     registered_name: str = ''
-    """What errors call it: the registry gives it the name under which it was asked for."""
+    """Name in error messages: the registry sets the name under which it was requested."""
     computed_from: str = UNSTATED
-    """As `ControllerSpec` has it, from where the registry takes it."""
+    """Source of its parameters, as `ControllerSpec.computed_from`; set by the registry."""
     digests: Mapping[str, str] = MappingProxyType({})
-    """Likewise."""
+    """SHA-256 of its files, as `ControllerSpec.digests`; set by the registry."""
     written_in: str = ''
-    """Likewise."""
+    """Place of its code, as `ControllerSpec.written_in`; set by the registry."""
     method_names: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """What its author calls the methods, where that is not Python: errors name these."""
+    """Names of its functions in another language, by the methods' names, for errors."""
     preview_steps: int = 0
-    """How many steps beyond the present one the controller wants the reference for."""
+    """Number P of steps beyond the present one for which it receives the reference."""
     commands_engine: bool = False
     """Whether it has a second input, C_m; it then receives the driver's demand for it."""
 
     def __init__(self, context: 'ControllerContext | None' = None) -> None:
-        """Take nothing of the context: a controller with options or state overrides this."""
+        """Ignore the context: a controller with options or state overrides this."""
         super().__init__()
 
     @abstractmethod
@@ -147,7 +151,7 @@ class Controller(ABC):
 
     def hold(self, measurement: Measurement) -> None:
         """
-        Pass a period in which feedback is held off and only the open-loop torque acts.
+        Pass a period in which feedback is off and only the open-loop torque acts.
 
         So it is before control starts, and while the closing stage keeps a locked clutch closed.
 
@@ -159,8 +163,8 @@ class Controller(ABC):
         """
         Return the feedback as a sampled system from slip error in rpm to torque in N m.
 
-        One input, one output, period 10 ms, with the present gains. None says that the controller
-        is not linear and has no frequency response.
+        One input, one output, period 10 ms, with the present gains. None for a controller that is
+        not linear and has no frequency response.
         """
         return None
 
@@ -170,9 +174,9 @@ class Controller(ABC):
 
     def info(self, name: str) -> dict[str, str]:
         """
-        Say for `run_info` what it is called, and from which files exactly it was made.
+        Return its pairs for `run_info`: name, whether it commands the engine, source and gains.
 
-        Also whether it commands the engine, and its exact gains.
+        The exact gains follow, and the digests of the files that it is made of.
         """
         gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
         two_input = str(self.commands_engine).lower()
@@ -191,15 +195,15 @@ class Controller(ABC):
 
 @dataclass(frozen=True)
 class ControllerContext:
-    """What a controller's factory is built from."""
+    """Arguments of a controller's factory."""
 
     settings: RunSettings
     gains: Mapping[str, Any]
     """
-    The scenario's section `controllers.<name>`.
+    Options from the scenario's section `controllers.<name>`, by name.
 
     A controller gets every one of the `options` that it declares, checked, the default where the
-    scenario gives none. What it does not declare is refused.
+    scenario gives none. Others are refused.
     """
 
 
@@ -208,28 +212,30 @@ Made = TypeVar('Made', bound=Controller, covariant=True)
 
 @dataclass(frozen=True)
 class ControllerSpec(Generic[Made]):
-    """A controller by name: how it is made, and the options that `controllers.<name>` may hold."""
+    """A controller by name: its factory, and the options of its section `controllers.<name>`."""
 
     name: str
     make: Callable[[ControllerContext], Made]
     options: Options | None = None
-    """None for a third party's controller that declares none."""
+    """Declared options by name; None for a third party's controller that declares none."""
     computed_from: str = SCENARIO
     """
-    SCENARIO for one computed from the scenario's driveline; THESIS for one that stays what it is
-    whatever the driveline: printed, or tuned to the thesis's rows. UNSTATED for others.
+    Source of its parameters: SCENARIO, THESIS or UNSTATED.
+
+    SCENARIO for one computed from the scenario's driveline; THESIS for one that is the same for
+    every driveline: printed, or tuned to the thesis's rows. UNSTATED for others.
     """
     digests: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of the files that it is made of, by their key on `run_info`."""
     written_in: str = ''
-    """Where its author changes it, of one that is no Python: errors name that, not our code."""
+    """File and key where its author edits it, if it is not Python, for error messages; else ''."""
 
     def __call__(self, context: ControllerContext) -> Made:
         """Make the controller; raise ParameterError for an option that it does not take."""
         return self.make(ControllerContext(context.settings, self.values(context.gains)))
 
     def values(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return every option's value, what is given or the default, checked."""
+        """Return every option's value, from the scenario or the default, checked."""
         options = self.options or {}
         section = f'controllers.{self.name}'
         if given and not options:
@@ -257,6 +263,6 @@ class ControllerSpec(Generic[Made]):
 
 
 def _declaration(given: Mapping[str, Any]) -> str:
-    """Return how a class declares what it was given."""
+    """Return the line with which a class declares the first of the options `given`."""
     name, value = next(iter(given.items()))
     return f"in its class: options = {{{name!r}: Option({value!r}, 'what it is', 'its unit')}}"

@@ -20,9 +20,13 @@ from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 HOLD, BILINEAR = 'hold', 'bilinear'
-"""Zero-order hold as the thesis's `c2d`, or z = (1 + s T/2) / (1 - s T/2), both at 10 ms."""
-Given = FactoredTransferFunction | StateSpace
-"""A linear system as its author wrote it."""
+"""
+Discretisations at 10 ms: zero-order hold as the thesis's `c2d`, or the bilinear rule.
+
+The latter is z = (1 + s T/2) / (1 - s T/2).
+"""
+LinearSystem = FactoredTransferFunction | StateSpace
+"""A linear system in the form in which its author wrote it."""
 PI_OPTIONS = {
     'proportional_gain': Option(
         REQUIRED, 'K_p: torque per slip error', 'N m/rpm', at_least=0.0, at_most=1e3, live=True
@@ -38,9 +42,9 @@ PI_OPTIONS = {
 }
 
 
-def sampled(controller: Given, discretisation: str | None = None) -> StateSpace:
+def sampled(controller: LinearSystem, discretisation: str | None = None) -> StateSpace:
     """
-    Return G_c(z) at 10 ms of a continuous G_c(s); one that is sampled so is returned as it is.
+    Return G_c(z) at 10 ms of a continuous G_c(s), or a system that is sampled so unchanged.
 
     HOLD, the default for a transfer function, gives the printed G_c(z) (Sections 2.2, 3.2).
     BILINEAR keeps the phase of a design that had hold and delay in its plant. Raise ParameterError
@@ -75,7 +79,7 @@ def sampled(controller: Given, discretisation: str | None = None) -> StateSpace:
         ) from error
 
 
-def in_z(form: Given) -> StateSpace:
+def in_z(form: LinearSystem) -> StateSpace:
     """Return G_c(z) at 10 ms of a form whose variable is z already."""
     if isinstance(form, FactoredTransferFunction):
         form = form.to_state_space()
@@ -108,8 +112,8 @@ class DiscreteFilter:
 class LinearController(Controller):
     """u = G_c e with e in rpm and u in N m, sampled at 10 ms."""
 
-    def __init__(self, controller: Given, discretisation: str | None = None) -> None:
-        """Discretise G_c(s), or take G_c(z); raise ParameterError as `sampled` does."""
+    def __init__(self, controller: LinearSystem, discretisation: str | None = None) -> None:
+        """Discretise G_c(s), or use G_c(z); raise ParameterError as `sampled` does."""
         self._model = sampled(controller, discretisation)
         self._filter = DiscreteFilter(self._model)
         self.given, self.discretisation = controller, discretisation
@@ -129,11 +133,11 @@ class LinearController(Controller):
 
 def linear_spec(
     name: str,
-    controller: Given,
+    controller: LinearSystem,
     discretisation: str | None = None,
     computed_from: str = UNSTATED,
 ) -> ControllerSpec[Controller]:
-    """Return how the linear controller called `name`, which takes no options, is made."""
+    """Return the specification of a linear controller called `name`, without options."""
     return ControllerSpec(
         name, lambda context: LinearController(controller, discretisation), {}, computed_from
     )
@@ -155,11 +159,11 @@ class PiController(Controller):
         self._integral_rpm_s = 0.0
 
     def reset(self) -> None:
-        """Empty the integral."""
+        """Set the integral to zero."""
         self._integral_rpm_s = 0.0
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the torque of this period; the integral takes the error in afterwards."""
+        """Return the torque of this period; the error is added to the integral afterwards."""
         error_rpm = measurement.slip_error_rpm
         torque = -(
             self._gains['proportional_gain'] * error_rpm

@@ -1,10 +1,10 @@
-"""Controllers out of linear systems of other libraries: scipy.signal and python-control."""
+"""Controllers from linear systems of other libraries: scipy.signal and python-control."""
 
 from typing import Any
 
 import numpy as np
 
-from ddct_controllers.linear import HOLD, Given, LinearController, in_z
+from ddct_controllers.linear import HOLD, LinearController, LinearSystem, in_z
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -14,8 +14,8 @@ def controller_from(lti: Any, discretisation: str | None = None) -> LinearContro
     """
     Return G_c, from slip error in rpm to torque in N m, as a controller.
 
-    `lti` is what `linear_system` takes. A continuous one is discretised at 10 ms by 'hold', the
-    default, or 'bilinear'. Raise ParameterError for what cannot run.
+    `lti` is a system that `linear_system` accepts. A continuous one is discretised at 10 ms by
+    'hold', the default, or 'bilinear'. Raise ParameterError for a system that cannot run.
     """
     given = linear_system(lti)
     if given is None:
@@ -28,9 +28,9 @@ def controller_from(lti: Any, discretisation: str | None = None) -> LinearContro
     return LinearController(given, discretisation or HOLD)
 
 
-def linear_system(lti: Any) -> Given | None:
+def linear_system(lti: Any) -> LinearSystem | None:
     """
-    Return a system in our form, continuous or sampled at 10 ms; None for what is none.
+    Return a system in our form, continuous or sampled at 10 ms; None for any other object.
 
     It is a TransferFunction, ZerosPolesGain or StateSpace of scipy.signal, a TransferFunction or
     StateSpace of python-control, or in our form already. Raise ParameterError for one that is
@@ -60,7 +60,7 @@ def linear_system(lti: Any) -> Given | None:
     return in_z(form)
 
 
-def _form(lti: Any) -> Given | None:
+def _form(lti: Any) -> LinearSystem | None:
     """Return the system without its period."""
     if all(hasattr(lti, name) for name in 'ABCD'):
         return StateSpace(lti.A, lti.B, lti.C, lti.D)

@@ -1,4 +1,4 @@
-"""Check of what a controller is told, before it keeps any of it."""
+"""Check of a measurement before a controller stores any of it."""
 
 import math
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import DdctError
 
 MOST = 1e9
-"""Largest size of a number, in its SI unit; far beyond any vehicle."""
+"""Largest size of a signal, in its SI unit; far beyond any vehicle."""
 _UNITS = {
     'engine_speed': 'rad/s',
     'shaft_speed': 'rad/s',
@@ -22,7 +22,7 @@ _UNITS = {
 
 def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
     """
-    Return w_m, w_p, w_r in rad/s.
+    Return w_m, w_p, w_r in rad/s after a check of the whole measurement.
 
     Raise DdctError that names the first number that is not finite or larger than MOST, among them,
     the torques and the references.
@@ -44,9 +44,9 @@ def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
 
 def _require_each(measurement: Measurement) -> None:
     for name, unit in _UNITS.items():
-        told = getattr(measurement, name)
-        listed = isinstance(told, Iterable)
-        for ahead, value in enumerate(told if listed else (told,)):
+        values = getattr(measurement, name)
+        listed = isinstance(values, Iterable)
+        for ahead, value in enumerate(values if listed else (values,)):
             if not abs(value) <= MOST:
                 what = f'{name}[{ahead}]' if listed else name
                 raise DdctError(

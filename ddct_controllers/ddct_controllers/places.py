@@ -1,4 +1,4 @@
-"""Where the author of a controller finds the cause of an error: in code or files of their own."""
+"""Place of an error's cause for the author of a controller: in code or files of their own."""
 
 import inspect
 import traceback
@@ -20,8 +20,8 @@ def place_of_method(controller: Controller, name: str) -> str:
     """
     Return `FILE line N` where a method of a controller begins.
 
-    Of one that is no Python of its author: where it comes from, such as a key of a YAML file, and
-    what the method is called there.
+    For one that is not in Python: its source, such as a key of a YAML file, and the method's name
+    there.
     """
     if place := controller.written_in:
         own_name = controller.method_names.get(name)
@@ -34,7 +34,7 @@ def place_of_method(controller: Controller, name: str) -> str:
 
 
 def place_of_failure(controller: Controller, error: BaseException) -> str:
-    """Return where an update raised `error`: in code of the controller's author."""
+    """Return the place at which an update raised `error`, in its author's code."""
     package = type(controller).__module__.partition('.')[0]
     line = '' if controller.written_in else place_of_error(error, package)
     return line or place_of_method(controller, 'update')

@@ -24,7 +24,7 @@ LOOP_SHAPING_CONTROLLERS = {
     'ls8': _from_g_c2(-0.014468),
     'ls9': _from_g_c2(-0.018086),
 }
-"""Section 2.3, by registry name."""
+"""Transfer functions of Section 2.3 by registry name."""
 
 H_INFINITY_CONTROLLERS = {
     'hinf1': FactoredTransferFunction(
@@ -58,7 +58,7 @@ H_INFINITY_CONTROLLERS = {
         ),
     ),
 }
-"""Section 3.3, by registry name."""
+"""Transfer functions of Section 3.3 by registry name."""
 
 PRINTED_CONTROLLERS = {**LOOP_SHAPING_CONTROLLERS, **H_INFINITY_CONTROLLERS}
-"""Every printed controller by registry name."""
+"""Transfer functions of all printed controllers by registry name."""

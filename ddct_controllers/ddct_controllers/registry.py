@@ -1,4 +1,4 @@
-"""Controllers by name: our own, those that other packages add, and those in a file."""
+"""Controllers by name: our own, those of other packages, and those in a file."""
 
 import importlib.metadata
 from collections.abc import Callable, Iterable, Mapping
@@ -24,11 +24,15 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 ENTRY_POINT_GROUP = 'ddct.controllers'
-"""Third parties add `name = module:factory` here; the factory takes a ControllerContext."""
+"""
+Entry point group of third parties' controllers, `name = module:factory`.
+
+The factory takes a ControllerContext.
+"""
 
 
 Chosen = str | ControllerSpec[Controller]
-"""A controller by its name or file, or how one is made that has neither."""
+"""Choice of a controller: its name or file, or the specification of one without either."""
 
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
@@ -45,7 +49,7 @@ _OWN: Mapping[str, ControllerSpec[Controller]] = {
     **PREDICTIVE,
     **STATE_OF_ART,
 }
-"""The controllers that come with this package, by their names."""
+"""Specifications of the controllers in this package, by name."""
 
 
 def own_controller_names() -> list[str]:
@@ -54,17 +58,17 @@ def own_controller_names() -> list[str]:
 
 
 def controller_names() -> list[str]:
-    """Return every name that `make_controller` takes besides files, our own first."""
+    """Return every name that `make_controller` accepts besides files, our own first."""
     own = own_controller_names()
     return own + sorted(point.name for point in _entry_points() if point.name not in own)
 
 
 def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None:
     """
-    Raise ParameterError if a scenario has options for a controller that is nowhere.
+    Raise ParameterError if a scenario has options for a controller that does not exist.
 
-    Or if one of ours does not take them, though it may not run. Those of others are checked when
-    they are asked for.
+    Or if one of ours does not have them, though it may not run. Those of others are checked when
+    their controller is requested.
     """
     if not scenario.controllers:
         return
@@ -80,12 +84,12 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
             _OWN[name].values(given)
 
 
-def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> list[str]:
+def working_controllers(settings: RunSettings, report: Callable[[str], None]) -> list[str]:
     """
     Return the names of `controller_names` whose controllers can be built for a run.
 
-    `tell` gets a line about each of a third party that cannot. One that the scenario has options
-    for is asked for: it stays, and making it raises.
+    `report` gets a line about each of a third party that cannot. A controller with options in the
+    scenario counts as requested: it stays, and making it raises.
     """
     trusted = {*own_controller_names(), *settings.scenario.controllers}
     names = []
@@ -95,7 +99,7 @@ def working_controllers(settings: RunSettings, tell: Callable[[str], None]) -> l
                 make_controller(name, settings)
             names.append(name)
         except DdctError as error:
-            tell(f'{error}; left out')
+            report(f'{error}; left out')
     return names
 
 
@@ -106,7 +110,7 @@ def make_controller(
     Build a controller for a run.
 
     `changes` go before the scenario's section `controllers.<name>`. Raise ParameterError for an
-    unknown name or an option that the controller does not take, and DdctError when a file cannot
+    unknown name or an option that the controller does not have, and DdctError when a file cannot
     be read or a third party's factory fails.
     """
     spec = controller_spec(chosen)
@@ -120,7 +124,7 @@ def make_controller(
 
 
 def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
-    """Return how a controller is made and its options; raise the errors of `make_controller`."""
+    """Return a controller's specification; raise the errors of `make_controller`."""
     if isinstance(chosen, ControllerSpec):
         return chosen
     if is_controller_file(chosen):
@@ -135,7 +139,7 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
 
 
 def controller_label(chosen: Chosen) -> str:
-    """Return what a controller is called in bags and tables: a file gives its own name."""
+    """Return the name of a controller in bags and tables; a file contains its name."""
     if isinstance(chosen, str) and not is_controller_file(chosen):
         return chosen
     return controller_spec(chosen).name

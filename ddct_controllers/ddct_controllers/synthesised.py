@@ -1,4 +1,4 @@
-"""Our own H-infinity controllers, synthesised when they are asked for."""
+"""Our own H-infinity controllers, synthesised when they are requested."""
 
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from ddct_controllers.design.h_infinity.design import HinfDesign
 
 SYNTHESISED = {'hinf_thesis': 'thesis', 'hinf_fitted': 'fitted', 'hinf_sampled': 'sampled'}
-"""Recipe of the weights by registry name; all for 8 % overshoot and 0.3 s of Section 3.2."""
+"""Recipes of the weights by registry name, for 8 % overshoot and 0.3 s of Section 3.2."""
 IDENTIFIED = DrivelineParameters()
 
 
 def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -> 'HinfDesign':
     """
-    Return the design behind a registry name for a driveline; the same numbers in every process.
+    Return the design of a registry name for a driveline; equal in every process.
 
     Raise DdctError where the driveline has no such controller.
     """

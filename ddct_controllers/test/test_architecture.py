@@ -1,4 +1,4 @@
-"""Each architecture adds its open loop, and starts feedback, where the thesis has it."""
+"""Each architecture adds its open loop, and starts feedback, as in the thesis."""
 
 import inspect
 import math
@@ -73,7 +73,7 @@ def test_the_others_have_feedback_from_the_first_step(name):
     assert dict(request.status)['closed_loop_torque_n_m'] == '7.0'
 
 
-def test_both_parts_add_up_and_the_status_says_so():
+def test_both_parts_add_up_and_are_in_the_status():
     request = make_architecture(SETTINGS, Recording()).update(ON)
     status = dict(request.status)
     assert request.torque == static_torque() + 7.0
@@ -98,7 +98,7 @@ def test_base_is_feedback_alone():
 
 
 @pytest.mark.parametrize('name', FEEDFORWARD)
-def test_feedforward_adds_what_the_filter_makes_of_both_torques(name):
+def test_feedforward_adds_the_filters_torque_for_both_inputs(name):
     architecture = make_architecture(replace(SETTINGS, architecture=name), Recording())
     filter_ = Feedforward(SETTINGS.scenario.driveline)
     for step in range(3):
@@ -116,7 +116,7 @@ def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():
     assert held[-1] == pytest.approx(static_torque(), rel=1e-4)
 
 
-def test_while_feedback_is_held_off_the_engine_follows_the_driver():
+def test_while_feedback_is_off_the_engine_follows_the_driver():
     controller = Recording()
     assert make_architecture(SETTINGS, controller).update(BEFORE).engine_torque is None
     controller.commands_engine = True

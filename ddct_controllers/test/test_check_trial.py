@@ -1,4 +1,4 @@
-"""What a trial of check-controller gives a controller, what it times, and what it scales."""
+"""Trials of check-controller: their measurements, times and scaled torques."""
 
 from typing import Any
 
@@ -7,8 +7,8 @@ import pytest
 
 from ddct_controllers.check.loops import update_time
 from ddct_controllers.check.subject import CheckFailedError, Subject
-from ddct_controllers.check.trial import Heard, closed_trial
-from ddct_controllers.check.watch import Printed
+from ddct_controllers.check.trial import ClosedLoopLog, closed_trial
+from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
@@ -26,15 +26,15 @@ def test_trials_leave_the_sensors_of_a_scenario_out():
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 QUICK_S, LATE_S = 0.001, 0.02
-"""Within the period of 10 ms and beyond it."""
+"""Update times in s, within the period of 10 ms and beyond it."""
 
 
 def timed(late: int, monkeypatch: pytest.MonkeyPatch) -> Subject:
-    """Return the subject of trials with 100 updates, of which so many are late."""
-    subject = Subject('pi', SETTINGS, Printed())
-    heard = Heard(update_s=[LATE_S] * late + [QUICK_S] * (100 - late))
-    monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: heard)
-    subject.closed = heard
+    """Return the subject of trials with 100 updates, `late` of which are late."""
+    subject = Subject('pi', SETTINGS, OutputMonitor())
+    log = ClosedLoopLog(update_s=[LATE_S] * late + [QUICK_S] * (100 - late))
+    monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: log)
+    subject.closed_loop = log
     return subject
 
 
@@ -54,8 +54,8 @@ def test_more_late_updates_fail_however_quick_the_quickest_are(
         update_time(timed(late, monkeypatch))
 
 
-class Asking(Controller):
-    """Asks for 10 N m of the clutch, and 5 N m of the engine beyond what the driver demands."""
+class ConstantRequest(Controller):
+    """A controller that adds 10 N m of the clutch and 5 N m of the engine to the demand."""
 
     commands_engine = True
 
@@ -68,23 +68,23 @@ class Asking(Controller):
 
 def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_demand() -> None:
     """So a scale of 9.55 is that of a unit, and not an engine of 9.55 times the torque."""
-    controller: Any = Asking()
-    heard = closed_trial(SETTINGS, controller, scale=3.0)
+    controller: Any = ConstantRequest()
+    log = closed_trial(SETTINGS, controller, scale=3.0)
     start = SETTINGS.scenario.control_start_step
-    _, measured = heard.measured[start]
+    _, measured = log.measurements[start]
     assert measured.engine_torque > 100.0
     command = controller.update(measured)
     assert command.clutch_torque == pytest.approx(30.0)
     assert command.engine_torque == pytest.approx(measured.engine_torque + 15.0)
-    plain: Any = Asking()
+    plain: Any = ConstantRequest()
     closed_trial(SETTINGS, plain)
     assert plain.update(measured).engine_torque == measured.engine_torque + 5.0
 
 
-def test_a_scaled_trial_of_a_controller_that_asks_nothing_is_the_driver_s_own() -> None:
+def test_a_scaled_trial_without_a_request_has_the_drivers_demand() -> None:
     """The plant gets the driver's demand, whatever the scale."""
 
-    class Idle(Asking):
+    class Idle(ConstantRequest):
         def update(self, measurement: Any) -> Command:
             return Command(0.0, engine_torque=measurement.engine_torque)
 

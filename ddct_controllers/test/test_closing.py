@@ -1,4 +1,4 @@
-"""The closing stage: when a clutch counts as locked, what it is asked then, what opens it."""
+"""The closing stage: when a clutch counts as locked, its request then, and when it opens."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ SETTINGS = RunSettings(load_scenario('thesis', ['closing={}']), clutch='stick_sl
 START = SETTINGS.scenario.control_start_step
 P = ClosingParameters()
 DWELL = 10
-"""Periods of the default dwell time."""
+"""Number of periods of the default dwell time."""
 ALIKE = Measurement(
     step=START,
     engine_speed=180.0,
@@ -33,18 +33,18 @@ APART = replace(ALIKE, engine_speed=180.0 + 1.01 * P.slip_band_rad_s)
 STATIC = StaticTorque(SETTINGS.scenario.driveline, SETTINGS.scenario.equilibrium)
 
 
-class Asking(Controller):
+class ConstantCommand(Controller):
     def __init__(self, torque=0.0, deviation=None):
         self.torque, self.deviation = torque, deviation
         self.commands_engine = deviation is not None
-        self.held = []
-        """What the architecture was said to add, in N m, in each period it was held."""
+        self.open_loop_torques = []
+        """Torque in N m that the architecture adds, in each period without feedback."""
 
     def reset(self):
         pass
 
     def hold(self, measurement):
-        self.held.append(measurement.open_loop_torque)
+        self.open_loop_torques.append(measurement.open_loop_torque)
 
     def update(self, measurement):
         engine = None if self.deviation is None else measurement.engine_torque + self.deviation
@@ -61,7 +61,7 @@ def carried(measurement):
 
 def answers(measurements, controller=None, settings=SETTINGS):
     """Return the requests of successive periods from control start on."""
-    architecture = make_architecture(settings, controller or Asking())
+    architecture = make_architecture(settings, controller or ConstantCommand())
     steps = enumerate(measurements, START)
     return [architecture.update(replace(each, step=step)) for step, each in steps]
 
@@ -99,14 +99,14 @@ def test_noise_of_encoders_neither_keeps_it_open_nor_opens_it():
 
 
 def test_it_waits_for_control_to_start():
-    architecture = make_architecture(SETTINGS, Asking())
+    architecture = make_architecture(SETTINGS, ConstantCommand())
     before = [architecture.update(replace(ALIKE, step=step)) for step in range(START)]
     assert set(states(before)) == {'open'}
 
 
 @pytest.mark.parametrize('own', [30.0, -30.0])
 def test_the_request_leaves_without_a_jump_and_rises_along_the_ramp(own):
-    controller = Asking(own)
+    controller = ConstantCommand(own)
     found = torques(answers([ALIKE] * 60, controller))
     level = carried(ALIKE)
     per_period = P.ramp_n_m_s * 0.01
@@ -114,7 +114,7 @@ def test_the_request_leaves_without_a_jump_and_rises_along_the_ramp(own):
     assert np.diff(found)[DWELL - 1] == pytest.approx(per_period)
     assert (np.abs(np.diff(found)) <= per_period + 1e-9).all()
     assert found[-1] == pytest.approx(P.margin * level + P.reserve_n_m)
-    assert controller.held == pytest.approx(found[DWELL:]), 'it is told all that is asked'
+    assert controller.open_loop_torques == pytest.approx(found[DWELL:]), 'whole request'
 
 
 def test_the_margin_follows_the_engine_torque_at_once():
@@ -125,7 +125,7 @@ def test_the_margin_follows_the_engine_torque_at_once():
     assert found[-1] == pytest.approx(P.margin * carried(rising[-1]) + P.reserve_n_m)
 
 
-def test_an_engine_that_is_dragged_is_held_too():
+def test_the_clutch_stays_locked_with_a_dragged_engine_too():
     dragged = replace(ALIKE, engine_torque=-60.0)
     assert carried(dragged) < 0.0
     found = answers([dragged] * 60)[-1].torque
@@ -133,7 +133,7 @@ def test_an_engine_that_is_dragged_is_held_too():
 
 
 @pytest.mark.parametrize('engine_torque', [400.0, 900.0])
-def test_it_asks_for_no_more_than_the_clutch_has_unless_c_fol_does(engine_torque):
+def test_it_requests_no_more_than_the_clutch_has_unless_c_fol_does(engine_torque):
     loaded = replace(ALIKE, engine_torque=engine_torque)
     level = carried(loaded)
     found = answers([ALIKE] * 30 + [loaded] * 90)[-1].torque
@@ -141,32 +141,32 @@ def test_it_asks_for_no_more_than_the_clutch_has_unless_c_fol_does(engine_torque
 
 
 @pytest.mark.parametrize('engine_torque', [400.0, 900.0])
-def test_it_stays_closed_where_c_fol_is_more_than_the_stage_may_ask(engine_torque):
-    """What feedback may not lock a clutch with, the engine may well ask of a locked one."""
+def test_it_stays_closed_where_c_fol_is_more_than_the_stage_may_request(engine_torque):
+    """Feedback may not lock a clutch with as much, but the engine may need it of a locked one."""
     loaded = replace(ALIKE, engine_torque=engine_torque)
-    controller = Asking(-40.0)
+    controller = ConstantCommand(-40.0)
     found = answers([ALIKE] * 30 + [loaded] * 90, controller)
     assert (found[-1].torque > P.most_n_m) == (engine_torque == 900.0)
     assert set(states(found)[DWELL:]) <= {'closing', 'closed'}
     assert {dict(each.status)['feedback'] for each in found[DWELL:]} == {'held off'}
-    assert len(controller.held) == 120 - DWELL
+    assert len(controller.open_loop_torques) == 120 - DWELL
 
 
-def test_it_never_falls_below_what_feedback_had_locked_a_worn_clutch_with():
+def test_it_never_falls_below_the_torque_with_which_feedback_had_locked_a_worn_clutch():
     own = 1.0 * carried(ALIKE)
     assert own > (P.margin - 1.0) * carried(ALIKE) + P.reserve_n_m
-    assert torques(answers([ALIKE] * 60, Asking(own))) == pytest.approx(2.0 * own)
+    assert torques(answers([ALIKE] * 60, ConstantCommand(own))) == pytest.approx(2.0 * own)
 
 
-def test_feedback_that_asks_for_more_than_the_stage_may_stays_on():
-    controller = Asking(P.most_n_m)
+def test_feedback_that_requests_more_than_the_stage_may_stays_on():
+    controller = ConstantCommand(P.most_n_m)
     assert set(states(answers([ALIKE] * 60, controller))) == {'open'}
-    assert controller.held == []
+    assert controller.open_loop_torques == []
 
 
-def test_slip_opens_it_and_what_it_added_fades_while_feedback_acts():
+def test_slip_opens_it_and_its_torque_fades_while_feedback_acts():
     own = -5.0
-    controller = Asking(own)
+    controller = ConstantCommand(own)
     found = answers([*[ALIKE] * 60, *[APART] * 60], controller)
     assert states(found)[59:61] == ['closed', 'opening']
     assert states(found)[-1] == 'open'
@@ -176,28 +176,28 @@ def test_slip_opens_it_and_what_it_added_fades_while_feedback_acts():
     assert opening[0] - closed[-1] == pytest.approx(own - per_period, abs=0.1)
     assert np.diff(opening).min() == pytest.approx(-per_period)
     assert opening[-1] == pytest.approx(carried(APART) + own)
-    assert len(controller.held) == 60 - DWELL
+    assert len(controller.open_loop_torques) == 60 - DWELL
 
 
 @pytest.mark.parametrize('name', ARCHITECTURES)
 def test_the_closed_request_is_the_same_in_every_architecture(name):
     settings = replace(SETTINGS, architecture=name)
-    found = answers([ALIKE] * 200, Asking(carried(ALIKE)), settings)[-1]
-    told = dict(found.status)
-    assert told['closing'] == 'closed'
-    assert float(told['open_loop_torque_n_m']) == found.torque
+    found = answers([ALIKE] * 200, ConstantCommand(carried(ALIKE)), settings)[-1]
+    status = dict(found.status)
+    assert status['closing'] == 'closed'
+    assert float(status['open_loop_torque_n_m']) == found.torque
     assert found.torque >= P.margin * carried(ALIKE) + P.reserve_n_m - 1e-9
 
 
 def test_the_engine_is_handed_back_to_the_driver_without_a_step():
-    found = answers([ALIKE] * 60, Asking(0.0, deviation=-60.0))
+    found = answers([ALIKE] * 60, ConstantCommand(0.0, deviation=-60.0))
     engine = np.array([request.engine_torque for request in found])
     assert engine[:DWELL] == pytest.approx(40.0)
     assert np.diff(engine)[DWELL - 1 : DWELL + 29] == pytest.approx(2.0)
     assert engine[DWELL + 29 :] == pytest.approx(100.0)
 
 
-def test_without_the_section_nothing_is_added_and_nothing_said():
+def test_without_the_section_no_torque_and_no_status_is_added():
     plain = replace(SETTINGS, scenario=load_scenario('thesis'))
     found = answers([ALIKE] * 60, settings=plain)
     assert {request.torque for request in found} == {carried(ALIKE)}

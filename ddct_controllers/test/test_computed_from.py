@@ -1,4 +1,4 @@
-"""Every controller says if it is computed from the scenario's driveline, and it is true."""
+"""Every controller declares whether it is computed from the scenario's driveline, correctly."""
 
 import pytest
 
@@ -16,7 +16,7 @@ LINEAR = [
 
 
 @pytest.mark.parametrize('name', LINEAR)
-def test_a_linear_controller_changes_with_the_driveline_or_stays_as_it_says(name):
+def test_a_linear_controller_changes_with_the_driveline_unless_it_is_the_thesiss(name):
     models = [make_controller(name, run).linear_model() for run in (AS_IT_IS, CHANGED)]
     assert models[0] is not None
     assert models[1] is not None
@@ -26,13 +26,13 @@ def test_a_linear_controller_changes_with_the_driveline_or_stays_as_it_says(name
     assert controller_spec(name).computed_from == (THESIS if same else SCENARIO)
 
 
-def test_ours_all_say_it_and_only_what_the_thesis_prints_or_tunes_is_fixed():
-    said = {name: controller_spec(name).computed_from for name in controller_names()}
-    fixed = [name for name, source in said.items() if source == THESIS]
+def test_all_of_ours_declare_it_and_only_printed_or_tuned_ones_are_fixed():
+    sources = {name: controller_spec(name).computed_from for name in controller_names()}
+    fixed = [name for name, source in sources.items() if source == THESIS]
     assert fixed == ['pi', *(f'ls{i}' for i in range(1, 10)), 'hinf1', 'hinf2', 'hinf3']
-    assert {said[name] for name in ('mpc3', 'mpc4', 'mpc_wear', 'pedal_mpc')} == {SCENARIO}
+    assert {sources[name] for name in ('mpc3', 'mpc4', 'mpc_wear', 'pedal_mpc')} == {SCENARIO}
 
 
-def test_a_controller_says_it_in_its_run_info():
+def test_it_is_in_the_run_info_of_a_controller():
     assert make_controller('ls8', AS_IT_IS).info('ls8')['computed_from'] == THESIS
     assert make_controller('mpc3', AS_IT_IS).info('mpc3')['computed_from'] == SCENARIO

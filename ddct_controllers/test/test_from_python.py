@@ -45,13 +45,13 @@ def test_names_and_files_stay_what_they_are(tmp_path):
 @pytest.mark.parametrize(
     ('given', 'name'), [(Mine, 'Mine'), (make_mine, 'make_mine'), (Mine(), 'Mine')]
 )
-def test_a_class_a_factory_and_an_object_are_called_by_their_own_name_or_as_told(given, name):
+def test_a_class_a_factory_and_an_object_have_their_own_or_the_given_name(given, name):
     assert controller_label(chosen_from(given)) == name
-    chosen = chosen_from(given, 'told')
-    assert controller_label(chosen) == 'told'
+    chosen = chosen_from(given, 'given')
+    assert controller_label(chosen) == 'given'
     made = make_controller(chosen, SETTINGS)
     assert isinstance(made, Mine)
-    assert made.registered_name == 'told'
+    assert made.registered_name == 'given'
 
 
 def test_an_object_is_used_itself_and_reset_for_each_run():
@@ -65,7 +65,7 @@ def test_an_object_is_used_itself_and_reset_for_each_run():
 
 
 @pytest.mark.parametrize('library', ['scipy', 'control'])
-def test_a_continuous_system_is_held_as_the_printed_ones_are(library):
+def test_a_continuous_system_is_discretised_as_the_printed_ones(library):
     zeros, poles, gain = [-2.0], [0.0, -10.0], -3.0
     if library == 'scipy':
         system = scipy.signal.ZerosPolesGain(zeros, poles, gain)
@@ -108,7 +108,7 @@ def test_our_own_forms_are_taken():
         (control.tf([1, 2, 3], [1, 2]), 'steep', "controller 'steep': transfer function has 2 z"),
     ],
 )
-def test_what_is_no_controller_is_refused_by_name(given, name, text):
+def test_an_object_that_is_no_controller_is_refused_by_name(given, name, text):
     with pytest.raises(ParameterError, match=text):
         chosen_from(given, name)
 
@@ -122,7 +122,7 @@ def test_what_is_no_controller_is_refused_by_name(given, name, text):
         (control.ss([[0]], [[1, 1]], [[1]], [[0, 0]]), 'one input'),
     ],
 )
-def test_what_makes_no_controller_fails_when_it_is_made(given, text):
+def test_a_factory_of_no_controller_fails_when_it_is_called(given, text):
     with pytest.raises(DdctError, match=text):
         make_controller(chosen_from(given, 'mine'), SETTINGS)
 

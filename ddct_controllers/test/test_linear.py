@@ -32,7 +32,7 @@ def response(controller: LinearController, errors_rpm: list[float]) -> list[floa
 
 
 def test_it_equals_the_continuous_controller_at_the_samples_of_a_held_error():
-    """-2 (s + 3)/(s (s + 5)): its step response in closed form, within 1e-12."""
+    """-2 (s + 3)/(s (s + 5)) by its step response in closed form, within 1e-12."""
     controller = LinearController(FactoredTransferFunction(-2.0, (3.0,), (0.0, 5.0)))
     times = 0.01 * np.arange(100)
     expected = -2.0 * (3.0 / 5.0 * times + 2.0 / 25.0 * (1.0 - np.exp(-5.0 * times)))
@@ -40,7 +40,7 @@ def test_it_equals_the_continuous_controller_at_the_samples_of_a_held_error():
 
 
 def test_ls7_sampled_is_the_printed_z_form():
-    """G_c(z) of Section 2.2.2; its four-digit coefficients give the response within 1 %."""
+    """G_c(z) of Section 2.2.2, by its four-digit coefficients, agrees within 1 %."""
     ls8 = PRINTED_CONTROLLERS['ls8']
     ls7 = FactoredTransferFunction(-0.012057, ls8.numerator, ls8.denominator)
     numerator = -0.012057 * np.convolve([1.0, -0.9917], [1.0, -1.144, 0.3769])
@@ -65,7 +65,7 @@ def test_reset_forgets_the_past(name):
 
 
 def test_a_sampled_controller_is_taken_as_it_is():
-    """G_c(z) = 3 + 2/(z - 0.5): its first outputs by hand."""
+    """The first outputs of G_c(z) = 3 + 2/(z - 0.5) are computed by hand."""
     model = StateSpace(0.5 * ONE, ONE, 2.0 * ONE, 3.0 * ONE, 0.01)
     controller = LinearController(model)
     assert response(controller, [1.0, 0.0, 2.0]) == pytest.approx([3.0, 2.0, 7.0])

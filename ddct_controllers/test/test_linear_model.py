@@ -1,4 +1,4 @@
-"""The linear model that a controller gives of itself is what its updates compute."""
+"""The linear model of a controller gives the torques of its updates."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def test_the_printed_controllers_and_the_pi_are_linear():
 
 @pytest.mark.parametrize('name', LINEAR)
 def test_it_gives_the_torques_that_the_controller_gives(name):
-    """A random error; within 1e-9 of the largest torque."""
+    """They agree within 1e-9 of the largest torque for a random error."""
     controller = make_controller(name, SETTINGS)
     model = controller.linear_model()
     state, expected, found = np.zeros(len(model.a)), [], []
@@ -54,7 +54,7 @@ def test_that_of_the_pi_has_its_present_gains():
     assert controller.linear_model().d[0, 0] == -0.5
 
 
-def test_a_controller_that_says_nothing_is_not_linear():
+def test_a_controller_without_a_linear_model_is_not_linear():
     class Constant(Controller):
         def reset(self):
             pass

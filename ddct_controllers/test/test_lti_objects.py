@@ -62,7 +62,7 @@ def test_a_continuous_one_may_be_sampled_by_the_bilinear_rule():
         ([1.0], None, 'builtins.list is no linear system'),
     ],
 )
-def test_what_cannot_run_is_named(lti, discretisation, complaint):
+def test_a_system_that_cannot_run_is_named(lti, discretisation, complaint):
     with pytest.raises(ParameterError, match=complaint):
         controller_from(lti, discretisation)
 

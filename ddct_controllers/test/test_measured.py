@@ -1,4 +1,4 @@
-"""What a controller cannot go on with is refused by name, and leaves no trace."""
+"""A measurement that a controller cannot use is refused by name, and leaves no trace."""
 
 import math
 from dataclasses import replace
@@ -61,7 +61,7 @@ def test_the_period_ahead_is_named():
 
 
 def test_many_large_numbers_are_no_error():
-    """Together beyond the largest size, each by itself within."""
+    """Their sum is beyond the largest size, each by itself is within."""
     good = measurement(3, 4)
     for field in (*SCALARS, *REFERENCES):
         good = spoilt(good, field, MOST)

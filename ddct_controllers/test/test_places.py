@@ -45,7 +45,7 @@ def test_the_place_of_a_class_is_its_file_and_line() -> None:
 
 @pytest.fixture
 def in_yaml(tmp_path: Path) -> str:
-    """Return a file that asks for more torque than there are numbers."""
+    """Return a file of a controller that requests more torque than a float can be."""
     file = tmp_path / 'mine.yaml'
     head = 'name: mine\nunits: {input: rpm, output: N m}\n'
     file.write_text(f'{head}polynomial: {{num: [1.0e+308], den: [1.0]}}\n')
@@ -64,7 +64,7 @@ def test_the_place_of_a_linear_system_from_python_is_its_name() -> None:
     assert place_of_method(made, 'update') == "the linear system 'quick'"
 
 
-def test_a_run_places_what_an_update_does_wrong_there_too(in_yaml: str) -> None:
+def test_a_run_places_an_unusable_command_there_too(in_yaml: str) -> None:
     running = make_architecture(SETTINGS, make_controller(in_yaml, SETTINGS))
     with np.errstate(over='ignore'), pytest.raises(DdctError) as caught:
         running.update(NOW)
@@ -72,7 +72,7 @@ def test_a_run_places_what_an_update_does_wrong_there_too(in_yaml: str) -> None:
     assert 'its torque at step 100 is -inf' in str(caught.value)
 
 
-def test_a_run_places_what_an_update_raises_there_too(in_yaml: str) -> None:
+def test_a_run_places_an_error_of_an_update_there_too(in_yaml: str) -> None:
     controller: Any = make_controller(in_yaml, SETTINGS)
     controller._filter = None
     with pytest.raises(DdctError, match=re.escape(f'in {in_yaml} line 3 (polynomial)')):

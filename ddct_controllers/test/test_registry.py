@@ -1,4 +1,4 @@
-"""Controllers are found by name; what cannot be built says why."""
+"""Controllers are found by name; one that cannot be built raises an error with the reason."""
 
 import importlib.metadata
 from typing import Any, ClassVar
@@ -146,7 +146,7 @@ def test_a_declaration_of_the_wrong_type_names_the_controller(
         ('info', SystemExit(3), r'make_third failed \(SystemExit: 3\)'),
     ],
 )
-def test_what_a_controller_says_of_itself_is_checked_when_it_is_made(
+def test_declarations_of_a_controller_are_checked_when_it_is_made(
     add_entry_point, monkeypatch, method, answer, complaint
 ):
     def answers(*_):
@@ -168,7 +168,7 @@ def test_an_option_of_ours_is_checked_though_its_controller_does_not_run(add_ent
         require_known_controllers(typo, ['ls8'])
 
 
-def test_a_controller_knows_the_name_that_it_was_asked_for_by(add_entry_point):
+def test_a_controller_has_the_name_under_which_it_was_requested(add_entry_point):
     add_entry_point('third', f'{__name__}:make_third')
     assert make_controller('third', SETTINGS).registered_name == 'third'
     assert make_controller('ls8', SETTINGS).registered_name == 'ls8'
@@ -202,7 +202,9 @@ def test_a_bad_option_of_a_third_partys_controller_is_named(add_entry_point, cha
 
 
 @pytest.mark.parametrize('factory', ['make_third', 'Third'])
-def test_what_a_third_partys_controller_does_not_declare_is_refused(add_entry_point, factory):
+def test_an_option_that_a_third_partys_controller_does_not_declare_is_refused(
+    add_entry_point, factory
+):
     add_entry_point('third', f'{__name__}:{factory}')
     settings = RunSettings(load_scenario('thesis', ['controllers.third.gian=2.5']))
     with pytest.raises(ParameterError) as caught:

@@ -1,4 +1,4 @@
-"""How a slip reference runs from control start on, most of them to zero."""
+"""Descents of the slip reference from control start on, most of them to zero."""
 
 import math
 from abc import ABC, abstractmethod
@@ -7,11 +7,15 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.control import SlipProfile
 
 TANH_STEEPNESS = 3.0
-"""kappa of the tanh; its end slopes, kappa sech^2 kappa / tanh kappa, are 3 % of the mean."""
+"""
+Steepness kappa of the tanh, without unit.
+
+Its end slopes, kappa sech^2 kappa / tanh kappa, are 3 % of the mean.
+"""
 
 
 class Descent(ABC):
-    """A function of time; but for a given profile it starts at any value and ends at zero."""
+    """A function of time that starts at any value and ends at zero, or a given profile."""
 
     @abstractmethod
     def at(self, start: float, time_s: float) -> tuple[float, float]:
@@ -23,7 +27,7 @@ class Descent(ABC):
 
 
 class CrfRamp(Descent):
-    """CRF's: a constant slope to zero, from either side (Section 1.4.1, Figures 1.11, 1.12)."""
+    """CRF's ramp: constant slope to zero from either side (Section 1.4.1, Figures 1.11, 1.12)."""
 
     def __init__(self, slope: float) -> None:
         """Take the slope in rad/s^2, positive."""
@@ -55,9 +59,9 @@ def polynomial_shape(x: float) -> tuple[float, float]:
     """
     Return the cubic f(x) = (1 - x)^2 (1 + 2 x), without any slope at both ends, and f'(x).
 
-    It is not of the thesis, but the polynomial of least degree with f(0) = 1, f(1) = 0,
-    f'(0) = f'(1) = 0. The end without slope is the no-lurch condition of Glielmo and Vasca: with
-    dw_d/dt = 0 where w_d becomes 0 both plates accelerate alike when the clutch locks.
+    It is not in the thesis, but the polynomial of least degree with f(0) = 1, f(1) = 0, f'(0) =
+    f'(1) = 0. The end without slope is the no-lurch condition of Glielmo and Vasca: with dw_d/dt =
+    0 where w_d becomes 0 both plates accelerate alike when the clutch locks.
     """
     return (1.0 - x) ** 2 * (1.0 + 2.0 * x), -6.0 * x * (1.0 - x)
 
@@ -67,10 +71,10 @@ SHAPES = {'tanh': tanh_shape, 'polynomial': polynomial_shape}
 
 
 class TimedDescent(Descent):
-    """A descent of selectable end: it takes a given time whatever its start, start f(x)."""
+    """A descent start f(x) that takes a given time from any start."""
 
     def __init__(self, duration_s: float, shape: str) -> None:
-        """Take the time from control start to zero, x = t / duration, and one of SHAPES."""
+        """Take the time in s from control start to zero, x = t / duration, and one of SHAPES."""
         self._duration_s = duration_s
         self._shape = SHAPES[shape]
 
@@ -83,10 +87,10 @@ class TimedDescent(Descent):
 
 
 class ProfileDescent(Descent):
-    """The slip speed that the scenario gives over time, whatever it is at control start."""
+    """The scenario's profile of the slip speed over time, whatever the slip at control start."""
 
     def __init__(self, profile: SlipProfile, start_s: float) -> None:
-        """Take the profile, and the scenario time of control start."""
+        """Take the profile, and the scenario time of control start in s."""
         self._profile = profile
         self._start_s = start_s
 

@@ -1,4 +1,4 @@
-"""Slip-speed reference that holds the engine at a wanted speed until the shaft catches up."""
+"""Slip-speed reference that keeps the engine at a target speed until the shaft catches up."""
 
 import math
 from collections import deque
@@ -9,7 +9,7 @@ from ddct_reference.slip_reference import SlipReference
 
 SHAFT_RATE_STEPS = 10
 """
-Over how many periods the preview takes the shaft's acceleration.
+Number of periods over which the preview computes the shaft's mean acceleration.
 
 0.1 s is a third of a period of the driveline's 18 rad/s mode, and a tenth of the noise that one
 period would have.
@@ -18,12 +18,12 @@ period would have.
 
 class EngineSpeedTarget(SlipReference):
     """
-    s = w* - w_p with a wanted engine speed w* and the measured shaft speed w_p.
+    s = w* - w_p with a target engine speed w* and the measured shaft speed w_p.
 
     Until control starts the reference equals the slip speed w_d. There w* is the measured w_m;
     from there it goes to the scenario's engine speed, no faster than a given slope, so the
     reference starts without a jump. Once s reaches zero it stays there: the shaft has caught up.
-    The preview lets the shaft go on with its mean acceleration of the last 0.1 s.
+    The preview continues the shaft's speed with its mean acceleration of the last 0.1 s.
     """
 
     follows_shaft = True
@@ -35,7 +35,7 @@ class EngineSpeedTarget(SlipReference):
         control_start_step: int,
         preview_steps: int = 0,
     ) -> None:
-        """Take the wanted speed over time, the slope in rad/s^2, and the steps to look ahead."""
+        """Take the target speed over time, the slope in rad/s^2, and the number of steps ahead."""
         self._target = target
         self._slope = slope
         self._start_step = control_start_step

@@ -1,4 +1,4 @@
-"""The slip reference that a run's scenario and architecture ask for."""
+"""The slip reference of a run, from its scenario and architecture."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from ddct_reference.slip_reference import DescendingReference, SlipReference
 
 def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
     """
-    Build the reference of a run, which looks `preview_steps` periods ahead.
+    Build the reference of a run, with a preview of `preview_steps` periods.
 
     `detailed` follows the slip speed until control starts, and starts from the one measured then.
     The other architectures have a stored function of time, that of the nominal detailed run.
@@ -38,7 +38,7 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
 
 
 def make_descent(settings: RunSettings) -> Descent:
-    """Return how the reference of a run descends, which is not `engine_speed_target`."""
+    """Return the descent of a run's reference, which is not `engine_speed_target`."""
     reference = settings.scenario.reference
     if settings.reference_shape == 'ramp':
         return CrfRamp(reference.slope_rad_s2)

@@ -1,4 +1,4 @@
-"""Node `reference`: the slip speed that the controller shall follow, with its preview."""
+"""Node `reference`: the slip reference for the controller, with its preview."""
 
 import math
 from typing import Any, ClassVar
@@ -16,8 +16,8 @@ class ReferenceNode(FollowerNode):
     """
     Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead.
 
-    With the shape `engine_speed_target` it also takes `driveline/joint_states`. In a run with
-    sensors it takes theirs of both.
+    With the shape `engine_speed_target` it also subscribes to `driveline/joint_states`. In a run
+    with sensors it subscribes to their topics for both.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)

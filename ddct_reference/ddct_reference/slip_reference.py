@@ -9,7 +9,7 @@ from ddct_reference.descent import Descent
 
 
 class SlipReference(ABC):
-    """The slip speed that the controller shall follow, step by step, and what comes next."""
+    """Slip speed that the controller shall follow, step by step, with its preview."""
 
     follows_shaft = False
     """Whether `update` needs the shaft's speed."""
@@ -22,17 +22,17 @@ class SlipReference(ABC):
         Return the reference in rad/s and its rate in rad/s^2 at steps k, k + 1, ..., k + P.
 
         `slip_speed` is w_d in rad/s at step k, `shaft_speed` w_p, which only a reference that
-        `follows_shaft` looks at. The rate is that of the coming period.
+        `follows_shaft` uses. The rate is that of the coming period.
         """
 
 
 class DescendingReference(SlipReference):
     """
-    What stands before control start, then a `Descent` from there to zero.
+    The slip speed, or stored values, until control start, then a `Descent` to zero.
 
     Without stored values it is CRF's reference generator, that of the detailed architecture
     (Section 1.4.1). It equals w_d until control starts, and from then on does not depend on it any
-    more. Until then the preview assumes that the descent begins from the slip speed of now.
+    more. Until then the preview assumes that the descent begins from the present slip speed.
 
     With stored values it is a function of time (Section 1.6): the slip speed of the run does not
     change it, so its preview is exact everywhere.
@@ -45,13 +45,13 @@ class DescendingReference(SlipReference):
         preview_steps: int = 0,
         stored: Sequence[float] = (),
     ) -> None:
-        """Take the steps to look ahead; `stored` is in rad/s at steps 0, ..., control start."""
+        """Take the number of preview steps; `stored` is in rad/s at steps 0 to control start."""
         self._descent = descent
         self._start_step = control_start_step
         self._preview_steps = preview_steps
         self._stored = stored
         self._start_value = stored[-1] if stored else math.nan
-        """The value in rad/s at control start, as far as it is known."""
+        """Value in rad/s at control start, or the present one before it."""
 
     def update(
         self, step: int, slip_speed: float, shaft_speed: float = math.nan

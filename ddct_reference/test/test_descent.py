@@ -11,7 +11,7 @@ DESCENTS = {
     'tanh': TimedDescent(0.8, 'tanh'),
     'polynomial': TimedDescent(0.8, 'polynomial'),
 }
-"""Each takes 0.8 s from 40 rad/s."""
+"""Descents by name; each takes 0.8 s from 40 rad/s."""
 INSIDE = [0.8 * share for share in (0.01, 0.2, 0.5, 0.77, 0.99)]
 
 each = pytest.mark.parametrize('descent', DESCENTS.values(), ids=DESCENTS)

@@ -1,4 +1,4 @@
-"""The engine is held at a wanted speed until the shaft has caught up, and then slip is zero."""
+"""The engine keeps a target speed until the shaft has caught up, and then slip is zero."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from ddct_reference.factory import make_reference
 HOLD_150 = EngineSpeedReference(time_s=(0.0,), speed_rad_s=(150.0,))
 SLOPE = 100.0
 RATE = 50.0
-"""Of the shaft in a launch from rest, in rad/s^2."""
+"""Acceleration of the shaft in a launch from rest, in rad/s^2."""
 TARGET = [
     'reference.shape=engine_speed_target',
     'engine_speed_reference.time_s=[0.0]',
@@ -33,7 +33,7 @@ def test_it_starts_at_the_measured_slip_and_leads_the_engine_at_the_slope():
     assert np.diff(found) == pytest.approx(np.full(30, 0.01 * (SLOPE - RATE)))
 
 
-def test_it_then_holds_the_engine_until_the_shaft_has_caught_up_and_stays_zero():
+def test_it_then_keeps_the_engine_speed_until_the_shaft_has_caught_up_and_stays_zero():
     found = np.array([speeds[0] for speeds in launch(400)])
     shaft = 0.01 * RATE * np.arange(400)
     assert (found + shaft)[40:299] == pytest.approx(150.0)
@@ -62,14 +62,14 @@ def test_it_equals_the_slip_until_control_starts_and_without_slip_is_zero():
     assert [locked.update(k, 0.0, 60.0)[0][0] for k in range(3)] == [0.0] * 3
 
 
-def test_the_preview_is_what_comes_while_the_shaft_accelerates_steadily():
+def test_the_preview_is_the_later_reference_while_the_shaft_accelerates_steadily():
     ahead = launch(320, preview_steps=22)
     coming = [speeds[0] for speeds in launch(350)]
     for step in range(1, 320):
         assert ahead[step] == pytest.approx(coming[step : step + 23], abs=1e-9)
 
 
-def test_before_control_the_preview_starts_from_the_slip_of_now():
+def test_before_control_the_preview_starts_from_the_present_slip():
     reference = EngineSpeedTarget(HOLD_150, SLOPE, 2, preview_steps=4)
     speeds, rates = reference.update(0, 40.0, 60.0)
     assert speeds == pytest.approx([40.0, 40.0, 40.0, 41.0, 42.0])
@@ -94,6 +94,6 @@ def test_only_the_detailed_architecture_may_use_it(architecture):
         RunSettings(scenario, architecture)
 
 
-def test_it_needs_a_wanted_engine_speed():
+def test_it_needs_a_target_engine_speed():
     with pytest.raises(ParameterError, match=r'engine_speed_reference\.speed_rad_s'):
         RunSettings(load_scenario('thesis', TARGET[:1]))

@@ -45,7 +45,7 @@ def test_its_rate_is_that_of_the_ramp_and_zero_elsewhere():
     assert rates == [0.0, -100.0, -100.0, -100.0, 0.0, 0.0]
 
 
-def test_before_control_the_preview_ramps_down_from_the_slip_of_now():
+def test_before_control_the_preview_ramps_down_from_the_present_slip():
     speeds, rates = following(100.0, 2, preview_steps=4).update(0, 2.5)
     assert speeds == pytest.approx([2.5, 2.5, 2.5, 1.5, 0.5])
     assert rates == [0.0, 0.0, -100.0, -100.0, -100.0]
@@ -71,7 +71,7 @@ def test_the_rate_of_a_stored_reference_leads_from_each_value_to_the_next():
         if (architecture, shape) != ('feedforward_tanh', 'polynomial')
     ],
 )
-def test_the_preview_is_what_comes(architecture, shape):
+def test_the_preview_is_the_later_reference(architecture, shape):
     changes = [f'reference.shape={shape}', 'control_start_s=0.03', 'reference.reference_end_s=0.1']
     settings = RunSettings(load_scenario('thesis', changes), architecture)
     ahead = make_reference(settings, preview_steps=4)
@@ -90,10 +90,8 @@ def test_the_preview_is_what_comes(architecture, shape):
         *((shape, 'detailed') for shape in ('ramp', 'polynomial', 'engine_speed_target')),
     ],
 )
-def test_the_preview_has_the_length_that_was_asked_for_at_every_step(
-    shape, architecture, preview_steps
-):
-    """Now and so many steps ahead: before control starts, across its start, and after the end."""
+def test_the_preview_has_the_requested_length_at_every_step(shape, architecture, preview_steps):
+    """At steps before control start, across it, and after the end of the descent."""
     changes = [f'reference.shape={shape}', 'control_start_s=0.1', 'reference.reference_end_s=0.3']
     if shape == 'engine_speed_target':
         changes += [

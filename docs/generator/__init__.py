@@ -1,1 +1,1 @@
-"""What is generated in the pages: tables and diagrams; `make docs` writes it."""
+"""Tables and diagrams of the pages, which `make docs` writes."""

@@ -1,4 +1,4 @@
-"""The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 in our names."""
+"""The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 with our names."""
 
 from generator.diagrams import Place, Signal, box, branch, end, sum_at, svg
 
@@ -195,5 +195,5 @@ DIAGRAMS: dict[str, Diagram] = {
 
 
 def drawings() -> dict[str, str]:
-    """Return the SVG of each diagram by its file's name."""
+    """Return the SVG of each diagram by file name."""
     return {f'{name}.svg': svg(*diagram) for name, diagram in DIAGRAMS.items()}

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from html import escape
 
 _UNIT = 20
-"""Pixels of a step of the grid."""
+"""Step of the grid in pixels."""
 _HEIGHT = 2.4
 _RADIUS = 0.7
 _STYLE = """\
@@ -29,17 +29,17 @@ _STYLE = """\
 
 @dataclass(frozen=True)
 class Place:
-    """A block (with its text), a sum, or the end or branch of a signal, about its centre."""
+    """Block with its text, sum, or end or branch of a signal, by its centre."""
 
     x: float
     y: float
     text: str = ''
     kind: str = 'box'
-    """box, sum, dot (a branch) or end (nothing is drawn)."""
+    """Kind of the place: box, sum, dot (a branch) or end (nothing is drawn)."""
 
     @property
     def half(self) -> tuple[float, float]:
-        """Half its width and half its height."""
+        """Half of its width and half of its height."""
         if self.kind == 'box':
             return max(1.6, 0.165 * len(self.text) + 0.5), _HEIGHT / 2
         return (_RADIUS, _RADIUS) if self.kind == 'sum' else (0.0, 0.0)
@@ -47,14 +47,14 @@ class Place:
 
 @dataclass(frozen=True)
 class Signal:
-    """An arrow from one place to another, with at most one bend, its name and its sign there."""
+    """Arrow from one place to another, with at most one bend, with its name and sign."""
 
     source: str
     target: str
     name: str = ''
     sign: str = ''
     across_first: bool = True
-    """Whether the bend is beside the source, not above or below it."""
+    """Whether the arrow leaves its source horizontally, with the bend beside the source."""
 
 
 def box(x: float, y: float, text: str) -> Place:
@@ -68,7 +68,7 @@ def sum_at(x: float, y: float) -> Place:
 
 
 def branch(x: float, y: float) -> Place:
-    """Return the point where a signal parts."""
+    """Return the branch point of a signal."""
     return Place(x, y, kind='dot')
 
 
@@ -131,7 +131,7 @@ def _arrow(signal: Signal, source: Place, target: Place) -> str:
 
 
 def _edge(place: Place, towards: tuple[float, float]) -> tuple[float, float]:
-    """Return where a horizontal or vertical line from `place` leaves it."""
+    """Return the point where a horizontal or vertical line from `place` leaves it."""
     half_x, half_y = place.half
     across, along = towards[0] - place.x, towards[1] - place.y
     if across:

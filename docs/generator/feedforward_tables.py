@@ -1,4 +1,4 @@
-"""What the feedforward is designed by and what it leaves, in numbers."""
+"""Tables of the design of the feedforward and of its residuals."""
 
 import math
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ from ddct_plant.scenario.settings import RunSettings
 SCENARIO = load_scenario('thesis')
 DRIVELINE = SCENARIO.driveline
 NEARLY_EXACT = 1e-4
-"""A weight of torque rates that leaves nearly full compensation."""
+"""Weight of torque rates that leads to nearly full compensation."""
 CONTROLLERS = ('pi', 'ls1', 'ls2', 'ls3', 'ls8', 'hinf1', 'hinf2', 'hinf3')
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh')
 _WEIGHTS = (NEARLY_EXACT, 0.003, 0.01, 0.02, TORQUE_RATE_WEIGHT, 0.06, 0.1, 0.3)
@@ -37,7 +37,7 @@ _STATIC_GAINS = [constant_slip_torque(DRIVELINE, *unit) for unit in ((1.0, 0.0),
 STATIC = StateSpace(
     np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([_STATIC_GAINS]), PERIOD_S
 )
-"""The static controller's C_fOL, which knows of no actuator."""
+"""Static controller's C_fOL, which has no model of the actuator."""
 
 
 class _NoFeedback(Controller):
@@ -63,7 +63,11 @@ def engine_residual(
 def load_residual(
     model: StateSpace, omega: np.ndarray, driveline: DrivelineParameters
 ) -> np.ndarray:
-    """Return (P_3 + P_2 G_a F_2) / P_3, F_2 = -C_2 being the path from C_load; see above."""
+    """
+    Return (P_3 + P_2 G_a F_2) / P_3, complex, the shape of `omega` in rad/s.
+
+    F_2 = -C_2 is the filter's path from C_load; sampling and driveline as in `engine_residual`.
+    """
     return _residual(model, 1, load_to_slip(driveline), omega, driveline)
 
 
@@ -73,7 +77,7 @@ def feedforward_tables() -> dict[str, Table]:
 
 
 def weights() -> Table:
-    """Return what weights of torque rates give without feedback, and what the static law gives."""
+    """Return the results of weights of torque rates without feedback, and of the static law."""
     rows = [(f'{weight:g}', *_without_feedback(weight)) for weight in _WEIGHTS]
     static = run_headless(RunSettings(SCENARIO, 'detailed'), _NoFeedback())
     rows.append(('static law', '-', *_slip_and_deviations(static)))
@@ -83,7 +87,7 @@ def weights() -> Table:
 
 
 def residuals() -> Table:
-    """Return how much of C_m is left over frequency, and how much of C_load by our filter."""
+    """Return the residuals of C_m over frequency, and those of C_load with our filter."""
     exact = design_feedforward(DRIVELINE, NEARLY_EXACT)
     ours = design_feedforward(DRIVELINE, TORQUE_RATE_WEIGHT)
     rows = []

@@ -1,4 +1,4 @@
-"""The launches and the tip-in with a new clutch, in numbers."""
+"""Table of the launches and the tip-in with a new clutch."""
 
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.models.driveline import LOCK

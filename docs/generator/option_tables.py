@@ -1,4 +1,4 @@
-"""The tables of options in the pages, made from what the code declares."""
+"""Tables of options in the pages, made from the declarations in the code."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
 
 
 def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
-    """Return the options of controllers; a default that they do not share is given for each."""
+    """Return the options of controllers; a default that differs between them is given for each."""
     declared: dict[str, Options] = {name: controller_spec(name).options or {} for name in names}
     rows = []
     for key in dict.fromkeys(key for options in declared.values() for key in options):
@@ -81,4 +81,4 @@ TABLES = {
     'pedal_mpc': _controllers('pedal_mpc'),
     'lqi': _controllers('lqi'),
 }
-"""By the names that the pages mark."""
+"""Tables by their name in the marks of the pages."""

@@ -1,7 +1,7 @@
 """
-Tables between marks of the pages: those that stand there, and their filling in.
+Read and fill the tables between marks of the pages.
 
-A table stands between the lines `<!-- KIND: NAME -->` and `<!-- end -->`, on whichever page.
+A table is between the lines `<!-- KIND: NAME -->` and `<!-- end -->`, on whichever page.
 """
 
 import re
@@ -15,12 +15,12 @@ DOCS = Path(__file__).resolve().parents[1]
 
 
 def as_markdown(tables: Mapping[str, Table]) -> dict[str, str]:
-    """Return the text of each table by its name, with the end of its last line."""
+    """Return the text of each table by name, with a final line end."""
     return {name: _markdown(table) for name, table in tables.items()}
 
 
 def shown_tables(kind: str, docs: Path = DOCS) -> dict[str, str]:
-    """Return the text that stands in the pages between the marks of a kind, by name."""
+    """Return the text between the marks of a kind in the pages, by name."""
     shown: dict[str, str] = {}
     for page in _pages(docs):
         for match in _block(kind).finditer(page.read_text(encoding='utf-8')):
@@ -34,8 +34,8 @@ def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> lis
     """
     Write every table of a kind in its place and return the pages that have changed.
 
-    Raise DdctError, before anything is written, unless the pages together have each table once
-    and no other of this kind.
+    Raise DdctError, before anything is written, unless the pages together have each table once and
+    no other of this kind.
     """
     names = shown_tables(kind, docs)
     if sorted(names) != sorted(tables):

@@ -1,4 +1,4 @@
-"""The figures of docs/thesis/robustness_map.md."""
+"""Figures of docs/thesis/robustness_map.md."""
 
 from collections.abc import Mapping
 from itertools import product
@@ -17,13 +17,13 @@ from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
 from generator.robustness_tables import PLANTS
 
 DRAWN_FROM = 'Drawn from'
-"""What a picture calls the digest of its map."""
+"""Metadata key of the digest of the map in a picture."""
 LABELS = {'delay': ('delay, ms', 1e3), 'mass': ('mass, kg', 1.0)}
-"""What the third key is called, and in how many of its units, by map."""
+"""Label of the third key and factor from its SI unit to that of the label, by map."""
 
 
 def pictures(maps: Mapping[str, StateMap]) -> dict[Path, tuple[str, str]]:
-    """Return the map and the architecture that each picture is of."""
+    """Return the map and the architecture of each picture, by file."""
     return {
         DOCS / 'images' / f'robustness_{name}_{architecture}.png': (name, architecture)
         for name, found in maps.items()
@@ -32,7 +32,7 @@ def pictures(maps: Mapping[str, StateMap]) -> dict[Path, tuple[str, str]]:
 
 
 def draw_robustness(maps: Mapping[str, StateMap]) -> None:
-    """Draw a figure per map and architecture into `images`; each says what it was drawn from."""
+    """Draw a figure per map and architecture into `images`, each with the digest of its map."""
     for picture, (name, architecture) in pictures(maps).items():
         with chart_style():
             save_chart(robustness_figure(maps[name], architecture, *LABELS[name]), picture)

@@ -1,4 +1,4 @@
-"""The maps of docs/thesis/robustness_map.md: how the runs of two campaigns end, kept as text."""
+"""Maps of docs/thesis/robustness_map.md: final states of the runs of two campaigns, as text."""
 
 import hashlib
 import json
@@ -19,24 +19,24 @@ from generator.pages import DOCS
 SPECS = {name: DOCS / 'examples' / f'robustness_{name}.yaml' for name in ('delay', 'mass')}
 RECORD = DOCS / 'thesis' / 'robustness_map.json'
 LETTERS = dict(zip(STATES, 'EenoRsvX', strict=True))
-"""By state."""
+"""Letters by state."""
 ARCHITECTURE, CLUTCH, WEAR = 'architecture', 'clutch', 'wear_gain'
 THIRD = {'delay': 'actuator.delay_s', 'mass': 'vehicle.mass_kg'}
-"""What varies beside architecture, clutch and wear, by map."""
+"""Key that varies besides architecture, clutch and wear, by map."""
 JERK = 'peak_jerk_m_s3'
 
 
 @dataclass(frozen=True)
 class StateMap:
-    """How the runs of one campaign end."""
+    """Final states of the runs of one campaign."""
 
     spec: CampaignSpec
     states: np.ndarray
-    """By controller, architecture, clutch, the third key, and wear gain."""
+    """States by controller, architecture, clutch, the third key, and wear gain."""
     jerk: np.ndarray
-    """Peak jerk in m/s^3 likewise, NaN where it is not defined."""
+    """Peak jerk in m/s^3, with the axes of `states`; NaN where it is not defined."""
     third: str
-    """The third key."""
+    """Name of the third key."""
 
     def line(self, controller: str, *point: Any) -> list[str]:
         """Return the states over the wear gains at architecture, clutch and third value."""
@@ -56,7 +56,7 @@ class StateMap:
 
     @property
     def digest(self) -> str:
-        """A hash of the states."""
+        """Hash of the states."""
         return hashlib.sha256(' '.join(self.states.ravel().tolist()).encode()).hexdigest()
 
     def _place(self, controller: str, point: Sequence[Any]) -> tuple[int, ...]:
@@ -68,12 +68,12 @@ class StateMap:
 
 
 def spec_digest(spec: CampaignSpec) -> str:
-    """Return a hash of what a specification says, whatever its comments."""
+    """Return a hash of the content of a specification without its comments."""
     return hashlib.sha256(spec.text().encode()).hexdigest()
 
 
 def kept_maps() -> dict[str, StateMap]:
-    """Return the maps of the record; ValueError where a specification is another one by now."""
+    """Return the maps of the record; raise ValueError where a specification has changed since."""
     record = json.loads(RECORD.read_text(encoding='utf-8'))
     return {name: _map(name, record['maps'][name], record['letters']) for name in SPECS}
 
@@ -92,7 +92,7 @@ def _map(name: str, kept: Mapping[str, Any], letters: Mapping[str, str]) -> Stat
 
 
 def record_of(campaigns: Mapping[str, Path]) -> dict[str, Any]:
-    """Return what is kept of the campaigns' folders: a line of letters over the wear gains."""
+    """Return the record of the campaigns' folders: a line of letters over the wear gains."""
     return {'letters': LETTERS, 'maps': {name: _kept(name, campaigns[name]) for name in SPECS}}
 
 

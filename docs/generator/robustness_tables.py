@@ -1,17 +1,17 @@
-"""The tables of docs/thesis/robustness_map.md."""
+"""Tables of docs/thesis/robustness_map.md."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
-from ddct_bringup.reproduction.values.orders import SLIP_WORDS, WORN
+from ddct_bringup.reproduction.values.orders import SLIP_RATINGS, WORN
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NEARLY_ENGAGED, RUNAWAY
 from ddct_plant.program.table import UNDEFINED, Table
 from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
 
 NOMINAL_DELAY_S = 0.01
 PLANTS = {'linear': 'linear', 'stick_slip': 'stick-slip'}
-"""What the pages call the plant with a clutch."""
+"""Name of the plant in the pages, by clutch."""
 
 
 def robustness_tables(maps: Mapping[str, StateMap]) -> dict[str, Table]:
@@ -29,7 +29,7 @@ def robustness_tables(maps: Mapping[str, StateMap]) -> dict[str, Table]:
 
 
 def ranges_text(values: Sequence[float], states: Iterable[str]) -> str:
-    """Return where runs are engaged: `0.7 to 1.1`, several parts by commas, a dash for nowhere."""
+    """Return the ranges with engaged runs: `0.7 to 1.1`, separated by commas, a dash for none."""
     parts: list[list[float]] = []
     before = ''
     for value, state in zip(values, states, strict=True):
@@ -41,15 +41,15 @@ def ranges_text(values: Sequence[float], states: Iterable[str]) -> str:
 
 
 def _wear_table(found: StateMap) -> Table:
-    """Return the states at the wear gains of Table 5.2, and how far around 1 runs are engaged."""
+    """Return the states at the wear gains of Table 5.2, and the engaged range around 1."""
     wears = found.values(WEAR)
     rows = []
     for architecture, name in product(found.values(ARCHITECTURE), found.spec.controllers):
         cells = []
         for clutch in PLANTS:
             line = found.line(name, architecture, clutch, NOMINAL_DELAY_S)
-            cells += [ranges_text(wears, line), *(_word(line[wears.index(w)]) for w in WORN)]
-        rows.append((architecture, name, *cells, SLIP_WORDS.get(name, UNDEFINED)))
+            cells += [ranges_text(wears, line), *(_state_text(line[wears.index(w)]) for w in WORN)]
+        rows.append((architecture, name, *cells, SLIP_RATINGS.get(name, UNDEFINED)))
     headers = [
         heading
         for plant in PLANTS.values()
@@ -96,7 +96,7 @@ def _jerk_text(jerk: float, state: str) -> str:
 
 
 def _share_table(found: StateMap) -> Table:
-    """Return how many runs of the map end how, in percent."""
+    """Return the share of runs of the map by final state, in percent."""
     rows = []
     for architecture, clutch, name in _loops(found):
         states = [state for line in found.plane(name, architecture, clutch) for state in line]
@@ -121,5 +121,5 @@ def _loops(found: StateMap) -> Iterator[tuple[str, str, str]]:
     yield from product(found.values(ARCHITECTURE), PLANTS, found.spec.controllers)
 
 
-def _word(state: str) -> str:
+def _state_text(state: str) -> str:
     return state.replace('_', ' ')

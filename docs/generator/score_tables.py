@@ -1,8 +1,8 @@
-"""Metrics, criteria and limits as the programs name them."""
+"""Tables of metrics, criteria and limits with the names of the programs."""
 
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_plant.program.table import Table
 
 _HEADERS = ('unit', 'what it is', 'no value when')

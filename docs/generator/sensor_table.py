@@ -1,4 +1,4 @@
-"""What the sensors of docs/use/sensors.md change in the scenario `thesis`, over a few seeds."""
+"""Effect of the sensors of docs/use/sensors.md in the scenario `thesis`, over a few seeds."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The tables of the pages by the kinds of their marks, computed."""
+"""Compute the tables of the pages by the kinds of their marks."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -53,7 +53,7 @@ def calibration_tables() -> Mapping[str, Table]:
 
 
 def figure_tables(drawn: Mapping[ThesisFigure, str]) -> Mapping[str, Table]:
-    """Return what agrees, of each figure that is drawn, and why the others are not."""
+    """Return the remark on each figure that is drawn, and the reasons for the others."""
     shared: dict[str, list[str]] = {}
     for number, reason in NOT_DRAWN.items():
         shared.setdefault(reason, []).append(number)
@@ -67,7 +67,7 @@ def figure_tables(drawn: Mapping[ThesisFigure, str]) -> Mapping[str, Table]:
 
 
 def h_infinity_tables() -> Mapping[str, Table]:
-    """Return our designs beside the printed controllers."""
+    """Return our designs together with the printed controllers."""
     corners = PlantCorners()
     records = [
         design_record(name, recipe, THESIS_SPECIFICATIONS, synthesised_design(name), corners)
@@ -113,7 +113,7 @@ def studies_and_charts() -> Mapping[str, Table]:
 
 
 def robustness_tables_and_charts() -> Mapping[str, Table]:
-    """Return the tables of the maps that `docs/robustness.py` has kept, and draw the maps."""
+    """Return the tables of the maps that `docs/robustness.py` stored, and draw the maps."""
     maps = kept_maps()
     draw_robustness(maps)
     return robustness_tables(maps)
@@ -140,4 +140,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,
 }
-"""By kind, quick ones first; `studies` takes minutes, `numbers` and `figures` some ten seconds."""
+"""
+Functions by kind, quick ones first; `studies` takes minutes, `numbers` and `figures` some ten
+seconds.
+"""

@@ -70,7 +70,7 @@ def random_trajectory(steps, preview_steps=2, clutch='linear'):
 
 
 class Bags:
-    """Makes bags below one folder."""
+    """Writer of test bags below one folder."""
 
     def __init__(self, folder: Path):
         self.folder = folder

@@ -1,4 +1,4 @@
-"""Readers that are not ours take our bags: rosbags and the MCAP library with its ROS 2 decoder."""
+"""Other readers accept the bags: rosbags and the MCAP library with its ROS 2 decoder."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from ddct_plant.graph.topics import RunKind, recorded_topics
 rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
 rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')
 
-# What rosbag2's decoder of version 9 asks for, in its order.
+# Keys that rosbag2's decoder of version 9 requires, in its order.
 INFORMATION_KEYS = [
     'version',
     'storage_identifier',
@@ -104,7 +104,7 @@ def test_chunks_are_compressed_and_far_below_1_mib(bag):
     assert max(chunk.uncompressed_size for chunk in chunks) < 128 * 1024
 
 
-def test_metadata_has_what_rosbag2_asks_for(bag, trajectory):
+def test_metadata_has_the_keys_that_rosbag2_requires(bag, trajectory):
     information = yaml.safe_load((bag / 'metadata.yaml').read_text())[
         'rosbag2_bagfile_information'
     ]

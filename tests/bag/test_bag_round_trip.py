@@ -1,4 +1,4 @@
-"""What goes into a bag comes out of it, to the last bit and byte."""
+"""Trajectory, facts and counts are read from a bag as written, to the last bit and byte."""
 
 import ctypes
 import math
@@ -132,7 +132,7 @@ def test_bytes_that_are_no_message_of_the_topic_are_refused(tmp_path):
         bag.write('clutch/slip', START_NS, b'\x00\x01\x00\x00' + bytes(8))
 
 
-def test_an_unknown_message_type_is_an_error_that_says_where_to_define_it(tmp_path):
+def test_an_unknown_message_type_is_an_error_that_names_where_to_define_it(tmp_path):
     topic = Topic('x', MessageKind('no_such_msgs/msg/Thing'), 'nobody')
     with pytest.raises(
         DdctError, match='messages.yaml does not define no_such_msgs/msg/Thing: add it there'

@@ -1,4 +1,4 @@
-"""Missing, cut, damaged and foreign bags are told apart, and never taken for whole ones."""
+"""Missing, cut, damaged and foreign bags have distinct errors and are never read as complete."""
 
 import random
 
@@ -29,7 +29,7 @@ def test_a_file_that_is_no_mcap_is_an_error(tmp_path, content, message):
         read_bag(file)
 
 
-def test_a_cut_bag_is_called_unfinished_and_repair_is_suggested(bags, trajectory):
+def test_a_cut_bag_is_reported_as_unfinished_and_repair_is_suggested(bags, trajectory):
     file = mcap_of(bags.write(trajectory))
     whole = file.read_bytes()
     for length in range(8, len(whole), 997):
@@ -38,7 +38,7 @@ def test_a_cut_bag_is_called_unfinished_and_repair_is_suggested(bags, trajectory
             read_bag(file)
 
 
-def test_no_flipped_bit_goes_unnoticed(bags, trajectory):
+def test_every_flipped_bit_is_detected(bags, trajectory):
     file = mcap_of(bags.write(trajectory))
     whole = file.read_bytes()
     rng = random.Random(5)
@@ -51,7 +51,7 @@ def test_no_flipped_bit_goes_unnoticed(bags, trajectory):
             read_bag(file)
 
 
-def test_a_foreign_bag_is_called_so(tmp_path):
+def test_a_foreign_bag_is_reported_as_foreign(tmp_path):
     file = tmp_path / 'foreign.mcap'
     with file.open('wb') as stream:
         writer = Writer(stream)
@@ -90,7 +90,7 @@ def test_a_foreign_type_on_our_topic_is_an_error(
         read_bag(file)
 
 
-def test_a_bag_without_the_facts_of_the_run_is_called_foreign(bags, trajectory):
+def test_a_bag_without_the_facts_of_the_run_is_reported_as_foreign(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'bare', score_window_s='')
     with pytest.raises(DdctError, match='score_window_s is .* not a recording of this project'):
         read_bag(bag)
@@ -168,7 +168,7 @@ def test_a_reply_that_never_came_is_an_error_in_real_time_too(bags, trajectory):
 
 
 def _with_second_run_info(old, new):
-    """Return an edit that says what node load says once more, with `old` replaced by `new`."""
+    """Return an edit that repeats the run_info of node load, with `old` replaced by `new`."""
 
     def edit(messages):
         at = next(i for i, (_, _, data) in enumerate(messages) if b'load' in data)

@@ -1,4 +1,4 @@
-"""A bag from a stranger neither hangs, fills, nor takes over what reads it."""
+"""A hostile bag neither hangs, fills the memory nor controls the terminal of its reader."""
 
 import os
 import resource
@@ -49,23 +49,23 @@ def test_a_file_beyond_the_limit_is_not_read(tmp_path: Path) -> None:
         read_records(path)
 
 
-def packed(size: int, told: int) -> bytes:
-    """Return a recording with one chunk of `size` zeros that says it holds `told` bytes."""
+def packed(size: int, declared: int) -> bytes:
+    """Return a recording with one chunk of `size` zeros that declares `declared` bytes."""
     data = zstandard.compress(bytes(size))
     fields = [(0).to_bytes(8, 'little')] * 2
-    fields += [told.to_bytes(8, 'little'), zlib.crc32(bytes(size)).to_bytes(4, 'little')]
+    fields += [declared.to_bytes(8, 'little'), zlib.crc32(bytes(size)).to_bytes(4, 'little')]
     fields += [(4).to_bytes(4, 'little'), b'zstd', len(data).to_bytes(8, 'little'), data]
     content = b''.join(fields)
     chunk = bytes([Opcode.CHUNK]) + len(content).to_bytes(8, 'little') + content
     return MAGIC + chunk + bytes(30) + MAGIC
 
 
-@pytest.mark.parametrize(('size', 'told'), [(10**9, 10**9), (10**9, 1000)])
+@pytest.mark.parametrize(('size', 'declared'), [(10**9, 10**9), (10**9, 1000)])
 def test_a_small_file_that_would_fill_the_memory_is_not_unpacked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int, told: int
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int, declared: int
 ) -> None:
     path = tmp_path / 'bomb.mcap'
-    path.write_bytes(packed(size, told))
+    path.write_bytes(packed(size, declared))
     monkeypatch.setattr(records, '_verify_summary', lambda data: None)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(DdctError, match=f'a chunk has {size} bytes unpacked'):
@@ -144,7 +144,7 @@ def test_metadata_that_is_no_plain_yaml_counts_as_none(tmp_path: Path, metadata:
 
 
 @pytest.mark.parametrize('damage', ['no hash', 'no schema', 'no text', 'no quality of service'])
-def test_repair_names_what_a_channel_does_not_say(
+def test_repair_names_the_missing_value_of_a_channel(
     bags, trajectory, monkeypatch: pytest.MonkeyPatch, damage: str
 ) -> None:
     bag = bags.write(trajectory)

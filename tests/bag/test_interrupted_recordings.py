@@ -1,4 +1,4 @@
-"""A recorder that is killed or runs out of space: what is said, and what can be rescued."""
+"""A recorder that is killed or runs out of space: its error, and the rescue of its bag."""
 
 import os
 import random
@@ -18,7 +18,7 @@ from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
 from ddct_plant.base.errors import DdctError
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
-"""A tick takes at least 2000 bytes, so a chunk holds at most this many."""
+"""Largest number of ticks in a chunk: a tick takes at least 2000 bytes."""
 
 COPY_BAG = """
     import resource, sys
@@ -179,7 +179,7 @@ def test_whatever_bit_is_flipped_only_true_values_are_rescued(bags, trajectory):
 
 
 def test_a_rescued_file_that_cannot_be_read_back_replaces_nothing(source, monkeypatch):
-    """As on a disk that says it has written what it has not."""
+    """The disk reports success for bytes that it has not written."""
 
     def write_badly(path, *rest):
         write(path, *rest)

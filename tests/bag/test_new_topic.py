@@ -50,7 +50,7 @@ def add(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 class LoopWithMore(ClosedLoop):
-    """The loop, whose load also gives the made-up torque."""
+    """Closed loop whose load also gives the made-up torque."""
 
     def reply(self, step: int) -> dict[str, Any]:
         return {**super().reply(step), 'made_up_torque': value_at(step)}
@@ -142,7 +142,9 @@ def test_only_runs_that_meet_its_condition_have_it(
         read_bag(lacking)
 
 
-def test_the_recorder_expects_what_the_condition_says(add: Any, tmp_path: Path) -> None:
+def test_the_recorder_expects_the_topic_where_its_condition_holds(
+    add: Any, tmp_path: Path
+) -> None:
     pytest.importorskip('rclpy', reason='a graph')
     from support.in_process_graph import InProcessGraph
 

@@ -1,4 +1,4 @@
-"""What `bringup`, `compare` and `score` say of a real-time run, from what its bag holds."""
+"""Summary and verdict of a real-time run by `bringup`, `compare` and `score`, from its bag."""
 
 import json
 
@@ -8,7 +8,7 @@ from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.writer import new_bag
 from ddct_bringup.programs import bringup, compare, score
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.topics import DIAGNOSTICS, RunKind, recorded_topics
 
@@ -20,7 +20,7 @@ LOG = '[ERROR] [1.0] [actuator]: safe state\n'
 
 @pytest.fixture
 def leave(bags, trajectory, monkeypatch):
-    """Return a function that lets every run leave a bag with these counts, state and log."""
+    """Return a function that makes every run leave a bag with these counts, state and log."""
     pytest.importorskip('rclpy', reason='rclpy serialises the messages')
     from rclpy.serialization import serialize_message
 
@@ -100,7 +100,7 @@ def test_bringup_names_the_logs_where_the_bag_is_in_the_end(leave, tmp_path, cap
     assert log.is_file()
 
 
-def test_compare_fails_and_its_table_and_scores_say_why(leave, tmp_path, capsys):
+def test_compare_fails_and_its_table_and_scores_have_the_reason(leave, tmp_path, capsys):
     leave(7, safe=True, log=LOG)
     out = tmp_path / 'runs'
     arguments = ['--controllers', 'pi', '--mode', 'realtime', '--json', '-', '--out', str(out)]

@@ -1,4 +1,4 @@
-"""The program `score`: what it prints, writes and returns."""
+"""Program `score`: its output, files and exit codes."""
 
 import csv
 import io
@@ -15,7 +15,7 @@ import pytest
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.programs.score import main
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -44,7 +44,7 @@ JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
 
 
 def csv_signals(run):
-    """Return what each column of a CSV file holds: of a period or a preview its beginning."""
+    """Return the values of each column of a CSV file: of a period or a preview the first."""
     joints = {
         f'{joint}_{name}': signal[:, index]
         for index, joint in enumerate(JOINTS)
@@ -159,7 +159,7 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
     assert captured.out == ''
 
 
-def test_a_bag_of_before_the_schema_is_scored_and_says_so(bags, trajectory, capsys):
+def test_a_bag_older_than_the_schema_is_scored_and_marked(bags, trajectory, capsys):
     bag = bags.write(trajectory)
     later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(load_scenario('thesis')))
     assert main([str(bag), str(later), '--json', '-']) == 0
@@ -168,7 +168,7 @@ def test_a_bag_of_before_the_schema_is_scored_and_says_so(bags, trajectory, caps
     assert (before['before_schema'], after['before_schema']) == (True, False)
     verdicts = before['verdict'], after['verdict']
     assert len({each['state'] for each in verdicts}) == 1
-    # Without a scenario nobody knows the inertias, nor what the wheels can carry.
+    # Without a scenario the inertias and the traction limit of the wheels are unknown.
     of_plant = 'friction_work_over_least'
     known = [[c for c in each['criteria'] if c['name'] != of_plant] for each in verdicts]
     assert known[0] == known[1]

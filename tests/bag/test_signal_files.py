@@ -15,7 +15,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_LETTERS = 63
-"""Of a variable in MATLAB, which has letters, digits and underscores, a letter first."""
+"""Longest name of a variable in MATLAB: letters, digits and underscores, a letter first."""
 KEYWORDS = ('break', 'case', 'catch', 'end', 'for', 'function', 'global', 'if', 'return', 'while')
 
 
@@ -79,7 +79,7 @@ def test_two_bags_that_would_share_a_file_are_refused_before_any_is_written(
 
 
 @pytest.mark.parametrize('given', ['.', './'])
-def test_the_bag_that_one_stands_in_gives_its_name(tmp_path, monkeypatch, given):
+def test_a_bag_that_is_the_working_directory_gives_its_name(tmp_path, monkeypatch, given):
     folder = tmp_path / 'pi'
     folder.mkdir()
     monkeypatch.chdir(folder)

@@ -39,10 +39,10 @@ from synthesis import measure as measure_synthesis
 from verdict import GOAL_MS as VERDICT_GOAL_MS
 from verdict import measure as measure_verdict
 
-from ddct_bringup.run.beside_bag import TIMING_FILE, RunTiming
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
 from ddct_controllers.registry import controller_names
 from ddct_plant.files.output_file import write_json
 from ddct_plant.graph.domain import own_domain

@@ -1,4 +1,4 @@
-"""Controllers that are unlike each other and all in order."""
+"""Controllers that differ from each other and are all in order."""
 
 import time
 from collections import deque
@@ -18,7 +18,7 @@ GAIN = Option(0.1, 'K_p', 'N m/rpm', at_least=0.0, at_most=0.5)
 
 
 class NoIntegrator(Controller):
-    """Proportional, and nothing else."""
+    """A proportional controller."""
 
     options: ClassVar[Options] = {'gain': GAIN}
 
@@ -39,7 +39,7 @@ class NoIntegrator(Controller):
 
 
 class TwoMethods(Controller):
-    """Neither options nor state, so no constructor."""
+    """A controller with neither options nor state, so without a constructor."""
 
     def reset(self) -> None:
         pass
@@ -49,7 +49,7 @@ class TwoMethods(Controller):
 
 
 class Soft(NoIntegrator):
-    """A quarter of the gain: slow, but within the engagement."""
+    """A controller of a quarter of the gain: slow, but within the engagement."""
 
     def update(self, measurement: Measurement) -> Command:
         return Command(-0.4 * self._gain * measurement.slip_error_rpm)
@@ -59,7 +59,7 @@ class Soft(NoIntegrator):
 
 
 class TwoInputs(Controller):
-    """Half of the torque against slip by the clutch, half by the engine."""
+    """A controller with two inputs, each with half of the torque against slip."""
 
     options: ClassVar[Options] = {'gain': GAIN}
     commands_engine = True
@@ -76,7 +76,7 @@ class TwoInputs(Controller):
 
 
 class EngineAlone(TwoInputs):
-    """Only the engine acts against slip."""
+    """A controller that acts against slip by the engine only."""
 
     def update(self, measurement: Measurement) -> Command:
         torque = -2.0 * self._half * measurement.slip_error_rpm
@@ -84,7 +84,7 @@ class EngineAlone(TwoInputs):
 
 
 class Preview(NoIntegrator):
-    """Aims at the reference 50 ms ahead."""
+    """A controller of the error to the reference 50 ms ahead."""
 
     preview_steps = 5
 
@@ -97,7 +97,7 @@ class Preview(NoIntegrator):
 
 
 class SlowStart(Controller):
-    """The gain rises over 0.3 s; the first update builds a table, as compilers do."""
+    """A controller whose gain rises over 0.3 s; its first update builds a table."""
 
     options: ClassVar[Options] = {'gain': GAIN, 'rise_s': Option(0.3, 'rise time', 's', above=0.0)}
 
@@ -119,7 +119,7 @@ class SlowStart(Controller):
 
 
 class OwnObserver(Controller):
-    """Estimates the slip's rate with a filter that follows the plant while feedback is off."""
+    """A controller that estimates the slip's rate, with a filter that always runs."""
 
     options: ClassVar[Options] = {
         'gain': GAIN,
@@ -151,7 +151,7 @@ class OwnObserver(Controller):
 
 
 class GainScheduled(Controller):
-    """Less gain at high slip."""
+    """A controller with less gain at high slip."""
 
     options: ClassVar[Options] = {
         'gains': Option((0.12, 0.06), 'K_p at no slip and from 100 rad/s on', many=True)
@@ -170,7 +170,7 @@ class GainScheduled(Controller):
 
 
 class AntiWindup(Controller):
-    """PI within the torque that the clutch has, with a gain that may be changed as it runs."""
+    """A PI limited to the clutch's torque, with a gain that may be changed as it runs."""
 
     options: ClassVar[Options] = {
         'gain': Option(0.1, 'K_p', 'N m/rpm', at_least=0.0, live=True),
@@ -204,7 +204,7 @@ class AntiWindup(Controller):
 
 
 class DeadBand(Controller):
-    """Does nothing within 5 rpm, with a mean over 30 ms and repeatable dither below 0.1 N m."""
+    """A controller inactive within 5 rpm, of a mean over 30 ms, with dither below 0.1 N m."""
 
     options: ClassVar[Options] = {'gain': GAIN}
 
@@ -224,7 +224,7 @@ class DeadBand(Controller):
 
 
 def from_function(context: ControllerContext) -> Controller:
-    """Return a controller of a factory that declares its options itself."""
+    """Return a controller from a factory that declares its options itself."""
     return NoIntegrator(context)
 
 

@@ -1,4 +1,4 @@
-"""`check-controller` names beginners' errors, and passes what is in order."""
+"""`check-controller` names beginners' errors, and passes controllers in order."""
 
 import inspect
 import json
@@ -54,13 +54,13 @@ WRONG = {
     'Leaves': ('answers', ['it raised SystemExit: 3', *IN_UPDATE]),
     'Prints': ('prints', ["the first 'e = 0.0'", *IN_UPDATE]),
 }
-"""By class the check that names its error, and words of the detail."""
+"""Check that names the error, and words of the detail, by class."""
 ALSO = {
     'AnotherModel': {'stability'},
     'WrongSign': {'stability'},
     'RpmTwice': {'rate', 'stability'},
 }
-"""What else those errors do."""
+"""Further checks that those errors fail, by class."""
 RIGHT = [
     name
     for name, value in vars(right_controllers).items()

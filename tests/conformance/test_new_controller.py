@@ -21,9 +21,9 @@ def write(folder: Path, name: str = 'my_slip') -> None:
 
 def python(site: Path, code: str) -> str:
     """
-    Return what Python prints where the packages in `site` are installed.
+    Return the output of Python where the packages in `site` are installed.
 
-    The folder of the package lies in the current one, which Python searches first.
+    The folder of the package is in the current one, which Python searches first.
     """
     done = subprocess.run(
         [sys.executable, '-c', f'import site; site.addsitedir({str(site)!r})\n{code}'],
@@ -58,7 +58,7 @@ def test_the_package_installs_by_its_own_command_and_its_tests_pass(tmp_path: Pa
     ('pip', 'program'),
     [(True, f'{sys.executable} -m pip install '), (False, 'uv pip install --python ')],
 )
-def test_an_environment_without_uv_of_its_own_is_told_what_it_has(
+def test_the_printed_command_uses_what_an_environment_without_uv_has(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, pip: bool, program: str
 ) -> None:
     monkeypatch.setattr(sys, 'prefix', str(tmp_path))
@@ -68,7 +68,7 @@ def test_an_environment_without_uv_of_its_own_is_told_what_it_has(
     assert command.endswith(' --no-build-isolation -e DIR')
 
 
-def test_what_it_prints_next_is_what_the_readme_says(
+def test_the_printed_next_steps_are_those_of_the_readme(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     write(tmp_path / 'other', 'other')

@@ -1,4 +1,4 @@
-"""Controllers as beginners get them wrong: one error each, in an otherwise sound proportional."""
+"""Controllers with one beginner's error each, otherwise a sound proportional controller."""
 
 import random
 import sys
@@ -14,11 +14,11 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 
 GAIN = 0.1
-"""N m/rpm; crosses over at about 4 rad/s."""
+"""Gain in N m/rpm; the loop crosses over at about 4 rad/s."""
 
 
 class Proportional(Controller):
-    """What the others get wrong in one place."""
+    """The sound controller, which the others change in one place."""
 
     options: ClassVar[Options | None] = {}
 
@@ -96,14 +96,14 @@ class WrongSign(Proportional):
 
 
 class RadiansTakenForRpm(Proportional):
-    """Its gain is meant for rpm, its error is in rad/s."""
+    """A controller whose gain is meant for rpm, with an error in rad/s."""
 
     def update(self, measurement: Measurement) -> Command:
         return Command(-GAIN * (measurement.slip_reference[0] - measurement.slip_speed))
 
 
 class RpmTwice(Proportional):
-    """The error is in rpm already, and is converted once more."""
+    """A controller whose error is in rpm already, and is converted once more."""
 
     def update(self, measurement: Measurement) -> Command:
         return Command(-GAIN * measurement.slip_error_rpm * 30.0 / np.pi)
@@ -160,7 +160,7 @@ class WallClock(Proportional):
 
 
 class SharedIntegral(Proportional):
-    """Its state belongs to the class, but a reset does clear it."""
+    """A controller whose state belongs to the class, but is cleared by reset."""
 
     integral = 0.0
 
@@ -173,7 +173,7 @@ class SharedIntegral(Proportional):
 
 
 class SharedDefault(Proportional):
-    """Its list is made once, when the method is defined."""
+    """A controller whose list is made once, when the method is defined."""
 
     def update(self, measurement: Measurement, errors: list[float] = []) -> Command:  # noqa: B006
         errors.append(measurement.slip_error_rpm)
@@ -181,14 +181,14 @@ class SharedDefault(Proportional):
 
 
 class ClockOfItsOwn(Proportional):
-    """Has bound the clock's name in its own module, and reads it in whole hours."""
+    """A controller with the clock's name bound in its own module, read in whole hours."""
 
     def update(self, measurement: Measurement) -> Command:
         return Command(-GAIN * measurement.slip_error_rpm - monotonic() // 3600.0)
 
 
 class HidesNaN(Proportional):
-    """Its limit turns NaN into a torque."""
+    """A controller whose limit turns NaN into a torque."""
 
     def __init__(self, context: ControllerContext) -> None:
         self.reset()
@@ -203,7 +203,7 @@ class HidesNaN(Proportional):
 
 
 class Chatters(Proportional):
-    """Switches to and fro at every step."""
+    """A controller that switches to and fro at every step."""
 
     def update(self, measurement: Measurement) -> Command:
         switched = 30.0 if measurement.step % 2 else -30.0
@@ -215,7 +215,7 @@ class IdlePreview(Proportional):
 
 
 class AnotherModel(Proportional):
-    """Its linear_model has the sign of the plant in it."""
+    """A controller whose linear_model has the sign of the plant in it."""
 
     def linear_model(self) -> StateSpace:
         none = np.zeros((0, 0))
@@ -229,7 +229,7 @@ class Prints(Proportional):
 
 
 class WritesItsInput(Proportional):
-    """Would make the reference that the run is scored against its own."""
+    """A controller that would replace the reference against which the run is scored."""
 
     def update(self, measurement: Measurement) -> Command:
         measurement.slip_reference[0] = measurement.slip_speed  # type: ignore[index]

@@ -1,12 +1,12 @@
 """
-Where the H-infinity optima come from: Nehari's theorem, without states and Riccati equations.
+Source of the H-infinity optima: Nehari's theorem, without states and Riccati equations.
 
-The stack [W_s S, W_t T] is at most g where S lies in a disc about c = |W_t|^2 / q of radius r,
-q = |W_s|^2 + |W_t|^2 and r^2 = (g^2 - |W_s W_t|^2 / q) / q. S is 1 - B h: B has the plant's zeros
-in the right half-plane, h is any stable function. So the stack can be at most g if and only if
-B* (1 - c) / R is within 1 of a stable function, R outer with |R| = r: the Hankel operator of its
-Fourier coefficients on the unit circle has a norm of at most 1. Nothing else of the plant counts:
-its pole at 0 asks for S(0) = 0, which is inside the disc there.
+The stack [W_s S, W_t T] is at most g where S lies in a disc about c = |W_t|^2 / q of radius r, q =
+|W_s|^2 + |W_t|^2 and r^2 = (g^2 - |W_s W_t|^2 / q) / q. S is 1 - B h: B has the plant's zeros in
+the right half-plane, h is any stable function. So the stack can be at most g if and only if B* (1
+- c) / R is within 1 of a stable function, R outer with |R| = r: the Hankel operator of its Fourier
+coefficients on the unit circle has a norm of at most 1. Nothing else of the plant counts: its pole
+at 0 requires S(0) = 0, which is inside the disc there.
 """
 
 import math
@@ -30,10 +30,14 @@ from ddct_controllers.synthesised import synthesised_design
 POINTS = 2**13
 COEFFICIENTS = 60
 RATE = 20.0
-"""In rad/s; with twice as many points and coefficients the optimum moves by less than 1e-6."""
+"""
+Rate of the bilinear map in rad/s.
+
+With twice as many points and coefficients the optimum moves by less than 1e-6.
+"""
 K, W_2 = 0.15, 28.0
 ZETA = math.log(12.5) / math.hypot(math.pi, math.log(12.5))
-"""Of an overshoot of 8 %."""
+"""Damping zeta of an overshoot of 8 %, without unit."""
 T_P = 1.0 / (2.0 * ZETA * math.sqrt(1.0 - ZETA**2))
 J_OMEGA = 1j * np.geomspace(0.1, 10.0, 100_000)
 S_P = np.abs(J_OMEGA * (J_OMEGA + 2.0 * ZETA) / (J_OMEGA**2 + 2.0 * ZETA * J_OMEGA + 1.0)).max()
@@ -116,20 +120,20 @@ SAMPLED = replace(make_weights('sampled'), effort=None)
     ids=['printed', 'double zero of sderiv', 'hold and delay'],
 )
 def test_the_optimum_is_that_of_nehari(weights, zeros, w_t, flat, least):
-    """Within 2e-4, twice what the iteration leaves."""
+    """The optima agree within 2e-4, twice the tolerance of the iteration."""
     expected = optimum(zeros, w_t, flat)
     assert expected == pytest.approx(least, abs=1e-4)
     assert synthesise(generalised_plant(weights)).optimum == pytest.approx(expected, rel=2e-4)
 
 
 def test_no_controller_meets_the_printed_weights_with_hold_and_delay_better_than_without():
-    """More zeros in the right half-plane, and 0.04 more: the price of hold and delay."""
+    """Hold and delay add zeros in the right half-plane, and 0.04 to the optimum."""
     without = optimum(ACTUATOR_ZEROS, rising(math.sqrt(0.5)), flat=False)
     assert optimum(sampled_zeros(), level_beyond, flat=True) > without + 0.03
 
 
 def test_w_t_t_of_hinf_thesis_is_that_of_a_sweep():
-    """1.076 as the page says: the designed controller in the typed plant, typed weight."""
+    """It is 1.076 as on the page: the designed controller in the typed plant, typed weight."""
     design = synthesised_design('hinf_thesis')
     omega = np.geomspace(1e-2, 1e3, 20_000)
     controller = control.zpk(design.cleaned.zeros, design.cleaned.poles, design.cleaned.gain)

@@ -1,5 +1,5 @@
 """
-Where the figures of the identification come from: P_2 and P_3 by Cramer's rule, fitted by scipy.
+Source of the identification's numbers: P_2 and P_3 by Cramer's rule, fitted by scipy.
 
 The nine printed numbers are typed from Section 1.6.2, with 339.4 for 334.4 as a zero of P_2.
 Nothing here is computed by the product.
@@ -15,9 +15,9 @@ P = DrivelineParameters()
 PRINTED = np.array([-103.43, 0.005905, 5.344, 339.4, 0.006733, 121.4, 7696.0, 7.2217, 63.99])
 HALF_UNITS = np.array([5e-3, 5e-7, 5e-4, 5e-2, 5e-7, 5e-2, 5e-1, 5e-5, 5e-3])
 MISPRINT = 3
-"""Where c of P_2's zeros is among them."""
+"""Index, among the printed numbers, of c of P_2's zeros."""
 ROUNDED = np.log([0.25, 0.010057, 0.0120, 105.0, 6720.0, 9.344, 154.7])
-"""Logarithms of J_m, J_p, c_prim, c_sa, k_sa, tau and J_v, rounded."""
+"""Natural logarithms of J_m, J_p, c_prim, c_sa, k_sa, tau and J_v, rounded."""
 
 
 def coefficients(logarithms: np.ndarray) -> np.ndarray:
@@ -76,7 +76,7 @@ def fit(printed: np.ndarray = PRINTED, left_out: int | None = None) -> OptimizeR
 
 def test_the_best_driveline_misses_the_print_by_a_chi_square_of_3_556():
     """
-    By scipy from the rounded parameters, on polynomials made here.
+    Fitted by scipy from the rounded parameters, on polynomials made here.
 
     A rounding error is uniform within a half-unit, so its variance is a third of that squared.
     """
@@ -95,10 +95,10 @@ def test_the_best_driveline_for_334_4_misses_a_number_by_59_4_half_units():
 
 def test_the_other_eight_numbers_predict_339_392_with_a_deviation_of_0_024():
     """
-    The deviation by fitting again with each number moved up and down by its half-unit.
+    The deviation follows from fits with each number moved up and down by its half-unit.
 
-    Half the difference is what a half-unit does, and the deviation of a rounding error is a half-
-    unit over sqrt(3).
+    Half the difference is the effect of a half-unit, and the deviation of a rounding error is a
+    half- unit over sqrt(3).
     """
 
     def predicted(moved: int, half_units: float) -> float:

@@ -1,5 +1,5 @@
 """
-Where the fixed figures of the design tests come from: printed formulas and other libraries.
+Sources of the fixed numbers of the design tests: printed formulas and other libraries.
 
 Nothing here is computed by the product: `typed_loops` has the thesis's formulas, which
 python-control, scipy and closed forms evaluate.
@@ -56,7 +56,7 @@ def test_margins_of_g_c1_and_g_c2(controller, crossover, phase, gain, complement
 
 
 def test_steps_of_ls3_ls4_and_ls5():
-    """28.8 % of LS3; rise times .866 s and .766 s of LS4 and LS5."""
+    """LS3 overshoots by 28.8 %; LS4 and LS5 rise in .866 s and .766 s."""
     figures = [
         rise_and_overshoot(driveline() * G_A * controller, 1e-3)
         for controller in (g_c1(-10.0), g_c2(-0.0060285), g_c2(-0.0072342))
@@ -67,7 +67,7 @@ def test_steps_of_ls3_ls4_and_ls5():
 
 
 def test_steps_of_hinf1_as_printed_and_with_2_14_times_its_gain():
-    """0.55 s and 12.5 %, where Table 3.1 has the 0.30 s and 8 % of 2.14 times the gain."""
+    """They are 0.55 s and 12.5 %; Table 3.1 has the 0.30 s and 8 % of 2.14 times the gain."""
     as_printed = rise_and_overshoot(driveline() * G_A * HINF1, 1e-3)
     assert as_printed == pytest.approx((0.550, 12.5), abs=0.01)
     louder = rise_and_overshoot(driveline() * G_A * HINF1 * 2.14, 1e-3)
@@ -76,7 +76,7 @@ def test_steps_of_hinf1_as_printed_and_with_2_14_times_its_gain():
 
 @pytest.mark.slow
 def test_worst_m_s_of_hinf1_by_trying_every_corner():
-    """3.38 over 128 corners, K_usura from 0.7 to 1.3 in steps of 0.01, 2000 frequencies."""
+    """M_s is 3.38 over 128 corners, K_usura from 0.7 to 1.3 in steps of 0.01, 2000 frequencies."""
     z = np.exp(1j * np.geomspace(0.1, math.pi / DT, 2000) * DT)
     controller = (control.c2d(HINF1, DT, 'zoh'))(z) / z
     highest = 0.0
@@ -98,9 +98,10 @@ def prototype(overshoot: float) -> tuple[float, float]:
 
 def test_highest_crossover_by_arc_tangents():
     """
-    24.5 rad/s: delay and half the hold, 15 ms, and the actuator's all-pass leave 14 % its margin.
+    It is 24.5 rad/s: delay, half the hold and the actuator's all-pass leave 14 % its margin.
 
-    The margin is atan(2 zeta w_n / w_c); a pair of zeros turns twice its own angle.
+    Delay and half the hold are 15 ms. The margin is atan(2 zeta w_n / w_c); a pair of zeros turns
+    twice its own angle.
     """
     zeta, crossing = prototype(0.14)
     left = math.pi / 2.0 - math.atan2(2.0 * zeta, crossing)
@@ -123,6 +124,6 @@ def test_prototype_of_14_percent_by_its_closed_forms():
 
 
 def test_lag_of_the_actuator_at_rest_is_a_sum_over_its_factors():
-    """33.1 ms: b/c of each pole pair, less 1/138 and -161.3/31340 of its zeros."""
+    """It is 33.1 ms: b/c of each pole pair, less 1/138 and -161.3/31340 of its zeros."""
     lag = 82.23 / 2563 + 134.1 / 42700 - 1 / 138 + 161.3 / 31340
     assert lag == pytest.approx(0.0331, abs=5e-5)

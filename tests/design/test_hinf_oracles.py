@@ -28,7 +28,7 @@ def problem(recipe: str) -> GeneralisedPlant:
 
 @pytest.mark.parametrize('recipe', RECIPES)
 def test_our_level_is_no_higher_than_slycots_and_the_lmis(recipe):
-    """At most 1.001 times the best of both, each verified by the norm of its closed loop."""
+    """It is at most 1.001 times the better of both, each verified by its closed loop's norm."""
     slycot = pytest.importorskip('slycot', reason='slycot (GPL) is an oracle of the tests only')
     pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
     plant = problem(recipe)
@@ -41,7 +41,7 @@ def test_our_level_is_no_higher_than_slycots_and_the_lmis(recipe):
 
 
 def test_the_lmis_have_the_optimum_that_cvxpy_finds():
-    """The same three inequalities, written again with cvxpy; solvers agree within 0.1 %."""
+    """The same three inequalities are written again with cvxpy; solvers agree within 0.1 %."""
     cvxpy = pytest.importorskip('cvxpy', reason='cvxpy is an oracle of the tests only')
     pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
     plant = balanced(problem('thesis'))

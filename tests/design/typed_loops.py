@@ -1,8 +1,8 @@
 """
 The thesis's loops typed from its formulas, by python-control.
 
-339.4 stands for 334.4 in P_2. Only the identified parameters are the product's, so that a
-figure can be held to all its digits.
+339.4 stands for 334.4 in P_2. Only the identified parameters are the product's, so that a number
+can be compared to all its digits.
 """
 
 import itertools
@@ -23,7 +23,7 @@ IDENTIFIED += [P.halfshaft_stiffness, P.total_ratio, P.vehicle_inertia]
 
 def driveline(factors: tuple[float, ...] = (1.0,) * 7) -> control.StateSpace:
     """
-    Matrix A of Section 1.5, C_f in, slip speed out, in rpm.
+    Return A of Section 1.5 as a system from C_f to the slip speed in rpm.
 
     `factors` multiply J_m, J_p, c_prim, c_sa, k_sa, tau and J_v.
     """
@@ -39,7 +39,7 @@ def driveline(factors: tuple[float, ...] = (1.0,) * 7) -> control.StateSpace:
 
 
 def printed(gain: float, numerator: list, denominator: list) -> control.StateSpace:
-    """Return gain times factors [1, a] or [1, b, c], each pair of factors its own system."""
+    """Return gain times factors [1, a] or [1, b, c], each pair of factors a system of its own."""
     system = control.ss([], [], [], [[gain]])
     numerator = [[1.0]] * (len(denominator) - len(numerator)) + numerator
     for top, bottom in zip(sorted(numerator, key=len), sorted(denominator, key=len), strict=True):
@@ -95,6 +95,6 @@ def rise_and_overshoot(loop: control.StateSpace, step_s: float) -> tuple[float, 
 
 
 def corner_plants() -> Iterator[control.StateSpace]:
-    """Yield the held plant, without delay, at each corner 20 % around the identified values."""
+    """Yield the plant with hold, without delay, at each corner 20 % off the identified values."""
     for factors in itertools.product((0.8, 1.2), repeat=7):
         yield control.c2d(driveline(factors) * G_A, DT, 'zoh')

@@ -1,4 +1,4 @@
-"""Controllers written in C run from a file like any other; what is wrong with them is said."""
+"""Controllers written in C run from a file like any other; their errors have one line."""
 
 import gc
 import subprocess
@@ -19,14 +19,14 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 
 TOLERANCE_N_M = 1e-6
-"""As between the C and Python of the same controller: both solvers leave about 1e-9."""
+"""Tolerance in N m, as between the C and Python of a controller: both solvers leave about 1e-9."""
 SETTINGS = run_settings('duration_s=1')
 TEMPLATE = (host.TEMPLATE / 'my_controller.c').read_text()
 
 
 @pytest.fixture
 def library(tmp_path):
-    """Return what compiles C into the library of a YAML file, and gives that file."""
+    """Return a function that compiles C into the library of a YAML file, whose path it returns."""
 
     def make(source: str) -> str:
         for name in (host.HEADER, 'my_controller.yaml'):
@@ -42,7 +42,7 @@ def library(tmp_path):
 
 @pytest.fixture
 def exported(tmp_path):
-    """Return what exports a controller, compiles it as the file says, and gives a YAML file."""
+    """Return a function that exports and compiles a controller, and returns its YAML file."""
 
     def make(name: str) -> str:
         folder = tmp_path / name
@@ -57,7 +57,7 @@ def exported(tmp_path):
 
 
 def command(source: str) -> str:
-    """Return the template with another body of update."""
+    """Return the template with `source` as the body of update."""
     head, _, _ = TEMPLATE.partition('    const double slip =')
     return f'{head}    {source} return 0;\n}}\n'
 
@@ -71,7 +71,7 @@ def test_the_exported_mpc_run_from_its_file_gives_the_torques_of_python(exported
     assert np.ptp(expected.torque_request[60:]) > 1.0, 'this run asks nothing of the controller'
 
 
-def test_the_template_is_the_pi_controller_that_it_says(library):
+def test_the_template_is_a_pi_controller(library):
     gains = {'proportional_gain': 0.1, 'integral_gain': 0.1}
     expected = run_headless(SETTINGS, make_controller('pi', SETTINGS, gains))
     found = run_headless(SETTINGS, library(TEMPLATE))
@@ -88,7 +88,7 @@ def test_two_controllers_of_one_library_share_no_state(library):
 
 
 class Interleaved(Controller):
-    """One controller, asked after another has been asked the same."""
+    """One controller, each of its calls preceded by the same call of another."""
 
     def __init__(self, controller: Controller, other: Controller) -> None:
         self._controller, self._other = controller, other
@@ -120,17 +120,17 @@ def test_an_error_of_a_controller_in_c_is_placed_in_its_file_and_function(librar
     assert not [detail for detail in found.values() if '.py' in detail]
 
 
-def test_what_c_prints_and_returns_is_kept_apart_from_its_answer(library, capfd):
+def test_output_and_status_of_c_are_kept_apart_from_its_torques(library, capfd):
     source = command('command->clutch_torque = -1.0; puts("hello"); return 7;')
     run = run_headless(SETTINGS, library(f'#include <stdio.h>\n{source}'))
     assert dict(run.status[-1])['c_status'] == '7'
     assert dict(run.status[-1])['closed_loop_torque_n_m'] == '-1.0'
-    told = capfd.readouterr()
-    assert 'hello' in told.err
-    assert told.out == ''
+    printed = capfd.readouterr()
+    assert 'hello' in printed.err
+    assert printed.out == ''
 
 
-def test_the_reference_ahead_and_the_engine_are_those_that_the_library_asks_for(library):
+def test_preview_and_engine_command_are_as_the_library_declares(library):
     source = command(
         'command->clutch_torque = m->slip_reference[20] + m->slip_reference_rate[20];'
         'command->engine_torque = m->engine_torque + 0.001 * (double)m->step;'
@@ -143,7 +143,7 @@ def test_the_reference_ahead_and_the_engine_are_those_that_the_library_asks_for(
 
 
 class InPython(Controller):
-    """What the C of the test above does."""
+    """The controller in Python that the C of the test above is."""
 
     preview_steps = 20
     commands_engine = True
@@ -207,7 +207,7 @@ def test_a_failure_in_c_ends_the_run_with_one_line(library, tmp_path, capsys, bo
     [TEMPLATE.replace('s->integral_rpm_s = 0.0;', '(void)s;'), command('')],
     ids=['state that reset leaves', 'torque that update leaves'],
 )
-def test_what_c_leaves_unwritten_is_no_zero(library, source):
+def test_outputs_that_c_does_not_write_are_nan(library, source):
     with pytest.raises(DdctError, match='its torque at step 60 is nan'):
         run_headless(SETTINGS, library(source))
 

@@ -1,4 +1,4 @@
-"""What may be exported, and into which folders."""
+"""Controllers that can be exported, and folders into which they can."""
 
 import pytest
 from support.exported_mpc import NOT_IN_C, compile_c, run_settings

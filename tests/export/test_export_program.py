@@ -36,7 +36,9 @@ def test_mpc3_is_what_is_exported_by_default(tmp_path, capsys):
         (['--set', 'controllers.mpc3.control_steps=40'], 'control_steps is 40, longer than'),
     ],
 )
-def test_what_cannot_be_exported_is_one_line_and_no_folder(tmp_path, capsys, options, error):
+def test_a_controller_that_cannot_be_exported_is_one_line_and_no_folder(
+    tmp_path, capsys, options, error
+):
     folder = tmp_path / 'c'
     assert main(['mpc', '--export', str(folder), *options]) == 1
     printed = capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""The exported C itself: what it calls, what it does with bad input, and its example."""
+"""The exported C itself: its calls, its response to bad input, and its example."""
 
 import dataclasses
 import math
@@ -22,31 +22,31 @@ from ddct_plant.base.errors import DdctError
 
 
 class Recorded(Controller):
-    """Passes on what it is asked and keeps it."""
+    """A controller that records its measurements and passes them on."""
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
         self.preview_steps = controller.preview_steps
         self.commands_engine = controller.commands_engine
-        self.asked: list[tuple[bool, Measurement]] = []
+        self.measurements: list[tuple[bool, Measurement]] = []
 
     def reset(self) -> None:
         self._controller.reset()
 
     def hold(self, measurement: Measurement) -> None:
-        self.asked.append((False, measurement))
+        self.measurements.append((False, measurement))
         self._controller.hold(measurement)
 
     def update(self, measurement: Measurement) -> Command:
-        self.asked.append((True, measurement))
+        self.measurements.append((True, measurement))
         return self._controller.update(measurement)
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf, 1e10])
 @pytest.mark.parametrize('field', ['engine_speed', 'load_torque', 'slip_reference'])
 def test_a_bad_measurement_is_refused_and_leaves_no_trace(exported_mpc3, field, bad):
-    """The call before and after it answer as if it had not been."""
-    measurements = [m for acts, m in exported_mpc3.asked if acts][:20]
+    """The calls before and after it return the same as without it."""
+    measurements = [m for acts, m in exported_mpc3.measurements if acts][:20]
     value = [bad] * len(measurements[0].slip_reference) if field == 'slip_reference' else bad
     spoilt = dataclasses.replace(measurements[10], **{field: value})
     in_c = exported_mpc3.in_c
@@ -65,23 +65,23 @@ def test_a_bad_measurement_is_refused_and_leaves_no_trace(exported_mpc3, field, 
 class Exported:
     folder: Path
     in_c: ExportedController
-    asked: list[tuple[bool, Measurement]]
+    measurements: list[tuple[bool, Measurement]]
 
 
 @pytest.fixture(scope='module')
 def exported_mpc3(tmp_path_factory) -> Exported:
-    """MPC3 with limits that bind, as C, and what it is asked in a run."""
+    """Return MPC3 with limits that bind, as C, and its measurements in a run."""
     settings = run_settings('controllers.mpc3.torque_rate_n_m_s=300')
     folder = tmp_path_factory.mktemp('mpc3') / 'c'
     recorded = Recorded(make_controller('mpc3', settings))
     run_headless(settings, recorded)
     in_c = exported(make_controller('mpc3', settings), 'mpc3', settings, folder)
-    return Exported(folder, in_c, recorded.asked)
+    return Exported(folder, in_c, recorded.measurements)
 
 
-def csv_lines(asked: list[tuple[bool, Measurement]]) -> str:
+def csv_lines(measurements: list[tuple[bool, Measurement]]) -> str:
     lines = []
-    for acts, m in asked:
+    for acts, m in measurements:
         values = (
             *(m.engine_speed, m.shaft_speed, m.wheel_speed),
             *(m.engine_torque, m.load_torque, m.open_loop_torque),
@@ -93,8 +93,8 @@ def csv_lines(asked: list[tuple[bool, Measurement]]) -> str:
 
 @pytest.mark.parametrize('sanitizer', ['', 'address,undefined'])
 def test_the_example_prints_the_same_torques(exported_mpc3, sanitizer):
-    """Address and undefined-behaviour sanitizers find nothing in a whole run."""
-    folder, asked = exported_mpc3.folder, exported_mpc3.asked
+    """Address and undefined-behaviour sanitizers find no error in a whole run."""
+    folder, measurements = exported_mpc3.folder, exported_mpc3.measurements
     flags = ['-O1', '-g', f'-fsanitize={sanitizer}', '-fno-sanitize-recover=all']
     if sanitizer and not sanitizers_work(folder, flags):
         pytest.skip('cc has no sanitizers here')
@@ -102,12 +102,12 @@ def test_the_example_prints_the_same_torques(exported_mpc3, sanitizer):
     arguments = ('ddct_mpc.c', 'ddct_mpc_example.c', '-o', program)
     compile_c(folder, *(flags if sanitizer else []), *arguments)
     done = subprocess.run(
-        [program], cwd=folder, input=csv_lines(asked), capture_output=True, text=True
+        [program], cwd=folder, input=csv_lines(measurements), capture_output=True, text=True
     )
     assert (done.returncode, done.stderr) == (0, '')
     exported_mpc3.in_c.reset()
     lines = done.stdout.splitlines()
-    for (acts, measurement), line in zip(asked, lines, strict=True):
+    for (acts, measurement), line in zip(measurements, lines, strict=True):
         if acts:
             expected = exported_mpc3.in_c.update(measurement).clutch_torque
             assert float(line.split(',')[0]) == pytest.approx(expected, abs=1e-9)
@@ -127,7 +127,7 @@ def sanitizers_work(folder: Path, flags: list[str]) -> bool:
 def test_the_example_names_a_line_that_it_cannot_read(exported_mpc3, line):
     folder = exported_mpc3.folder
     compile_c(folder, 'ddct_mpc.c', 'ddct_mpc_example.c', '-o', 'example')
-    text = csv_lines(exported_mpc3.asked[:2]) + line + '\n'
+    text = csv_lines(exported_mpc3.measurements[:2]) + line + '\n'
     done = subprocess.run(['./example'], cwd=folder, input=text, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr == 'line 3 does not hold 9 numbers with commas between them\n'

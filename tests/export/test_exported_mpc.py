@@ -17,9 +17,9 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 TOLERANCE_N_M = 1e-6
-"""Both solvers leave about 1e-9, DAQP by its tolerance."""
+"""Tolerance in N m: both solvers leave about 1e-9, DAQP by its tolerance."""
 CONTROL_STARTS = 60
-"""The first step under feedback in the detailed architecture."""
+"""First step under feedback in the detailed architecture."""
 EXPORTABLE = sorted(set(PREDICTIVE) - NOT_IN_C)
 
 
@@ -71,7 +71,7 @@ def test_it_does_so_in_every_architecture(tmp_path, architecture):
         ('torque_weight=0.39', 'move_weight=0'),
     ],
 )
-def test_what_it_knows_and_weighs_is_exported(tmp_path, options):
+def test_options_of_observer_and_cost_are_exported(tmp_path, options):
     settings = run_settings(*(f'controllers.mpc3.{option}' for option in options))
     original = make_controller('mpc3', settings)
     run = compare_loops(original, exported(original, 'mpc3', settings, tmp_path / 'c'), settings)
@@ -137,7 +137,7 @@ def rebuilt(controller: MpcController, settings: MpcSettings) -> MpcController:
 
 @pytest.mark.parametrize('name', ['mpc2', 'mpc3', 'mpc4'])
 def test_levels_give_way_to_the_rate_as_in_the_original(tmp_path, name):
-    """The open loop starts above the highest torque, farther than the rate leads back at once."""
+    """The open loop starts above the highest torque, farther than the rate returns at once."""
     section = f'controllers.{name}'
     settings = run_settings(
         f'{section}.highest_torque_n_m=240',

@@ -69,7 +69,7 @@ def random_structure(seed: int, size: int, rows: int, soft: int) -> QpStructure:
     ('size', 'rows', 'soft'), [(1, 1, 0), (4, 8, 0), (4, 30, 22), (16, 32, 0), (16, 40, 20)]
 )
 def test_random_programs_have_daqps_solution(tmp_path, size, rows, soft):
-    """The hard rows hold a common point, the soft ones may conflict with it and each other."""
+    """The hard rows have a common point, the soft ones may conflict with it and each other."""
     structure = random_structure(size + rows, size, rows, soft)
     solver = ExportedSolver(structure, tmp_path / 'c')
     backend = make_backend('daqp', structure, 1000)
@@ -95,7 +95,7 @@ def test_random_programs_have_daqps_solution(tmp_path, size, rows, soft):
 
 
 def solver(rows: list[list[float]], folder: Path, soft: list[bool] | None = None, limit: int = 20):
-    """1/2 z'z over the rows; soft ones weigh 100."""
+    """Return the solver of 1/2 z'z over the rows; soft ones have the weight 100."""
     constraints = np.array(rows)
     mask = None if soft is None else np.array(soft)
     structure = QpStructure(np.eye(constraints.shape[1]), constraints, mask, 100.0)
@@ -103,7 +103,7 @@ def solver(rows: list[list[float]], folder: Path, soft: list[bool] | None = None
 
 
 def test_rows_that_depend_on_each_other_are_solved(tmp_path):
-    """The second row is twice the first, the last the sum of others; all hold at the optimum."""
+    """The second row is twice the first, the last the sum of others; all bind at the optimum."""
     in_c = solver([[1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0]], tmp_path)
     f, upper = np.array([-5.0, -6.0]), [1.0, 2.0, 1.0, 2.0]
     z, _, status = in_c.solve(f, [-INF] * 4, upper)
@@ -151,7 +151,7 @@ def test_a_program_without_numbers_to_round_ends(tmp_path):
     assert (z[0], iterations, status) == (0.0, 0, 'solved')
 
 
-def test_the_iteration_limit_is_kept_and_said(tmp_path):
+def test_the_iteration_limit_is_kept_and_reported(tmp_path):
     structure = random_structure(1, 16, 32, 0)
     enough, short = (ExportedSolver(structure, tmp_path / str(limit), limit) for limit in (200, 3))
     f = -structure.hessian @ np.full(16, 10.0)

@@ -1,4 +1,4 @@
-"""Exported controllers fed with what no loop gives them, step by step beside the originals."""
+"""Exported controllers beside the originals, step by step, on measurements of no loop."""
 
 from collections import Counter
 from pathlib import Path
@@ -15,12 +15,16 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 
 EPISODES, STEPS = 40, 8
-"""Few steps: fed with what it does not cause, a controller may drift away from its like."""
+"""
+Numbers of episodes and steps.
+
+Few steps: on measurements that it does not cause, a controller may drift from its original.
+"""
 HIGHEST_N_M = 30.0
 
 
 def random_measurement(random: np.random.Generator, step: int, references: int) -> Measurement:
-    """Return one with open-loop torques that jump, fall below 0 and lie beyond the limits."""
+    """Return a measurement with open-loop torques that jump, fall below 0 or exceed the limits."""
     return Measurement(
         step=step,
         engine_speed=random.uniform(100.0, 200.0),
@@ -39,7 +43,7 @@ def answers(controller: Controller, seed: int) -> list[tuple[list[float], tuple[
     """
     Return torques in N m, status and fallbacks, and whether the request is beyond its level.
 
-    One episode; some steps are held.
+    It is one episode; in some steps feedback is off.
     """
     random = np.random.default_rng(seed)
     controller.reset()
@@ -58,7 +62,7 @@ def answers(controller: Controller, seed: int) -> list[tuple[list[float], tuple[
 
 
 @pytest.mark.parametrize('name', sorted(set(PREDICTIVE) - NOT_IN_C))
-def test_any_measurements_get_the_originals_answers(tmp_path, name):
+def test_any_measurements_give_the_originals_torques(tmp_path, name):
     section = f'controllers.{name}'
     settings = run_settings(
         f'{section}.highest_torque_n_m={HIGHEST_N_M}',
@@ -82,7 +86,7 @@ def test_any_measurements_get_the_originals_answers(tmp_path, name):
 
 
 class Hasty:
-    """Has a solution where no limit holds it off the best of all moves, else none."""
+    """A solver with a solution only where no limit is active at the unconstrained optimum."""
 
     def __init__(self, structure: QpStructure) -> None:
         self._structure = structure
@@ -109,7 +113,7 @@ def never_changing_its_active_set(folder: Path) -> ExportedController:
 
 @pytest.mark.parametrize('name', ['mpc2', 'mpc4'])
 def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path, name):
-    """Torques of which some are within the limits and some are not, the plan's neither."""
+    """Some torques are within the limits and some are not, those of the plan neither."""
     section = f'controllers.{name}'
     settings = run_settings(
         f'{section}.highest_torque_n_m=1000',

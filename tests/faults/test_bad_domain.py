@@ -33,7 +33,7 @@ def test_a_run_names_it_once_and_makes_no_folder(
     assert not list(tmp_path.iterdir())
 
 
-def test_a_run_without_a_graph_does_not_look_at_it(
+def test_a_run_without_a_graph_does_not_read_it(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', '999')
@@ -43,7 +43,7 @@ def test_a_run_without_a_graph_does_not_look_at_it(
 def test_each_graph_has_another_domain_than_the_one_before(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Nodes that were killed in the last one are still seen in it, and hold its shared memory."""
+    """Killed nodes stay visible in the last domain, and keep its shared memory."""
     monkeypatch.delenv('ROS_DOMAIN_ID')
     domains = []
     for _ in range(10):

@@ -1,4 +1,4 @@
-"""Whatever a user can give wrongly to `bringup` ends it with one line before anything runs."""
+"""Every invalid option or scenario ends `bringup` with one line before anything runs."""
 
 from pathlib import Path
 
@@ -160,7 +160,7 @@ def test_the_program_exits_with_the_code_that_main_returns(
 
 
 def test_a_section_for_an_unknown_controller_is_refused(tmp_path, capsys):
-    """It would change nothing, and the table's title would say that it did."""
+    """The section would change nothing, although the table's title would list it."""
     options = ['--headless', '--out', str(tmp_path / 'x'), '--set', 'controllers.mpc_4.gain=3']
     assert compare.main(['--controllers', 'pi', *options]) == 1
     assert 'controllers.mpc_4: there is no such controller' in capsys.readouterr().err

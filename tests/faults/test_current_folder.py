@@ -1,4 +1,4 @@
-"""What lies in the user's folder does not get into the nodes."""
+"""Files in the user's current folder are not imported by the nodes."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Nodes of others in the graph: the recorder says what it misses of them."""
+"""Third parties' nodes in the graph: the recorder names their missing values."""
 
 import pytest
 from support.in_process_graph import GraphOf, node_class
@@ -9,7 +9,7 @@ from ddct_bringup.record import recorder_node
 from ddct_plant.graph.node import GraphNode
 
 
-def test_a_recorder_that_waits_says_for_whom_while_it_waits(
+def test_a_waiting_recorder_names_the_missing_nodes(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(recorder_node, 'PATIENCE_S', 0.3)
@@ -17,11 +17,11 @@ def test_a_recorder_that_waits_says_for_whom_while_it_waits(
     graph.add('recorder', {'nodes': [*NODE_NAMES, 'bench']})
     printed: list[str] = []
 
-    def said() -> bool:
+    def warned() -> bool:
         printed.append(capfd.readouterr().err)
         return 'no run_info came from' in ''.join(printed)
 
-    graph.spin_until(said, 'whom the recorder waits for')
+    graph.spin_until(warned, 'the warning of the recorder')
     words = ''.join(printed)
     for node in set(NODE_NAMES) - {'recorder'} | {'bench'}:
         assert node in words
@@ -31,10 +31,10 @@ def test_a_recorder_that_waits_says_for_whom_while_it_waits(
 def test_a_run_info_without_what_the_bag_needs_is_named(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, node: str, key: str
 ) -> None:
-    def say_little(node: GraphNode, extra: object = None) -> None:
+    def publish_without_extra(node: GraphNode, extra: object = None) -> None:
         GraphNode.publish_run_info(node)
 
-    monkeypatch.setattr(node_class(node), 'publish_run_info', say_little)
+    monkeypatch.setattr(node_class(node), 'publish_run_info', publish_without_extra)
     graph = graph_of(plan())
     graph.add_all()
     failed, complaint = graph.first_failure()

@@ -1,4 +1,4 @@
-"""A disk that fills up during a run: a reason, and nothing that could be taken for a result."""
+"""A disk that fills up ends a run with a reason, and leaves nothing like a result."""
 
 import os
 import resource
@@ -52,7 +52,7 @@ def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     assert 'unfinished' in capfd.readouterr().err
 
 
-def test_a_limit_on_the_size_of_files_ends_the_run_likewise(
+def test_a_limit_on_the_size_of_files_ends_the_run_with_the_file_and_the_reason(
     programs: Programs, tmp_path: Path
 ) -> None:
     def limit() -> None:

@@ -1,4 +1,4 @@
-"""Names and texts that a user was handed do no harm beyond the run's folder."""
+"""Hostile names and texts in options do no harm outside the run's folder."""
 
 import importlib
 import inspect
@@ -89,7 +89,7 @@ def test_help_into_a_full_disk_is_one_line(module: str) -> None:
 
 
 WRAPPERS = ('run_program', 'run_subcommands', 'run_node')
-"""`run_subcommands` chooses the subcommand and ends in `run_program`."""
+"""Wrappers of programs' main; `run_subcommands` chooses the subcommand and calls `run_program`."""
 
 
 @pytest.mark.parametrize('package', sorted({package_of(spec) for spec in GRAPH_NODES}))

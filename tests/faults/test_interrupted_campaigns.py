@@ -33,7 +33,7 @@ random:
 
 
 class InThisProcess:
-    """Workers without processes."""
+    """Workers as threads of this process."""
 
     count = 1
 
@@ -117,7 +117,7 @@ def _kill_when(worker: Program, out: Path, count: int) -> None:
 
 
 @pytest.mark.parametrize('address', ['tcp://127.0.0.1:9', 'no such place'])
-def test_a_scheduler_that_is_not_there_is_told_before_anything_is_written(
+def test_a_scheduler_that_is_not_there_is_reported_before_anything_is_written(
     spec: Path,
     tmp_path: Path,
     capfd: pytest.CaptureFixture[str],
@@ -134,7 +134,7 @@ def test_a_scheduler_that_is_not_there_is_told_before_anything_is_written(
     assert not list(tmp_path.glob(f'*{SUFFIX}'))
 
 
-def test_what_answers_and_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_address_of_another_server_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     def client(*_: object, **__: object) -> None:
         raise MemoryError('Unable to allocate 3.07 EiB')  # a web server's answer as a length
 
@@ -143,7 +143,7 @@ def test_what_answers_and_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatc
         executors.DaskWorkers('tcp://web:80')
 
 
-def test_without_dask_a_scheduler_cannot_be_asked(
+def test_without_dask_a_scheduler_cannot_be_used(
     spec: Path,
     tmp_path: Path,
     capfd: pytest.CaptureFixture[str],
@@ -164,7 +164,7 @@ def test_without_dask_a_scheduler_cannot_be_asked(
         (['--limits', 'absent.yaml'], 'limits absent.yaml: cannot be read'),
     ],
 )
-def test_options_that_cannot_be_used_are_told(
+def test_options_that_cannot_be_used_are_reported(
     spec: Path,
     tmp_path: Path,
     capfd: pytest.CaptureFixture[str],

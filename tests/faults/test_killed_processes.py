@@ -1,4 +1,4 @@
-"""Killed and interrupted processes: a reason, no process left, nothing half taken for whole."""
+"""Killed and interrupted processes: a reason, no process left, no partial result as complete."""
 
 import os
 import signal
@@ -34,7 +34,7 @@ def _running(programs: Programs, out: Path, *options: str) -> Program:
 
 
 def _require_whole_until_its_end(bag: Path) -> int:
-    """Require that a bag can be read and holds the first steps of the run; return how many."""
+    """Require that a bag can be read and has the first steps of the run; return their number."""
     trajectory = read_bag(bag).trajectory
     steps = trajectory.steps
     # The length of the run changes nothing before its end.
@@ -146,7 +146,7 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     live = programs.start_node(
         'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
-    # In a domain of its own: the middleware of a node that knows it would clean up after it.
+    # In a domain of its own: the middleware of a node in its domain would clean up after it.
     dead = programs.start_node(
         'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '101'}
     )

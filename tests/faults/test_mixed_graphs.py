@@ -32,7 +32,7 @@ def test_a_node_with_other_settings_is_named(
         assert word in complaint
 
 
-def test_two_controllers_on_one_topic_are_noticed(graph_of: GraphOf) -> None:
+def test_two_controllers_on_one_topic_are_detected(graph_of: GraphOf) -> None:
     graph = graph_of(plan('ls8'))
     graph.add_all()
     graph.add('controller', {'controller': 'pi'}, key='second')
@@ -53,7 +53,7 @@ def test_two_controllers_of_different_names_are_both_named(graph_of: GraphOf) ->
     assert complaint.endswith('; publishers: /controller and /other')
 
 
-def test_a_failed_graph_in_one_process_leaves_nothing_for_the_next_to_hear(
+def test_a_failed_graph_in_one_process_leaves_nothing_that_the_next_receives(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def fail(*_: object) -> None:

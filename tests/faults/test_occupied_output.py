@@ -1,4 +1,4 @@
-"""Output folders: nothing of a user's is ever touched, an old result only by a whole new one."""
+"""Output folders: files of a user are never changed, an old result only by a complete new one."""
 
 import os
 import stat

@@ -1,4 +1,4 @@
-"""In real time bad messages count as missing ones, and what stays away ends in a safe state."""
+"""In real time bad messages count as missing, and missing ones lead to a safe state."""
 
 import math
 import signal
@@ -16,7 +16,7 @@ from support.runs import expected, plan
 from support.tampering import Tamperer, tampered_remap
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.run.beside_bag import read_timing
+from ddct_bringup.run.timing_and_failure import read_timing
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
@@ -27,7 +27,7 @@ CLUTCH, LOAD = CLUTCH_TORQUE.name, LOAD_TORQUE.name
 FROM_STEP = 20
 FAIL_SAFE = FailSafeSettings()
 LATEST_STEP = (2_147_483_640 - 1) * 100
-"""Of the last full stamp that a message can hold, less some seconds."""
+"""Step of the last complete stamp that a message can contain, less some seconds."""
 
 
 def _nan(message: WrenchStamped) -> None:
@@ -118,7 +118,7 @@ def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: 
 
 
 def _stop_when_answered(graph: InProcessGraph, clock: PatientClock, node: str) -> int:
-    """Take a node away right after the clutch has answered a step, and return that step."""
+    """Remove a node right after the clutch has answered a step, and return that step."""
     owner = realtime_owner(graph)
     graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
     while CLUTCH in owner.missing():

@@ -1,4 +1,4 @@
-"""Two live publishers of one topic of the loop end the run, and the names are told."""
+"""Two live publishers of one topic of the loop end the run, and both are named."""
 
 from typing import Any
 
@@ -17,15 +17,15 @@ from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 STALL_S = 0.03
-"""Lateness from which a request may be missed for longer than the actuator's timeout."""
+"""Lateness, s, from which a request may be missing for longer than the actuator's timeout."""
 LOOP = [topic for topic in TOPICS if topic.every_tick]
 
 
 class Echo(Node):
-    """Publishes the last message of a topic again and again."""
+    """Node that publishes the last message of a topic repeatedly."""
 
     def __init__(self, topic: Topic, **options: Any) -> None:
-        """Listen to `topic` and repeat it."""
+        """Subscribe to `topic` and repeat it."""
         super().__init__('echo', **options)
         self._publisher = self.create_publisher(topic.message_class, topic.name, RECORDER_QOS)
         self._last: bytes | None = None
@@ -61,7 +61,7 @@ def _clutch_torque(graph: InProcessGraph) -> float:
     return _owner(graph)._driveline.outputs().joint_effort[1]
 
 
-def test_every_topic_of_a_tick_is_looked_at(graph_of: GraphOf) -> None:
+def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) -> None:
     driveline = graph_of(plan()).add('driveline')
     assert isinstance(driveline, DrivelineNode)
     assert sorted(driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
@@ -100,7 +100,7 @@ def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
 @pytest.mark.parametrize(
     ('name', 'changes'), [('controller', {'controller': 'pi'}), ('clutch', {}), ('load', {})]
 )
-def test_in_real_time_a_second_publisher_opens_the_clutch_before_its_name_is_told(
+def test_in_real_time_a_second_publisher_opens_the_clutch_before_it_is_named(
     graph_of: GraphOf, name: str, changes: dict[str, str]
 ) -> None:
     graph = graph_of(plan('ls8', mode='realtime', duration_s=60.0))
@@ -120,7 +120,7 @@ def test_in_real_time_a_second_publisher_opens_the_clutch_before_its_name_is_tol
     assert abs(_clutch_torque(graph)) < 1e-6
 
 
-def test_a_killed_node_that_the_graph_still_shows_is_no_second_publisher(
+def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(
     graph_of: GraphOf, programs: Programs
 ) -> None:
     run = plan(duration_s=0.3)

@@ -11,7 +11,7 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs import bringup, compare, report, score
-from ddct_bringup.run.output_folder import SUFFIX, held
+from ddct_bringup.run.output_folder import SUFFIX, locked_folders
 from ddct_plant.base.errors import DdctError
 
 SHORT = ['--headless', '--duration', '0.7']
@@ -69,7 +69,7 @@ def test_no_program_writes_into_the_folder_of_a_running_compare(
 ) -> None:
     paths = {'', 'report.html', 'scores.json', 'scores.csv', 'pi/pi_0.mcap'}
     given = [str(compared / each) if each in paths else each for each in arguments]
-    with held(compared):
+    with locked_folders(compared):
         before = _files(compared.parent)
         assert main(given) == 1
         assert 'is writing there' in capfd.readouterr().err
@@ -79,16 +79,19 @@ def test_no_program_writes_into_the_folder_of_a_running_compare(
 def test_a_folder_below_keeps_the_one_around_it(
     compared: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    with held(compared / 'pi'):
+    with locked_folders(compared / 'pi'):
         assert compare.main([*PI, '--overwrite', '--out', str(compared)]) == 1
     assert_one_line(capfd.readouterr().err, 'ddct compare', f'{compared}: process')
 
 
 def test_neighbours_share_the_folder_around_them(compared: Path) -> None:
-    with held(compared / 'pi'):
+    with locked_folders(compared / 'pi'):
         arguments = ['--controller', 'ls1', *SHORT, '--out', str(compared)]
         assert bringup.main(arguments) == 0
-        with pytest.raises(DdctError, match='is writing there'), held(compared / 'pi.partial'):
+        with (
+            pytest.raises(DdctError, match='is writing there'),
+            locked_folders(compared / 'pi.partial'),
+        ):
             pass
 
 
@@ -96,8 +99,11 @@ def test_neighbours_share_the_folder_around_them(compared: Path) -> None:
 def test_one_folder_spelt_in_two_ways_is_one(tmp_path: Path, spelling: str) -> None:
     (tmp_path / 'link').symlink_to(tmp_path)
     (tmp_path / 'runs').mkdir()
-    with held(tmp_path / 'runs'):
-        with pytest.raises(DdctError, match='is writing there'), held(tmp_path / spelling):
+    with locked_folders(tmp_path / 'runs'):
+        with (
+            pytest.raises(DdctError, match='is writing there'),
+            locked_folders(tmp_path / spelling),
+        ):
             pass
         assert (tmp_path / f'.runs{SUFFIX}').exists()
     assert not (tmp_path / f'.runs{SUFFIX}').exists()

@@ -1,4 +1,4 @@
-"""A node that is missing, falls silent or comes late: the driveline names what it waits for."""
+"""A node that is missing, hangs or starts late: the driveline names what it waits for."""
 
 import signal
 
@@ -98,7 +98,7 @@ def test_a_follower_that_is_started_in_the_middle_ends_with_the_reason(
     assert 'start the graph again' in complaint
 
 
-def test_a_recorder_that_is_started_in_the_middle_says_so(graph_of: GraphOf) -> None:
+def test_a_recorder_that_is_started_in_the_middle_ends_with_the_reason(graph_of: GraphOf) -> None:
     graph = _graph(graph_of(plan(duration_s=600.0)))
     graph.add('driveline', {'require_recorder': False})
     graph.add_all(without=['recorder'])

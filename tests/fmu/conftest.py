@@ -1,4 +1,4 @@
-"""What the tests of FMUs share."""
+"""Common parts of the tests of FMUs."""
 
 from pathlib import Path
 

@@ -44,7 +44,7 @@ def test_a_second_run_begins_anew(version: int) -> None:
     assert first.sha256() == second.sha256()
 
 
-def test_two_controllers_of_one_file_know_nothing_of_each_other() -> None:
+def test_two_controllers_of_one_file_share_no_state() -> None:
     file = controller_file(2)
     alone = run_headless(settings(), file)
     one, other = (make_controller(file, settings()) for _ in range(2))
@@ -68,10 +68,10 @@ def test_every_instance_is_freed_and_no_file_stays(
 
 
 @pytest.mark.parametrize('version', VERSIONS)
-def test_it_is_known_by_the_digests_of_both_files(version: int) -> None:
-    told = make_controller(controller_file(version), settings()).info('mine')
+def test_it_is_identified_by_the_digests_of_both_files(version: int) -> None:
+    info = make_controller(controller_file(version), settings()).info('mine')
     for key, file in (('controller_file_sha256', 'mine.yaml'), ('fmu_sha256', 'pi.fmu')):
-        assert told[key] == hashlib.sha256(Path(file).read_bytes()).hexdigest()
+        assert info[key] == hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
 
 @pytest.mark.parametrize('version', VERSIONS)
@@ -101,7 +101,7 @@ def test_start_values_of_every_type_reach_the_fmu(version: int) -> None:
 
 
 @pytest.mark.parametrize('version', VERSIONS)
-def test_it_sees_the_reference_ahead_and_commands_the_engine(version: int) -> None:
+def test_it_receives_the_reference_ahead_and_commands_the_engine(version: int) -> None:
     file = controller_file(
         version,
         ('{e: slip_error_rpm}', "{e: slip_error_rpm, ahead: 'slip_reference_rad_s[4]'}"),

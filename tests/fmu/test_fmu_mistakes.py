@@ -1,4 +1,4 @@
-"""What is wrong with an FMU, or with what maps it, is one line with file and key."""
+"""An error of an FMU, or of its mapping, is one line with file and key."""
 
 import re
 import sys
@@ -20,7 +20,7 @@ UNREADABLE = 'controller file mine.yaml: line 3: fmu.file: '
 
 
 def complaint(file: str) -> str:
-    """Return what is said of a controller that cannot be made, in one line."""
+    """Return the one line of the error for a controller that cannot be made."""
     with pytest.raises(DdctError) as raised:
         make_controller(file, SETTINGS)
     text = str(raised.value)
@@ -121,6 +121,8 @@ def test_an_fmu_that_fails_in_a_run_ends_it(version: int, fault: int, words: str
     assert ('out of oil after 10 steps' in str(raised.value)) == (fault in (1, 2))
 
 
-def test_without_fmpy_the_line_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_without_fmpy_names_the_command_that_installs_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setitem(sys.modules, 'fmpy', None)
     assert 'FMPy is not installed: `make fmu`' in complaint(controller_file(2))

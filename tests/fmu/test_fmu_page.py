@@ -1,4 +1,4 @@
-"""What the page on FMUs shows works as it stands there."""
+"""The examples of the page on FMUs work as printed there."""
 
 import json
 import shlex

@@ -1,4 +1,4 @@
-"""The floor of `make bench` starts with every node matched, and never waits without end."""
+"""The bare chain of `make bench` starts with every node matched, and has a timeout."""
 
 import sys
 from pathlib import Path

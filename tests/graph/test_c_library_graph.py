@@ -1,4 +1,4 @@
-"""A controller in C takes its place in the graph."""
+"""A controller in C runs in the graph like its Python original."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
 
 TOLERANCE_N_M = 1e-6
-"""As tests/export has it between the C and Python of one controller."""
+"""Tolerance between the C and Python of one controller, N m, as in tests/export."""
 
 
 @pytest.mark.compiler

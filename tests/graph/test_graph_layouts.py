@@ -41,7 +41,7 @@ def test_a_repeated_run_in_one_process_leaves_the_same_bytes(tmp_path: Path) -> 
     assert bags[0] == bags[1] == bags[2]
 
 
-def test_the_hash_tells_one_last_bit_apart() -> None:
+def test_one_last_bit_changes_the_hash() -> None:
     run = plan()
     first, second = expected(run), expected(run)
     assert first.sha256() == second.sha256()

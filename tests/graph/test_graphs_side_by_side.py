@@ -1,4 +1,4 @@
-"""Graphs on one machine do not mix, and a namespace changes nothing."""
+"""Graphs on one machine are separate, and a namespace changes nothing."""
 
 import os
 from pathlib import Path
@@ -10,7 +10,9 @@ from support.runs import bag_bytes, expected, plan
 from ddct_bringup.bag.reader import read_bag
 
 
-def test_two_bringups_at_once_do_not_hear_each_other(programs: Programs, tmp_path: Path) -> None:
+def test_two_bringups_at_once_receive_nothing_from_each_other(
+    programs: Programs, tmp_path: Path
+) -> None:
     environment = {name: value for name, value in os.environ.items() if name != 'ROS_DOMAIN_ID'}
     out = tmp_path / 'runs'
     started = [

@@ -13,7 +13,7 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
 RUN = plan(layout='headless', duration_s=3.0)
-"""What nodes run that are only told to use `ls8`."""
+"""Run of nodes whose only parameter is the controller `ls8`."""
 MODULES = {spec.name: spec.module for spec in GRAPH_NODES}
 
 
@@ -63,7 +63,7 @@ def test_nodes_without_a_recorder_run_the_same_trajectory(programs: Programs) ->
     names = [name for name in MODULES if name not in ('recorder', 'driveline')]
     random.Random(2).shuffle(names)
     with Observing() as observing:
-        # The run must not be over before the observer, for whom nobody waits, has found it.
+        # The run must not be over before the observer, for which no node waits, has joined it.
         nodes = _start(programs, [*names[:3], 'driveline', *names[3:-1]], None)
         ticks = observing.observer.joints
         wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)

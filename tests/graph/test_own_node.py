@@ -1,4 +1,4 @@
-"""Nodes that import nothing of ours stand in for ours and give the same trajectory."""
+"""Nodes that import none of this project's code replace its nodes and give the same trajectory."""
 
 import re
 import subprocess
@@ -18,7 +18,7 @@ from ddct_plant.scenario.settings import RunSettings
 PAGE = 'docs/develop/own_node.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
 MOST_LINES = 40
-"""Of code, as the page says."""
+"""Largest number of lines of code of an example, as on the page."""
 WITHIN_S = 120.0
 
 

@@ -17,7 +17,7 @@ from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import packaged_limits
 
 NEAR = 0.1
-"""How near the slip speed stays to that of lock-step if a few steps are missed, of its peak."""
+"""Largest difference of the slip speed from lock-step with a few missed steps, of its peak."""
 
 
 def _timing(folder: Path) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Real time: the clutch opens by itself, at the stated rate, when the controller falls silent."""
+"""Real time: the clutch opens by itself, at the stated rate, when requests stop."""
 
 import signal
 from functools import partial
@@ -28,13 +28,13 @@ FAIL_SAFE = FailSafeSettings()
 HELD_STEPS = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
 SILENT_AT_STEP = 80
 STALL_S = 0.03
-"""A driveline that is later than this publishes ticks in bursts; a controller misses steps."""
+"""Lateness of the driveline, s, from which ticks come in bursts and a controller misses steps."""
 SETTLING_STEPS = 10
 """The delay of one period and about four time constants of G_a (Section 1.4.2)."""
 
 
 class _Listener(Node):
-    """Keeps the requests and the actuator's torques by step."""
+    """Subscriber that stores the requests and the actuator's torques by step."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__('listener', **options)
@@ -46,11 +46,11 @@ class _Listener(Node):
         self.create_subscription(JointTrajectory, 'actuator/torque', self._on_torque, RECORDER_QOS)
 
     def has_torque(self, step: int) -> bool:
-        """Say whether the actuator has answered this step."""
+        """Return whether the actuator has answered this step."""
         return step in self.torques
 
     def has_come_to(self, step: int) -> bool:
-        """Say whether the actuator has answered this step or a later one."""
+        """Return whether the actuator has answered this step or a later one."""
         return max(self.torques, default=-1) >= step
 
     def _on_request(self, message: WrenchStamped) -> None:
@@ -69,12 +69,12 @@ def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
     graph_of: GraphOf, programs: Programs, signals: list[signal.Signals]
 ) -> None:
     run = plan(mode='realtime', duration_s=1.8)
-    heard = _run_without_a_stall(graph_of, run, programs, signals)
-    engaged = _first_step_after_the_gap(heard, run.steps)
-    last_request = heard.requests[max(step for step in heard.requests if step < engaged - 5)]
-    assert last_request > 200.0, 'the clutch was open before the controller fell silent'
+    listener = _run_without_a_stall(graph_of, run, programs, signals)
+    engaged = _first_step_after_the_gap(listener, run.steps)
+    last_request = listener.requests[max(step for step in listener.requests if step < engaged - 5)]
+    assert last_request > 200.0, 'the clutch was open before the requests stopped'
     ramp_steps = round(last_request / FAIL_SAFE.fail_safe_ramp_n_m_s / PERIOD_S)
-    torque = np.array([heard.torques[step] for step in range(engaged, run.steps + 1)])
+    torque = np.array([listener.torques[step] for step in range(engaged, run.steps + 1)])
     rate_n_m_s = -np.diff(torque) / PERIOD_S
     on_the_ramp = rate_n_m_s[SETTLING_STEPS:ramp_steps]
     assert on_the_ramp == pytest.approx(FAIL_SAFE.fail_safe_ramp_n_m_s, rel=0.03)
@@ -88,34 +88,34 @@ def _run_without_a_stall(
     """Repeat a run that was too late for real time at most twice; then the machine is too busy."""
     for _ in range(3):
         with graph_of(run) as graph:
-            heard = _Listener(context=graph.context)
+            listener = _Listener(context=graph.context)
             waited_s = run_until_silent(
-                graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP
+                graph, programs, listener, listener.has_come_to, signals, SILENT_AT_STEP
             )
             driveline = graph.nodes['driveline']
             assert isinstance(driveline, DrivelineNode)
             assert isinstance(driveline.owner, RealtimeOwner)
             lateness_s = driveline.owner.worst_lateness_s
-            if lateness_s < STALL_S and all(map(heard.has_torque, range(SILENT_AT_STEP))):
-                return heard
+            if lateness_s < STALL_S and all(map(listener.has_torque, range(SILENT_AT_STEP))):
+                return listener
     busy_s = max(lateness_s, waited_s)
     assert busy_s >= STALL_S, 'steps went unanswered though tick and controller were not late'
     pytest.skip(f'too busy for real time: ticks or controller were {1e3 * busy_s:.0f} ms late')
 
 
-def _first_step_after_the_gap(heard: _Listener, steps: int) -> int:
+def _first_step_after_the_gap(listener: _Listener, steps: int) -> int:
     """Return the first step with a torque after the request was held for its timeout."""
     for step in range(SILENT_AT_STEP, steps):
-        answered = any(heard.has_torque(earlier) for earlier in range(step - HELD_STEPS, step))
-        if heard.has_torque(step) and not answered:
+        answered = any(listener.has_torque(earlier) for earlier in range(step - HELD_STEPS, step))
+        if listener.has_torque(step) and not answered:
             late = f'held for longer than {HELD_STEPS} steps'
-            assert heard.has_torque(step - HELD_STEPS - 1), late
+            assert listener.has_torque(step - HELD_STEPS - 1), late
             return step
-    raise AssertionError(f'the fail-safe did not engage: {sorted(heard.torques)}')
+    raise AssertionError(f'the fail-safe did not engage: {sorted(listener.torques)}')
 
 
 class _Bench(_Listener):
-    """Stands in for plant and controller."""
+    """Substitute for plant and controller."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -125,19 +125,19 @@ class _Bench(_Listener):
         self._request = self.create_publisher(WrenchStamped, 'clutch/torque_request', LOOP_QOS)
 
     def connected(self) -> bool:
-        """Say whether the actuator is there."""
-        heard = all(each.get_subscription_count() for each in (self._ticks, self._request))
-        return heard and self.count_publishers('actuator/torque') > 0
+        """Return whether the actuator is connected."""
+        listener = all(each.get_subscription_count() for each in (self._ticks, self._request))
+        return listener and self.count_publishers('actuator/torque') > 0
 
     def is_at(self, step: int) -> bool:
-        """Say whether the time of this step was heard."""
+        """Return whether the time of this step was received."""
         return self.time == step
 
-    def tell_time(self, step: int) -> None:
+    def publish_time(self, step: int) -> None:
         """Publish the time of a step."""
         self._ticks.publish(CLOCK.message(stamp_of_step(step)))
 
-    def ask(self, step: int, torque: float = 200.0) -> None:
+    def request(self, step: int, torque: float = 200.0) -> None:
         """Publish a request for a step."""
         self._request.publish(TORQUE_REQUEST.message(stamp_of_step(step), torque))
 
@@ -161,7 +161,7 @@ def test_requests_without_clock_give_no_torque_and_end_the_actuator(
 ) -> None:
     graph, driver = bench
     for step in range(HELD_STEPS + 2):
-        driver.ask(step)
+        driver.request(step)
     node, complaint = graph.first_failure()
     assert node == 'actuator'
     for words in (f'at stamp {stamp_of_step(HELD_STEPS + 1)} ns', 'publish /clock'):
@@ -169,22 +169,22 @@ def test_requests_without_clock_give_no_torque_and_end_the_actuator(
     assert not driver.torques
 
 
-def test_a_clock_that_is_heard_late_makes_the_actuator_answer(
+def test_a_late_clock_makes_the_actuator_answer(
     bench: tuple[InProcessGraph, _Bench],
 ) -> None:
     graph, driver = bench
-    driver.ask(0)
+    driver.request(0)
     graph.spin_until(lambda: 0 in driver.requests, 'the request')
     assert not driver.torques
-    driver.tell_time(0)
+    driver.publish_time(0)
 
     def answered_again() -> bool:
-        driver.ask(0)
+        driver.request(0)
         return driver.has_torque(0)
 
     graph.spin_until(answered_again, 'the answer to a request that comes again')
     for step in range(1, 2 * HELD_STEPS):
-        driver.tell_time(step)
+        driver.publish_time(step)
         graph.spin_until(partial(driver.is_at, step), 'the tick')
-        driver.ask(step)
+        driver.request(step)
         graph.spin_until(partial(driver.has_torque, step), 'the torque')

@@ -1,4 +1,4 @@
-"""The recorder holds every tick exactly once on every topic; read without our own reader."""
+"""The recorder writes every tick exactly once on every topic; read without the own reader."""
 
 from collections import Counter, defaultdict
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A run with sensors: the same in every layout, and control reads what they say."""
+"""A run with sensors is the same in every layout, and control reads sensor values."""
 
 from pathlib import Path
 

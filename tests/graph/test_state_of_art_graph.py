@@ -1,4 +1,4 @@
-"""The graph follows what the scenario says of engine speed and pedal as the headless run."""
+"""The graph follows the scenario's engine speed and pedal as the headless run does."""
 
 from pathlib import Path
 

@@ -18,7 +18,7 @@ LAUNCH = (
     'brake.torque_n_m=[600,0]',
     'friction.static_over_kinetic=1.2',
 )
-"""From rest uphill, out of the brake, with a clutch that holds more than it slips with."""
+"""Changes for a start from rest uphill, braked, with a higher static than kinetic capacity."""
 OVER_REVVED = (
     'engine_limits.over_rev_rad_s=200',
     'engine_limits.cut_rad_s=199',

@@ -1,4 +1,4 @@
-"""A controller of clutch and engine: one run in every layout, and clear words if miswired."""
+"""A controller of clutch and engine: one run in every layout, and an error if miswired."""
 
 import signal
 from functools import partial
@@ -30,9 +30,9 @@ SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
 TIMEOUT_STEPS = round(REQUEST_TIMEOUT_S / PERIOD_S)
 SILENT_AT_STEP = 112
-"""When a corner of the reference has just made the controller move the engine."""
+"""Step at which a corner of the reference has just made the controller move the engine."""
 LATE_S = 0.03
-"""A tick that is later than this may have kept requests from the engine."""
+"""Lateness of a tick, s, from which requests may have missed the engine."""
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_a_commanded_engine_with_limits_is_the_headless_one_while_the_shaft_stan
     assert engine[30] > shaft[30] + 50.0
 
 
-def test_an_engine_that_does_not_expect_requests_says_so(graph_of: GraphOf) -> None:
+def test_an_engine_that_does_not_expect_requests_ends_with_an_error(graph_of: GraphOf) -> None:
     graph = graph_of(plan('mpc4'))
     graph.add('engine', {'two_input': False})
     graph.add_all(without=['recorder'])
@@ -99,7 +99,7 @@ def test_nodes_that_differ_about_the_second_input_are_named(
 
 
 class _Listener(Node):
-    """Keeps the engine's torques by topic and step."""
+    """Subscriber that stores the engine's torques by topic and step."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__('listener', **options)
@@ -110,7 +110,7 @@ class _Listener(Node):
             self.create_subscription(WrenchStamped, f'engine/{topic}', keep, RECORDER_QOS)
 
     def has_come_to(self, step: int) -> bool:
-        """Say whether the engine has answered this step or one after it."""
+        """Return whether the engine has answered this step or one after it."""
         return max(self.torques, default=-1) >= step
 
     @staticmethod
@@ -129,11 +129,16 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
     run = plan('mpc4', mode='realtime', duration_s=1.8, changes=(LITTLE_SLEW,))
     for _ in range(3):
         with graph_of(run) as graph:
-            heard = _Listener(context=graph.context)
+            listener = _Listener(context=graph.context)
             waited_s = run_until_silent(
-                graph, programs, heard, heard.has_come_to, signals, SILENT_AT_STEP
+                graph,
+                programs,
+                listener,
+                listener.has_come_to,
+                signals,
+                SILENT_AT_STEP,
             )
-            demands, torques = heard.demands, heard.torques
+            demands, torques = listener.demands, listener.torques
             busy_s = max(waited_s, realtime_owner(graph).worst_lateness_s)
         gaps = [
             (last, first)
@@ -159,7 +164,7 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
 
 
 class _Driver(Node):
-    """Stands in for driveline and controller, and keeps what the engine answers, in order."""
+    """Substitute for driveline and controller; stores the engine's answers in order."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__('driver', **options)
@@ -173,15 +178,15 @@ class _Driver(Node):
         zero = [0.0] * 4
         self._joints.publish(JOINT_STATES.message(stamp_of_step(step), zero, zero, zero))
 
-    def ask(self, step: int, torque: float) -> None:
+    def request(self, step: int, torque: float) -> None:
         """Publish the request of a step."""
         self._request.publish(ENGINE_REQUEST.message(stamp_of_step(step), torque))
 
     def connected(self) -> bool:
-        """Say whether the engine is there."""
+        """Return whether the engine is connected."""
         publishers = (self._joints, self._request)
-        heard = all(each.get_subscription_count() for each in publishers)
-        return heard and self.count_publishers('engine/torque') > 0
+        connected = all(each.get_subscription_count() for each in publishers)
+        return connected and self.count_publishers('engine/torque') > 0
 
     def _on_torque(self, message: WrenchStamped) -> None:
         self.answers.append((step_of_stamp(stamp_ns(message)), ENGINE_TORQUE.read(message)))
@@ -206,7 +211,7 @@ def test_in_real_time_requests_that_come_back_change_nothing(
         return len(driver.answers) == count
 
     driver.tick(0)
-    driver.ask(0, 320.0)
+    driver.request(0, 320.0)
     graph.spin_until(partial(answered, 1), 'the answer to a request')
     first, second = TIMEOUT_STEPS + 1, TIMEOUT_STEPS + 2
     for step in range(1, second + 1):
@@ -215,7 +220,7 @@ def test_in_real_time_requests_that_come_back_change_nothing(
     driver.tick(second)
     graph.spin_until(partial(answered, 4), 'the answer to a tick that comes again')
     for step in (first, second, second + 1):
-        driver.ask(step, 400.0)
+        driver.request(step, 400.0)
     driver.tick(second + 1)
     graph.spin_until(partial(answered, 5), 'the answer to the tick after a request')
     assert driver.answers == [
@@ -236,7 +241,7 @@ def test_in_real_time_the_demand_is_delivered_until_the_first_request_and_not_he
     driver.tick(first)
     graph.spin_until(lambda: bool(driver.answers), 'an answer without a request')
     for step in (first, first + 1):
-        driver.ask(step, 320.0)
+        driver.request(step, 320.0)
     driver.tick(first + 1)
     graph.spin_until(lambda: len(driver.answers) == 2, 'the answer to a request')
     assert driver.answers == [(first, 308.0), (first + 1, 313.0)]

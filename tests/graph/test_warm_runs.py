@@ -1,4 +1,4 @@
-"""Many runs of one warm parent: each is as if it were alone."""
+"""Many runs of one warm parent: each is as if it were the only one."""
 
 from pathlib import Path
 from typing import Any
@@ -51,7 +51,7 @@ def test_each_run_has_its_own_domain_and_folder_of_logs(
     with WarmParent() as parent:
         for number, domain in enumerate(('41', '42')):
             monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / f'logs{number}'))
-            # Two graphs in one domain would hear each other; here the one before is over.
+            # Two graphs in one domain would exchange messages; here the earlier one is over.
             monkeypatch.setenv('ROS_DOMAIN_ID', domain)
             _run(plan(), tmp_path / f'run{number}', parent)
             logs.append(sorted((tmp_path / f'logs{number}').iterdir()))

@@ -1,4 +1,4 @@
-"""A running `live`, and a reason to skip where it cannot run."""
+"""Fixtures of a running `live`; they skip a test where it cannot run."""
 
 from collections.abc import Callable
 

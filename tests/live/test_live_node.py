@@ -1,4 +1,4 @@
-"""The node behind `live`, fed by hand: runs that follow one another, and no run at all."""
+"""The node `live` in one process with its input: runs in succession, and no run at all."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,12 +26,12 @@ pytestmark = pytest.mark.usefixtures('extras')
 
 
 class Served:
-    """A node `live` and another that plays the graph, in this process."""
+    """Node `live` and a node that publishes as the graph, in this process."""
 
     def __init__(self, context: Context) -> None:
-        """Serve on a free port; what `live` says goes to `said`."""
-        self.said: list[str] = []
-        self.node = live_node.LiveNode('127.0.0.1', 0, self.said.append, context=context)
+        """Serve on a free port; its printed lines go to `printed`."""
+        self.printed: list[str] = []
+        self.node = live_node.LiveNode('127.0.0.1', 0, self.printed.append, context=context)
         self.graph = Node('graph', context=context)
         self.executor: Executor = make_executor(context)
         for node in (self.node, self.graph):
@@ -39,10 +39,10 @@ class Served:
 
     @property
     def url(self) -> str:
-        return self.said[0].split()[-1]
+        return self.printed[0].split()[-1]
 
     def spin(self) -> bool:
-        """Let the nodes work for a moment; True, so that it fits into a condition."""
+        """Spin the nodes for a moment; return True, for use in a condition."""
         self.executor.spin_until_future_complete(Future(), 0.02)
         return True
 
@@ -101,7 +101,7 @@ def test_a_late_viewer_gets_the_time_and_what_is_latched_the_controller_last() -
     assert seen == [(START_NS, name) for name in ('engine', 'recorder', 'controller')]
 
 
-def test_a_graph_sends_nothing_as_long_as_nobody_looks() -> None:
+def test_a_graph_sends_nothing_without_a_viewer() -> None:
     with served() as both:
         clock = both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
         run_info = both.graph.create_publisher(DiagnosticArray, 'run_info', LATCHED_QOS)
@@ -111,21 +111,21 @@ def test_a_graph_sends_nothing_as_long_as_nobody_looks() -> None:
             wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
 
 
-def test_a_domain_without_a_graph_is_said_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_domain_without_a_graph_is_reported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_node, '_PATIENCE_S', 0.05)
     with served() as both:
-        wait_until(lambda: both.spin() and len(both.said) > 1, 'the remark')
+        wait_until(lambda: both.spin() and len(both.printed) > 1, 'the message')
         for _ in range(10):
             both.spin()
-    assert len(both.said) == 2
-    assert 'no graph in ROS domain' in both.said[1]
-    assert 'ROS_DOMAIN_ID' in both.said[1]
+    assert len(both.printed) == 2
+    assert 'no graph in ROS domain' in both.printed[1]
+    assert 'ROS_DOMAIN_ID' in both.printed[1]
 
 
-def test_a_graph_that_is_there_is_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_running_graph_is_not_reported_as_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_node, '_PATIENCE_S', 0.5)
     with served() as both:
         both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
         for _ in range(50):
             both.spin()
-    assert len(both.said) == 1
+    assert len(both.printed) == 1

@@ -1,4 +1,4 @@
-"""What `live` says and how it ends when something is not as it should be."""
+"""`live` prints one line and ends with its exit code when it cannot serve or is stopped."""
 
 import socket
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def test_a_port_out_of_range_is_named(programs: Programs, port: str) -> None:
     assert_one_line(program.errors(), 'ddct live', f'--port is {port}', '65535')
 
 
-def test_without_the_extra_it_says_what_to_install(
+def test_without_the_extra_it_names_what_to_install(
     programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / 'foxglove.py').write_text('raise ImportError("No module named foxglove")')

@@ -1,4 +1,4 @@
-"""A viewer of `live` sees the run as the bag has it, and the run does not notice."""
+"""A viewer of `live` receives the run as the bag has it, and the run is unchanged."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -32,7 +32,7 @@ def _decoded_bag(folder: Path) -> dict[tuple[str, int], str]:
 
 
 @pytest.mark.usefixtures('extras')
-def test_a_viewer_of_bringup_sees_the_run_from_its_first_tick_and_the_bag_stays_the_same(
+def test_a_viewer_of_bringup_receives_the_run_from_its_first_tick_and_the_bag_stays_the_same(
     programs: Programs, tmp_path: Path
 ) -> None:
     options = ['--controller', 'ls8', '--duration', str(SHORT_S), '--out', str(tmp_path / 'runs')]

@@ -1,4 +1,4 @@
-"""A viewer such as Foxglove: shows every topic that a server offers, and keeps what comes."""
+"""Viewer such as Foxglove: subscribes to every topic of a server and stores the messages."""
 
 import contextlib
 import json
@@ -17,7 +17,7 @@ _MESSAGE, _TIME = 1, 2
 
 
 def address_in(printed: str) -> str:
-    """Return the address of the server that a program says it has."""
+    """Return the address of the server in a program's output."""
     found = re.search(r'ws://\S+', printed)
     assert found, printed
     return found[0]
@@ -25,15 +25,15 @@ def address_in(printed: str) -> str:
 
 @dataclass
 class Viewer:
-    """A connection that subscribes to everything; as a context manager it ends with the block."""
+    """Connection that subscribes to everything; as a context manager it ends with the block."""
 
     url: str
     channels: dict[int, dict[str, Any]] = field(default_factory=dict)
-    """What the server says of each channel."""
+    """Description of each channel from the server, by channel id."""
     messages: dict[str, list[tuple[int, bytes]]] = field(default_factory=lambda: defaultdict(list))
-    """Per topic the (time in ns, CDR)."""
+    """Messages as (time in ns, CDR), by topic."""
     times: list[int] = field(default_factory=list)
-    """The server's clock in ns, as it was told."""
+    """Times of the server's clock in ns, in the order received."""
 
     def __enter__(self) -> 'Viewer':
         # The tests of errors need no viewer.

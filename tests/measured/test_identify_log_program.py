@@ -55,7 +55,7 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
 def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The car is heavier than the base scenario's; ls8 was not among what was fitted."""
+    """The car is heavier than that of the base scenario; ls8 was not among the fitted runs."""
     heavy = ('vehicle.mass_kg=1900', 'driveline.engine_inertia=0.3')
     recording = record(plan('pi', 'headless', duration_s=3.0, changes=heavy), tmp_path / 'pi')
     random = np.random.default_rng(0)

@@ -1,4 +1,4 @@
-"""What a log contradicts is refused: ratio, times, units, signs; what it cannot show is not."""
+"""Values that a log contradicts are refused: ratio, times, units, signs; others are accepted."""
 
 import json
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""A log may have each of its signals late: the delays are found, with intervals that hold them."""
+"""Delays of the signals of a log are found, with intervals that cover them."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def pi_log(tmp_path_factory: pytest.TempPathFactory) -> MeasuredLog:
 def test_signals_that_are_rows_late_move_delays_and_not_parameters(
     pi_log: MeasuredLog, late: tuple[str, ...], rows: int, true: dict[str, float]
 ) -> None:
-    """Of 24 intervals 23 are expected. Taken as in time, these logs give 16 of 54 parameters."""
+    """Of 24 intervals 23 are expected. Without fitted delays it is 16 of 54 parameters."""
     fits = [
         fit_log(rows_late(noisy_log(pi_log, seed), late, rows), THESIS.driveline, load_of(THESIS))
         for seed in (1, 2)
@@ -77,7 +77,7 @@ def test_fractional_delays_are_found(corners_on_rows: bool) -> None:
 
 
 def test_rows_that_are_means_over_their_step_are_half_a_step_late() -> None:
-    """The speeds are instants of the row's end, the torques means over the 10 ms before."""
+    """The speeds are sampled at the row's end, the torques are means over the 10 ms before."""
     times, signals = late_log(2, {}, mean_of=20)
     _, instants = late_log(2, {})
     signals |= {name: instants[name] for name in SPEEDS}
@@ -87,7 +87,7 @@ def test_rows_that_are_means_over_their_step_are_half_a_step_late() -> None:
     assert fit.values == pytest.approx(TRUE, rel=0.06)
 
 
-def test_a_delay_that_all_signals_share_cannot_be_known_and_changes_nothing() -> None:
+def test_a_delay_of_all_signals_is_not_identifiable_and_changes_nothing() -> None:
     late = dict.fromkeys((*SPEEDS, *NONE_LATE), 0.0137)
     times, signals = late_log(3, late)
     fit = fit_log(_noisy(times, signals, 5), DrivelineParameters(), drag)
@@ -96,7 +96,7 @@ def test_a_delay_that_all_signals_share_cannot_be_known_and_changes_nothing() ->
 
 
 @pytest.mark.slow
-def test_intervals_hold_delays_and_parameters_at_their_rate_on_white_noise() -> None:
+def test_intervals_cover_delays_and_parameters_at_their_rate_on_white_noise() -> None:
     """Of 144 intervals 136 are expected, with a deviation of 3."""
     held = []
     for seed in range(SEEDS):

@@ -1,4 +1,4 @@
-"""A fit to a log finds the car behind it, within its intervals, and names what it cannot know."""
+"""A fit to a log finds the car, within its intervals, and names parameters without information."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +17,7 @@ from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
 START = DrivelineParameters()
-"""Another car than the one of the logs."""
+"""Driveline that differs from the one of the logs."""
 SEEDS = 12
 
 
@@ -51,7 +51,7 @@ def test_every_parameter_of_a_car_of_other_code_is_found_from_another_start(fit:
 
 
 @pytest.mark.slow
-def test_intervals_of_95_percent_hold_the_true_values_at_that_rate(fit: LogFit) -> None:
+def test_intervals_of_95_percent_cover_the_true_values_at_that_rate(fit: LogFit) -> None:
     """Of 96 intervals 91 are expected, with a deviation of 2."""
     true = DrivelineParameters(**TRUE)
     held = [hits(fit_log(log_of(drive().noisy(seed)), true, drag)) for seed in range(SEEDS)]
@@ -60,7 +60,9 @@ def test_intervals_of_95_percent_hold_the_true_values_at_that_rate(fit: LogFit) 
 
 
 @pytest.mark.slow
-def test_noise_of_the_torques_widens_the_intervals_and_they_still_hold(fit: LogFit) -> None:
+def test_noise_of_the_torques_widens_the_intervals_and_they_still_cover_the_true_values(
+    fit: LogFit,
+) -> None:
     true = DrivelineParameters(**TRUE)
     fits = [fit_log(log_of(drive().noisy(seed, 1.0)), true, drag) for seed in range(2)]
     held = [each for one in fits for each in hits(one)]
@@ -73,7 +75,7 @@ def test_noise_of_the_torques_widens_the_intervals_and_they_still_hold(fit: LogF
 
 
 def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
-    """Of the same size, but with a memory of 0.08 s; the sum over slow noise tells less."""
+    """Correlated noise of the same size, over 0.08 s, has more weight at low frequencies."""
     random = np.random.default_rng(1)
     noise = lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], random.standard_normal((3, 601)))
     signals = dict(drive().signals)
@@ -87,7 +89,7 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
 
 
 def test_a_start_that_is_far_off_is_not_taken_for_noise() -> None:
-    """With 2 N m on the torques, which hide what J_p and c_sa do: those are named instead."""
+    """With 2 N m on the torques, which hide the effects of J_p and c_sa: these are named."""
     fit = fit_log(log_of(drive(2).noisy(0, 2.0)), START, drag)
     assert {'engine_damping', 'halfshaft_stiffness'} <= set(fit.std)
     assert 'shaft_inertia' in fit.undetermined
@@ -103,7 +105,7 @@ def test_white_noise_is_measured_without_the_signal() -> None:
     assert white_noise(torque + noise) == pytest.approx(2.0, rel=0.15)
 
 
-def test_data_that_took_no_part_are_predicted_and_a_wrong_car_is_noticed(fit: LogFit) -> None:
+def test_data_outside_the_fit_are_predicted_and_a_wrong_car_is_detected(fit: LogFit) -> None:
     other = replace(log_of(drive(2).noisy(7)), time_s=drive(2).time_s)
     stretches = stretches_of(other, drag)
     predictions = {each.signal: each for each in predict(fit, stretches)}
@@ -114,7 +116,7 @@ def test_data_that_took_no_part_are_predicted_and_a_wrong_car_is_noticed(fit: Lo
 
 
 def test_what_the_log_does_not_show_is_named_and_kept() -> None:
-    """The engine runs at constant speed, so neither its inertia nor its damping can be known."""
+    """The engine speed is constant, so neither inertia nor damping is identifiable."""
     signals = dict(drive().noisy(0))
     random = np.random.default_rng(5)
     count = len(drive().time_s)
@@ -189,5 +191,5 @@ def test_a_log_of_holes_alone_is_refused() -> None:
         fit_log(log_of(signals), START, drag)
 
 
-def test_the_drive_of_the_other_car_lasts_as_long_as_it_says() -> None:
+def test_the_drive_of_the_other_car_has_its_stated_length() -> None:
     assert drive().time_s[-1] == pytest.approx(LASTS_S)

@@ -22,11 +22,11 @@ OTHER_CAR = (
     'engine.torque_n_m=[20,220]',
 )
 TOLERANCE = 0.01
-"""R.m.s. of replayed less logged, over the deviation of the speed in the log."""
+"""R.m.s. of the replay's error, over the standard deviation of the speed in the log."""
 
 
 def written(log: MeasuredLog, folder: Path) -> Scenario:
-    """Return what `identify` writes of a log."""
+    """Return the scenario that `identify` writes for a log."""
     columns = ['time_s', *(f'{name}_rad_s' for name in SPEEDS)]
     columns[2] = 'primary_shaft_speed_rad_s'
     columns += ['engine_torque_n_m', 'primary_shaft_effort_n_m']
@@ -43,7 +43,7 @@ def written(log: MeasuredLog, folder: Path) -> Scenario:
 def test_a_drive_of_a_known_plant_comes_back_from_the_scenario_of_its_log(
     tmp_path: Path, rows: int
 ) -> None:
-    """The base scenario is another car from other speeds; with 2 rows C_m and C_f are late."""
+    """The base scenario is another car with other speeds; with 2 rows C_m and C_f are late."""
     true = drive_log(tmp_path, 'pi', OTHER_CAR)
     log = noisy_log(true, 0, 0.05)
     if rows:
@@ -62,7 +62,7 @@ def test_a_drive_of_a_known_plant_comes_back_from_the_scenario_of_its_log(
     assert np.all(error < loose * speeds.std(axis=0))
 
 
-def test_what_is_adjusted_is_said_and_true(tmp_path: Path) -> None:
+def test_adjusted_values_are_listed_and_correct(tmp_path: Path) -> None:
     scenario = written(noisy_log(drive_log(tmp_path, 'pi', OTHER_CAR), 0, 0.05), tmp_path)
     mass, inertia = scenario.vehicle.mass_kg, scenario.driveline.vehicle_inertia
     (line,) = [line for line in scenario.adjusted if 'vehicle.mass_kg' in line]

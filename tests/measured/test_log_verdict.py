@@ -68,7 +68,7 @@ def test_a_fit_that_cannot_be_right_is_refused_first_and_writes_nothing(
     assert any(reason in each for each in content['reasons'])
 
 
-def test_a_refused_fit_is_accepted_by_force_and_still_says_so_first(
+def test_a_refused_fit_is_accepted_by_force_and_its_reason_still_comes_first(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = COLUMNS.replace('nMot, unit: rpm', 'nMot, unit: deg/s')
@@ -90,9 +90,7 @@ def test_a_good_fit_is_accepted(folder: Path, capsys: pytest.CaptureFixture[str]
     assert all(each['white'] for each in content['held_out']['signals'][:3])
 
 
-def test_the_table_says_which_values_are_new(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_table_marks_new_values(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert identify(folder) == 0
     printed = capsys.readouterr().out
     assert 'new scenario' in printed
@@ -128,7 +126,7 @@ def test_speeds_that_are_all_wrong_by_one_factor_fit_and_are_refused_by_the_car_
 
 
 def test_an_engine_damping_significantly_below_zero_is_refused_and_not_written_as_zero() -> None:
-    """Every rad/s of the engine adds 0.05 N m to the torque that the log has."""
+    """Every rad/s of the engine adds 0.05 N m to the torque in the log."""
     signals = drive().noisy(0)
     signals['engine_torque'] = signals['engine_torque'] - 0.05 * drive().signals['engine_speed']
     fit, _, reasons = judged(signals, drive().time_s)
@@ -136,7 +134,7 @@ def test_an_engine_damping_significantly_below_zero_is_refused_and_not_written_a
     assert any('engine_damping is -0.0' in each and 'negative' in each for each in reasons)
 
 
-def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_and_said() -> None:
+def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_with_a_note() -> None:
     signals = drive().noisy(0)
     signals['engine_torque'] = signals['engine_torque'] - 0.02 * drive().signals['engine_speed']
     fit, predictions, reasons = judged(signals, drive().time_s)
@@ -147,7 +145,7 @@ def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_and_said() -> No
 
 
 def test_residuals_that_follow_the_torques_are_no_noise_though_lags_make_them_white() -> None:
-    """A clutch torque that is 10 ms late, and a map that says that it is not."""
+    """The clutch torque is 10 ms late, and the map declares no delay."""
     times, signals = late_log(1, {'clutch_torque': 0.01}, corners_on_rows=True)
     random = np.random.default_rng(8)
     for name in SPEEDS:

@@ -1,4 +1,4 @@
-"""The report of a log shows what was measured, and a log and simulated runs over each other."""
+"""The report of a log shows the measured signals, and simulated runs in the same charts."""
 
 import json
 import re

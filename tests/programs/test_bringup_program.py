@@ -1,4 +1,4 @@
-"""What `bringup` prints, leaves and exits with when all goes well."""
+"""Output, files and exit code of `bringup` without faults."""
 
 import json
 from pathlib import Path

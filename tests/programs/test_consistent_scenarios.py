@@ -1,4 +1,4 @@
-"""Programs, bags and nodes say what a scenario moved so that its values agree."""
+"""Programs, bags and nodes report scenario values that were adjusted to agree."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ MOVED = 'driveline.vehicle_inertia moved from 154.691 to 185.629'
 HEAVY = ['--set', 'vehicle.mass_kg=1800', '--duration', '1.8', '--headless']
 
 
-def test_bringup_says_it_the_bag_keeps_it_and_score_repeats_it(
+def test_bringup_prints_adjusted_values_the_bag_keeps_them_and_score_repeats_them(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     out = tmp_path / 'runs'
@@ -39,7 +39,9 @@ def test_a_mass_in_tonnes_runs_and_every_program_warns_on_standard_error(
     assert warning in capfd.readouterr().err
 
 
-def test_compare_has_it_above_its_table(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_compare_prints_adjusted_values_above_its_table(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     assert compare.main([*HEAVY, '--controllers', 'pi', '--out', str(tmp_path / 'runs')]) == 0
     table = capfd.readouterr().out
     assert table.startswith(MOVED)
@@ -58,7 +60,7 @@ def test_a_contradiction_is_one_line_and_leaves_nothing(
 
 
 WHOLE = scenario_to_yaml(load_scenario('thesis', ['vehicle.mass_kg=1800']))
-"""As `bringup` writes it for its nodes."""
+"""Scenario as `bringup` writes it for its nodes."""
 HALF = """\
 duration_s: 1.0
 control_start_s: 0.6
@@ -69,7 +71,7 @@ vehicle: {mass_kg: 1800.0}
 
 
 @pytest.mark.parametrize('text', [WHOLE, HALF], ids=['whole', 'half'])
-def test_a_node_logs_it(programs: Programs, tmp_path: Path, text: str) -> None:
+def test_a_node_logs_adjusted_values(programs: Programs, tmp_path: Path, text: str) -> None:
     path = tmp_path / 'heavy.yaml'
     path.write_text(text, encoding='utf-8')
     arguments = ('--help', '--ros-args', '-p', f'scenario:={path}')

@@ -1,4 +1,4 @@
-"""`ddct` starts every program by its name, and says which there are."""
+"""`ddct` starts every program by its name, and lists them."""
 
 import os
 import re
@@ -52,7 +52,7 @@ def test_the_page_of_programs_names_every_program() -> None:
 
 
 def test_programs_start_without_the_slow_parts_of_scipy() -> None:
-    """They are imported when something is computed: --help and errors need not wait for them."""
+    """Scipy is imported when something is computed: --help and errors need not wait for it."""
     names = ('bringup', 'campaign', 'compare', 'identify', 'live', 'report', 'score', 'sweep')
     modules = [ddct.programs()[name].module for name in names]
     code = (
@@ -74,7 +74,7 @@ def test_programs_start_without_the_slow_parts_of_scipy() -> None:
         (['--nothing'], 'the following arguments are required: PROGRAM'),
     ],
 )
-def test_what_it_does_not_know_is_one_line(
+def test_an_unknown_program_is_one_line(
     arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as end:
@@ -83,7 +83,7 @@ def test_what_it_does_not_know_is_one_line(
     assert capsys.readouterr().err == f'ddct: {line}: see ddct --help\n'
 
 
-def test_it_hands_on_the_arguments_and_the_exit_code(
+def test_it_passes_on_the_arguments_and_the_exit_code(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     code = '"""Do more."""\nimport sys\n\ndef main():\n    print(sys.argv[1:])\n    return 7\n'
@@ -107,7 +107,7 @@ def test_a_program_that_cannot_be_imported_is_one_line(
 
 
 @pytest.mark.parametrize('name', ['rclpy', 'rcl_interfaces'])
-def test_a_node_without_ros_says_what_is_missing_and_where_to_read_on(
+def test_a_node_without_ros_names_what_is_missing_and_the_page_to_read(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     install_program(tmp_path, f'import {name}\n')
@@ -179,7 +179,7 @@ def test_a_warm_parent_starts_ahead_where_nodes_are_to_come(
     assert len(started) == expected
 
 
-def test_one_that_was_started_ahead_in_vain_is_gone_with_its_program(programs: Programs) -> None:
+def test_a_warm_parent_started_ahead_in_vain_ends_with_its_program(programs: Programs) -> None:
     start = 'from ddct_bringup.programs.ddct import main; raise SystemExit(main())'
     program = programs.start([sys.executable, '-P', '-c', start, 'bringup'])
     assert program.wait() == 1

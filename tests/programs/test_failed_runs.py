@@ -50,7 +50,7 @@ REASONS: dict[Spoil, str] = {
 
 
 def spoil_ls8(monkeypatch: pytest.MonkeyPatch, spoil: Spoil) -> None:
-    """Let every run of LS8 go wrong, and no other."""
+    """Make every run of LS8 fail, and no other."""
 
     def execute(run: RunPlan, folder: Path, *rest: Any) -> None:
         if run.name == 'ls8':
@@ -71,7 +71,7 @@ def _bytes(folder: Path) -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in folder.rglob('*') if path.is_file()}
 
 
-def test_bringup_keeps_the_old_result_and_says_why(
+def test_bringup_keeps_the_old_result_and_prints_the_reason(
     bad_ls8: Spoil, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'runs'
@@ -95,7 +95,7 @@ def _scores(folder: Path) -> list[dict]:
     return json.loads((folder / 'scores.json').read_text())['runs']
 
 
-def test_compare_keeps_what_worked_and_says_why_the_rest_did_not(
+def test_compare_keeps_the_valid_runs_and_prints_the_reasons_of_the_others(
     bad_ls8: Spoil, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'runs'
@@ -120,7 +120,7 @@ def test_compare_keeps_what_worked_and_says_why_the_rest_did_not(
     assert reason in page
 
 
-def test_report_and_score_tell_of_a_failed_run_what_compare_told(
+def test_report_and_score_print_the_reason_that_compare_printed_of_a_failed_run(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     spoil_ls8(monkeypatch, failed)

@@ -51,7 +51,7 @@ def test_help_shows_the_node_with_the_parameters_that_are_given(first):
     assert '  gains.proportional_gain: 0.2\n' in text
 
 
-def test_help_shows_the_options_of_the_controller_that_is_asked_for_with_or_without_a_value():
+def test_help_shows_the_options_of_the_chosen_controller_with_or_without_a_value():
     given = ['--ros-args', '-p', 'controller:=mpc3', '-p', 'gains.control_steps:=2']
     text = _help('ddct_controllers.controller_node', '--help', *given)
     assert '  gains.control_steps: 2\n' in text

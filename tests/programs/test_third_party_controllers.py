@@ -1,4 +1,4 @@
-"""A controller of another package works everywhere by its name alone; a broken one is named."""
+"""A controller of another package works in every program by its name; a broken one is named."""
 
 import json
 import re
@@ -102,7 +102,7 @@ def test_a_gain_that_the_example_does_not_take_is_named(
     ],
     ids=['margins', 'compare', 'list'],
 )
-def test_a_controller_that_cannot_be_had_stops_only_what_asks_for_it(
+def test_a_controller_that_cannot_be_built_stops_only_the_programs_that_need_it(
     command: list[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -205,7 +205,7 @@ def test_compare_names_the_controller_whose_linear_model_is_none(
 
 
 @pytest.mark.usefixtures('broken')
-def test_compare_runs_nothing_where_the_evidence_of_a_controller_cannot_be_had(
+def test_compare_runs_nothing_where_the_evidence_of_a_controller_cannot_be_computed(
     tmp_path: Path,
 ) -> None:
     options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]

@@ -1,4 +1,4 @@
-"""Headless runs of the thesis's scenario, and the page over them."""
+"""Headless runs of the thesis's scenario, and their report page."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ CONTROLLERS = ('pi', 'ls8', 'hinf1')
 
 @pytest.fixture(scope='session')
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with one whole run per controller, and their frequency evidence."""
+    """Return a folder with one complete run per controller, and their frequency evidence."""
     folder = tmp_path_factory.mktemp('runs') / 'demo'
     for name in CONTROLLERS:
         record(plan(name, 'headless', duration_s=3.0), folder / name)

@@ -1,4 +1,4 @@
-"""A page in a headless Chromium, driven over its debugging protocol."""
+"""A page in a headless Chromium, controlled over its debugging protocol."""
 
 import asyncio
 import base64
@@ -17,22 +17,22 @@ from pathlib import Path
 from typing import Any
 
 WITHIN_S = 60.0
-"""How long the browser may take for any one thing on a loaded machine."""
+"""Longest time in s for one operation of the browser on a loaded machine."""
 
 CLOSES_S = 20.0
-"""How long the browser may take to close before it is killed."""
+"""Longest time in s for the browser to close before it is killed."""
 
 HELPERS_S = 10.0
-"""How long its helpers may take to end after it."""
+"""Longest time in s for its helper processes to end after it."""
 
 MARK = 'DDCT_BROWSER'
 """Environment variable that marks a browser and every process that it starts."""
 
 PRINT = 'print'
-"""A script that prints the page, and returns the PDF file."""
+"""Script that prints the page, and returns the PDF file."""
 
 PICTURE = 'picture'
-"""A script that returns the whole page as a PNG file."""
+"""Script that returns the whole page as a PNG file."""
 
 _NAMES = ('chromium', 'chromium-browser', 'google-chrome')
 _OPTIONS = (
@@ -60,19 +60,19 @@ def chromium() -> str | None:
 
 @dataclass
 class Visit:
-    """What happened while a page was open."""
+    """Events while a page was open, and the results of the scripts."""
 
     errors: list[str] = field(default_factory=list)
     """Errors and warnings of the console, and exceptions."""
     requests: list[str] = field(default_factory=list)
     ready_ms: float = 0.0
-    """From the start of the navigation until every chart was drawn."""
+    """Time in ms from the start of the navigation until every chart was drawn."""
     values: list[Any] = field(default_factory=list)
-    """What the scripts returned."""
+    """Return values of the scripts."""
 
 
 def visit(page: Path, **options: Any) -> Visit:
-    """Open a report as `_visit` does, and return what happened."""
+    """Open a report as `_visit` does, and return the events."""
     return asyncio.run(asyncio.wait_for(_visit(page, **options), 3 * WITHIN_S))
 
 
@@ -114,7 +114,7 @@ class _Tab:
     """One page of the browser."""
 
     def __init__(self, socket: Any) -> None:
-        """Speak through the tab's web socket."""
+        """Use the tab's web socket."""
         self.errors: list[str] = []
         self.requests: list[str] = []
         self._socket = socket
@@ -193,8 +193,8 @@ def wait_for_helpers(mark: str, within_s: float = HELPERS_S) -> list[int]:
     """
     Wait until every process with this mark has ended; return those that still run, by id.
 
-    The crash handler is in a session of its own. It ends by itself once it notices that the
-    browser is gone, which takes a moment on a loaded machine.
+    The crash handler is in a session of its own. It ends by itself a moment after the browser,
+    later on a loaded machine.
     """
     deadline = time.monotonic() + within_s
     while (left := _marked(mark)) and time.monotonic() < deadline:
@@ -207,7 +207,7 @@ def _marked(mark: str) -> list[int]:
     found = []
     for folder in Path('/proc').iterdir():
         if folder.name.isdigit():
-            with contextlib.suppress(OSError):  # it may end, or be somebody else's
+            with contextlib.suppress(OSError):  # it may end, or belong to another user
                 if entry in (folder / 'environ').read_bytes().split(b'\0'):
                     found.append(int(folder.name))
     return found

@@ -10,7 +10,7 @@ REPEATS = 5
 
 
 def main() -> None:
-    """Print size and load time of each page that the command line names."""
+    """Print size and load time of each page on the command line."""
     for name in sys.argv[1:]:
         page = Path(name)
         times = [visit(page).ready_ms for _ in range(REPEATS)]

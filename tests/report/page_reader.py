@@ -4,16 +4,18 @@ from html.parser import HTMLParser
 
 
 class PageReader(HTMLParser):
-    """Collects the text that a reader sees, the metrics, and whatever would load something."""
+    """Collects the visible text, the metrics, and every address that would be loaded."""
 
     def __init__(self, html: str) -> None:
         """Read the page."""
         super().__init__()
         self.text = ''
         self.metrics: list[tuple[str, float | None, str]] = []
-        """(name in scores.json, exact value or None, text shown) in the order of the page."""
+        """
+        Triples (name in scores.json, exact value or None, visible text) in the order of the page.
+        """
         self.links: list[str] = []
-        """Every address in an attribute."""
+        """Addresses in attributes."""
         self.styles = ''
         self._hidden: list[str] = []
         self._metric: str | None = None
@@ -22,7 +24,7 @@ class PageReader(HTMLParser):
         self.feed(html)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note what the tag carries."""
+        """Store metrics and addresses of the tag."""
         attributes = dict(attrs)
         self.links += [
             value or '' for name, value in attrs if name in ('src', 'href', 'action', 'srcset')
@@ -36,7 +38,7 @@ class PageReader(HTMLParser):
             self._value = float(attributes['value'] or '')
 
     def handle_endtag(self, tag: str) -> None:
-        """Close what the tag has opened."""
+        """Close the element that the tag has opened."""
         if tag in ('script', 'style'):
             self._hidden.pop()
         if tag == 'td' and self._metric:
@@ -44,7 +46,7 @@ class PageReader(HTMLParser):
             self._metric = None
 
     def handle_data(self, data: str) -> None:
-        """Keep visible text, and styles apart from it."""
+        """Store visible text, and styles separately."""
         if not self._hidden:
             self.text += data
             self._shown += data

@@ -8,7 +8,7 @@ from headless_chromium import PICTURE, visit
 from PIL import Image
 
 WIDTH_PX, HEIGHT_PX = 1280, 9000
-"""So high that nothing scrolls: taking the picture then moves nothing."""
+"""Size of the window in pixels, high enough that nothing scrolls while the picture is taken."""
 BETWEEN_PX = 16
 PLACES = """['#summary details', '#signals', '#signals figure'].map((name) => {
   const {top, bottom} = document.querySelector(name).getBoundingClientRect();

@@ -1,4 +1,4 @@
-"""What the browser has started may end a little after it, and must end."""
+"""Helper processes of the browser may end a little after it, and must end."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ def helpers() -> Iterator[Helpers]:
 
 
 def start(helpers: Helpers, mark: str, program: str) -> int:
-    """Start a helper in a session of its own, as the crash handler is."""
+    """Start a helper in a separate session, like the crash handler."""
     helper = subprocess.Popen(
         [sys.executable, '-c', program],
         stdin=subprocess.PIPE,
@@ -35,7 +35,7 @@ def start(helpers: Helpers, mark: str, program: str) -> int:
     return helper.pid
 
 
-def test_a_helper_that_ends_when_it_notices_the_end_of_the_browser_is_waited_for(
+def test_a_helper_that_ends_a_little_after_the_browser_is_waited_for(
     helpers: Helpers,
 ) -> None:
     pid = start(helpers, 'one', 'import sys, time; sys.stdin.read(); time.sleep(0.3)')

@@ -45,7 +45,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-def test_maps_name_what_failed_tell_of_a_tapped_run_and_go_on_paper(campaign: Path) -> None:
+def test_maps_name_failed_runs_describe_a_tapped_run_and_can_be_printed(campaign: Path) -> None:
     overflow = 'document.documentElement.scrollWidth - innerWidth'
     cells = "document.querySelectorAll('.map rect').length"
     scripts = [overflow, cells, UNPAINTED, WORDS, TAP, OTHER_QUANTITY, PRINT]

@@ -1,4 +1,4 @@
-"""The report's page in a real browser: no error, no request, and every switch does its work."""
+"""The report's page in a real browser: no error, no request, and every switch works."""
 
 import json
 import re
@@ -45,7 +45,7 @@ OUTSIDE = """[...document.querySelectorAll('body *')].filter((each) => {
 
 @pytest.fixture(scope='module')
 def five(demo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a page over five runs, two of them of controllers of others with long names."""
+    """Return a page with five runs, two of them of users' controllers with long names."""
     folder = tmp_path_factory.mktemp('five')
     run = plan('pi', 'headless', duration_s=3.0)
     trajectory = run_headless(run.settings, 'pi')
@@ -125,7 +125,7 @@ POINT = """((name, share) => {
 
 
 @pytest.mark.parametrize('width', [PHONE_PX, 1280])
-def test_the_pointer_is_told_the_nearest_curve_with_value_and_unit(page: Path, width: int) -> None:
+def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(page: Path, width: int) -> None:
     near, far = POINT.replace('OFF', '0'), POINT.replace('OFF', '-150')
     scroll = "dispatchEvent(new Event('scroll'))"
     hidden = "document.getElementById('tip').hidden"

@@ -1,4 +1,4 @@
-"""`compare` leaves the report beside the bags, with the evidence it has just written."""
+"""`compare` writes the report next to the bags, with the evidence of the same runs."""
 
 import json
 from importlib.resources import files

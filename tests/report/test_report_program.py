@@ -1,4 +1,4 @@
-"""The program `report`: the numbers on its page, and what it says of bad input."""
+"""The program `report`: the numbers on its page, and its errors for bad input."""
 
 import json
 import re
@@ -54,7 +54,7 @@ def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None
         assert printed in reader.text
 
 
-def test_a_predicted_figure_has_its_range_and_whether_it_is_a_hit(tmp_path: Path) -> None:
+def test_a_predicted_value_has_its_range_and_hit_or_miss(tmp_path: Path) -> None:
     record(plan('mpc3', 'headless', duration_s=3.0), tmp_path / 'mpc3')
     out = tmp_path / 'report.html'
     assert main([str(tmp_path), '--out', str(out)]) == 0
@@ -69,8 +69,8 @@ def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path
     mine, out = tmp_path / 'mine.yaml', tmp_path / 'report.html'
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     rules = text[: text.index('limits:')]
-    limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true}'
-    mine.write_text(f'{rules}limits:\n{limit}\n', encoding='utf-8')
+    limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true'
+    mine.write_text(f'{rules}limits:\n{limit}, reason: as agreed}}\n', encoding='utf-8')
     assert main([str(demo), '--limits', str(mine), '--out', str(out)]) == 0
     shown = read(out).text
     assert f'Judged by the limits mine.yaml {load_limits(mine).origin["digest"]}' in shown
@@ -85,9 +85,7 @@ def test_bad_limits_are_named_before_anything_is_read(tmp_path: Path, capsys) ->
     )
 
 
-def test_the_header_says_what_differs_from_the_packaged_scenario(
-    page: Path, tmp_path: Path
-) -> None:
+def test_the_header_lists_the_changes_of_the_packaged_scenario(page: Path, tmp_path: Path) -> None:
     record(plan('pi', 'headless', duration_s=1.0), tmp_path / 'pi')
     out = tmp_path / 'report.html'
     assert main([str(tmp_path), '--out', str(out)]) == 0
@@ -98,7 +96,7 @@ def test_the_header_says_what_differs_from_the_packaged_scenario(
     assert 'Scenario <b>thesis</b>' in page.read_text(encoding='utf-8')
 
 
-def test_the_page_says_where_it_comes_from(page: Path) -> None:
+def test_the_page_has_its_origin(page: Path) -> None:
     text = read(page).text
     for told in ('thesis', '0.1.0', 'halfshaft_stiffness: 6716.3112', 'detailed', 'lockstep'):
         assert told in text
@@ -175,7 +173,7 @@ def test_runs_of_several_scenarios_are_refused_and_named(
     assert not out.exists()
 
 
-def test_wear_gains_and_architectures_of_one_scenario_are_told_apart(
+def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
     demo: Path, tmp_path: Path
 ) -> None:
     worn = plan('ls8', 'headless', duration_s=3.0, wear_gain=0.7)
@@ -221,7 +219,7 @@ def of_another_controller(evidence: dict) -> None:
 
 @pytest.fixture
 def marked_evidence(demo: Path) -> dict:
-    """Return the evidence of the runs, with a gain margin of PI that is not its own."""
+    """Return the evidence of the runs, with a wrong gain margin of PI as a mark."""
     evidence = json.loads((demo / FREQUENCY_FILE).read_text(encoding='utf-8'))
     assert evidence['controllers'][0]['controller'] == 'pi'
     for point in evidence['controllers'][0]['wear']:
@@ -257,7 +255,7 @@ def test_evidence_of_another_loop_is_not_taken(
         ('.', 'is a folder'),
     ],
 )
-def test_a_page_that_cannot_go_there_is_refused_before_work(
+def test_a_page_that_cannot_be_written_is_refused_before_work(
     out: str, says: str, demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / 'notes.txt').write_text('mine', encoding='utf-8')
@@ -290,7 +288,7 @@ def test_no_runs_or_no_readable_one_is_an_error(
     assert not out.exists()
 
 
-def test_without_the_chart_library_the_program_says_what_to_install(
+def test_without_the_chart_library_the_program_names_the_package_to_install(
     demo: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
@@ -308,7 +306,7 @@ def test_the_page_goes_to_standard_output_on_request(
 
 
 def test_a_controller_that_fell_back_is_named(tmp_path, capsys):
-    """Its figures would otherwise pass for those of the controller."""
+    """Its scores would otherwise count as those of the controller."""
     changes = ['controllers.mpc3.iteration_limit=1', 'controllers.mpc3.highest_torque_n_m=300']
     options = [part for change in changes for part in ('--set', change)]
     folder = tmp_path / 'runs'

@@ -1,1 +1,1 @@
-"""What the tests that cross packages share."""
+"""Helpers of the tests that cross packages."""

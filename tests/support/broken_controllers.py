@@ -1,4 +1,4 @@
-"""Controllers of third parties that do everything wrong."""
+"""Third parties' controllers, each with one defect."""
 
 import math
 import time
@@ -37,7 +37,7 @@ def _make_not_a_number(context: ControllerContext) -> Controller:
 make_not_a_number = ControllerSpec(
     'not_a_number', _make_not_a_number, {'good_until_step': Option(0, 'first step with NaN')}
 )
-"""A controller that commands NaN from the step on that the scenario sets."""
+"""Controller that commands NaN from the step in its option `good_until_step` on."""
 
 
 def make_infinite(context: ControllerContext) -> Controller:

@@ -1,4 +1,4 @@
-"""What an error message for a user must be like."""
+"""Requirements on error messages for users."""
 
 import re
 
@@ -7,7 +7,7 @@ def assert_one_line(errors: str, program: str, *needles: str) -> None:
     """
     Require one line `<program>: <text>` that holds every needle, and no traceback.
 
-    What ROS itself logs (`[ERROR] [...]`) does not count.
+    Log lines of ROS (`[ERROR] [...]`) are ignored.
     """
     lines = [
         line for line in errors.splitlines() if line.strip() and not re.match(r'\[\w+\] \[', line)

@@ -1,4 +1,4 @@
-"""The commands and links of the documentation."""
+"""Commands and links of the documentation."""
 
 import re
 from collections.abc import Iterator
@@ -18,13 +18,13 @@ class Block:
     """Text of one code block."""
 
     page: str
-    """Relative to the root of the repository."""
+    """Path of the page, relative to the root of the repository."""
     language: str
     text: str
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The commands, continued lines joined."""
+        """Commands of the block, continued lines joined."""
         joined = self.text.replace('\\\n', ' ')
         return tuple(' '.join(line.split()) for line in joined.splitlines() if line.strip())
 

@@ -21,7 +21,7 @@ STRICT = (
 )
 STATUS = ('solved', 'iteration limit', 'infeasible', 'bad measurement')
 NOT_IN_C = {'mpc_wear', 'mpc4_wear'}
-"""Predictive controllers that do more than observer and program."""
+"""Predictive controllers that the exported C does not cover: more than observer and program."""
 _SIZES = """\
 #include "ddct_mpc.h"
 extern const int sizes[];
@@ -39,7 +39,7 @@ def compiler() -> str:
 
 
 def compile_c(folder: Path, *arguments: str) -> None:
-    """Compile in `folder`; fail with what the compiler says, warnings included."""
+    """Compile in `folder`; fail with the compiler's output, warnings included."""
     done = subprocess.run(
         [compiler(), *STRICT, *arguments], cwd=folder, capture_output=True, text=True
     )
@@ -48,10 +48,10 @@ def compile_c(folder: Path, *arguments: str) -> None:
 
 
 class ExportedController(Controller):
-    """The C in a folder, as a controller."""
+    """Controller that runs the C code in a folder."""
 
     def __init__(self, folder: Path) -> None:
-        """Compile and load what was exported into `folder`."""
+        """Compile and load the C code in `folder`."""
         (folder / 'sizes.c').write_text(_SIZES)
         compile_c(folder, '-O1', '-shared', '-fPIC', 'ddct_mpc.c', 'sizes.c', '-o', 'ddct_mpc.so')
         self._library = ctypes.CDLL(str(folder / 'ddct_mpc.so'))
@@ -115,7 +115,7 @@ def run_settings(*changes: str, architecture: str = 'detailed', wear: float = 1.
 def exported(
     controller: Controller, name: str, settings: RunSettings, folder: Path
 ) -> ExportedController:
-    """Return the C of `controller`, which `settings` built."""
+    """Return the exported C controller of `controller`, which was built for `settings`."""
     export_controller(controller, name, settings, folder)
     return ExportedController(folder)
 

@@ -29,7 +29,7 @@ fmu:
   parameters: {pid.Kp: 0.2, pid.Ki: 0.3, demand: 0.0, ahead: 0.0}
 """
 GAINS = 'controllers.pi={proportional_gain: 0.2, integral_gain: 0.3}'
-"""For `pi`, the same."""
+"""Change of a scenario that gives `pi` the gains of the FMU."""
 
 
 def skip_without_fmus() -> None:
@@ -44,7 +44,7 @@ class _Variable:
     name: str
     reference: int
     types: tuple[str, str]
-    """In FMI 2.0 and 3.0."""
+    """Type names in FMI 2.0 and 3.0."""
     causality: str
     start: str = ''
     unit: str = ''
@@ -75,7 +75,7 @@ def write_fmu(
     """
     Write the PI as an FMU, its description changed by (old, new) texts.
 
-    `platform` is that of a binary, if it is another one's.
+    `platform` is the name of the binary's folder where it differs from this machine's.
     """
     text = _description(version, interface or 'CoSimulation')
     for old, new in changes:
@@ -93,7 +93,7 @@ def _binary(version: int) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder, 'pi.so')
         subprocess.run(
-            # No multiplication is joined with its sum: the torques are to be ours to the bit.
+            # No fused multiply-add: the torques must equal those of Python to the bit.
             ['cc', f'-DFMI={version}', '-O2', '-ffp-contract=off', '-Wall', '-Wextra', '-Werror']
             + ['-shared', '-fPIC', str(SOURCE), '-lm', '-o', str(output)],
             check=True,

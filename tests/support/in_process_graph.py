@@ -1,4 +1,4 @@
-"""The graph's nodes inside the test's process, where a test can leave out, replace or add some."""
+"""Nodes of the graph inside the test's process; a test can leave out, replace or add some."""
 
 import importlib
 import time
@@ -20,8 +20,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
 
-LOOK_S = 0.001
-"""How often the graph is looked at while it spins."""
+CHECK_PERIOD_S = 0.001
+"""Period of the checks of a condition while the graph spins, s."""
 
 
 def node_class(name: str) -> type[GraphNode]:
@@ -89,14 +89,14 @@ class InProcessGraph:
         self._executor.add_node(node)
 
     def remove(self, name: str) -> None:
-        """Take a node away in the middle of the run."""
+        """Remove a node in the middle of the run."""
         node = self.nodes.pop(name)
         node.finish()
         self._executor.remove_node(node)
         node.destroy_node()
 
     def wait_for_publisher(self, topic: str, within_s: float) -> None:
-        """Spin until somebody, perhaps in another process, publishes `topic`."""
+        """Spin until `topic` has a publisher, perhaps in another process."""
         self.spin_until(lambda: bool(self._watch.count_publishers(topic)), topic, within_s)
 
     def spin_until(self, condition: Callable[[], bool], what: str, within_s: float = 30) -> None:
@@ -105,40 +105,40 @@ class InProcessGraph:
         assert not self.failures(), self.failures()
 
     def run(self, within_s: float = 30) -> None:
-        """Spin until the driveline has done its work, then let every node flush, recorder last."""
+        """Spin until the driveline has ended the run, then close every node, the recorder last."""
         driveline = self.nodes['driveline']
         self.spin_until(driveline.done.done, 'the end of the run', within_s)
         self.finish()
 
     def finish(self) -> None:
-        """Let every node flush what it holds, the recorder last."""
+        """Close every node, the recorder last, so that each publishes or writes the rest."""
         for name in sorted(self.nodes, key=lambda name: name == 'recorder'):
             finish_node(self._executor, self.nodes[name])
         assert not self.failures(), self.failures()
 
     def first_failure(self, within_s: float = 30) -> tuple[str, str]:
-        """Spin until a node fails and return which one and its words."""
+        """Spin until a node fails; return its name and error message."""
         self._spin_until(lambda: bool(self.failures()), 'a node that fails', within_s)
         return next(iter(self.failures().items()))
 
     def failures(self) -> dict[str, str]:
-        """Return the words of every node that has ended with an error."""
+        """Return the error messages of the nodes that have ended with an error, by name."""
         errors = {
             name: node.done.result() for name, node in self.nodes.items() if node.done.done()
         }
         return {name: str(error) for name, error in errors.items() if isinstance(error, DdctError)}
 
     def _spin_until(self, condition: Callable[[], bool], what: str, within_s: float) -> None:
-        # A timer looks, because a busy EventsExecutor does not look at its timeout.
+        # A timer checks, because a busy EventsExecutor ignores its timeout.
         met: Future = Future()
         deadline = time.monotonic() + within_s
 
-        def look() -> None:
+        def check() -> None:
             if not met.done() and (condition() or time.monotonic() > deadline):
                 met.set_result(None)
 
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        timer = self._watch.create_timer(LOOK_S, look, clock=steady)
+        timer = self._watch.create_timer(CHECK_PERIOD_S, check, clock=steady)
         while not met.done():
             self._executor.spin_until_future_complete(met, within_s)
         self._watch.destroy_timer(timer)
@@ -146,4 +146,4 @@ class InProcessGraph:
 
 
 GraphOf = Callable[[RunPlan], InProcessGraph]
-"""What the fixture `graph_of` gives: a function that prepares the graph of a plan."""
+"""Type of the fixture `graph_of`: a function that prepares the graph of a plan."""

@@ -1,4 +1,4 @@
-"""Logs of drives, with noise and with signals that are late."""
+"""Logs of drives with noise and with delayed signals."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -39,7 +39,7 @@ def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:
 
 
 def rows_late(log: MeasuredLog, names: Sequence[str], rows: int) -> MeasuredLog:
-    """Return a log that has some of its signals rows late, without the first ones."""
+    """Return a log with some of its signals delayed by `rows` rows, without the first rows."""
     signals = {
         name: values[:-rows] if name in names else values[rows:]
         for name, values in log.signals.items()

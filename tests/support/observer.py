@@ -1,4 +1,4 @@
-"""A listener that is no part of the graph, to see what a run without a recorder does."""
+"""Subscriber that is no part of the graph, for runs without a recorder."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ from ddct_plant.graph.topics import CLUTCH_TORQUE
 
 
 class Observer(Node):
-    """Keeps what it hears of `driveline/joint_states` and `clutch/torque`, by step."""
+    """Node that stores the messages of `driveline/joint_states` and `clutch/torque` by step."""
 
     def __init__(self, **options: Any) -> None:
         """Subscribe; nothing in the graph waits for this node."""
@@ -39,7 +39,7 @@ class Observer(Node):
         self.clutch_torque[step_of_stamp(stamp_ns(message))] = CLUTCH_TORQUE.read(message)[0]
 
     def require_same(self, trajectory: Trajectory) -> None:
-        """Require the end of the run, and each tick that was heard, to the last bit."""
+        """Require the end of the run, and each received tick, to the last bit."""
         assert trajectory.steps in self.joints, sorted(self.joints)[-3:]
         for step, joints in self.joints.items():
             assert np.array_equal(joints.position, trajectory.joint_position[step]), step
@@ -69,6 +69,6 @@ class Observing:
         self._context.try_shutdown()
 
     def listen(self) -> bool:
-        """Take in what has come; True, so that it fits into a condition to wait for."""
+        """Spin for a moment; return True, for use in a condition."""
         self._executor.spin_until_future_complete(Future(), 0.02)
         return True

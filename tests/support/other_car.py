@@ -1,7 +1,7 @@
 """
-A car that is not ours, simulated by code of its own: a log as another tool would write it.
+Another car, simulated by code of its own: a log as another tool would write it.
 
-Equations of motion are written here again, from the free bodies, and integrated by scipy.
+Equations of motion are derived again from the free bodies, and integrated by scipy.
 """
 
 from collections.abc import Callable, Mapping
@@ -24,7 +24,7 @@ TRUE = {
     'vehicle_inertia': 190.0,
 }
 RADIUS_M = 0.3211344993404892
-"""That of the scenario `thesis`, whose drag the car shares."""
+"""Wheel radius of the scenario `thesis`, m, whose drag the car shares."""
 ROLLING_N_M = 75.0
 STEP_S = 0.008
 LASTS_S = 4.8
@@ -34,15 +34,15 @@ NOISE_RAD_S = np.array([0.2, 0.2, 0.02])
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive without noise."""
+    """Signals of a drive without noise."""
 
     time_s: np.ndarray
     speeds: np.ndarray
-    """(n, 3) rad/s."""
+    """Speeds of engine, shaft and wheels, (n, 3), rad/s."""
     engine_torque: np.ndarray
     clutch_torque: np.ndarray
     accel: np.ndarray
-    """(n,) m/s^2."""
+    """Acceleration of the vehicle, (n,), m/s^2."""
     signals: dict[str, np.ndarray] = field(init=False)
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""A clock for the driveline in real time that a busy machine cannot make miss a step."""
+"""Clock for the driveline in real time with which a busy machine misses no step."""
 
 import time
 
@@ -10,13 +10,14 @@ from support.in_process_graph import InProcessGraph
 
 class PatientClock:
     """
-    Let the next step be due only once every reply to the last tick is in.
+    Clock whose next step is due only once every reply to the last tick has arrived.
 
-    So a run misses nothing, however slow the machine is. From `release` on time passes as ever.
+    So a run misses nothing, however slow the machine is. From `release` on it follows the wall
+    clock.
     """
 
     def __init__(self, owner: RealtimeOwner) -> None:
-        """Become the clock of `owner`, before its run begins."""
+        """Replace the clock of `owner`, before its run begins."""
         self._owner = owner
         self._offset: float | None = None
         self._not_awaited: set[str] = set()
@@ -33,11 +34,11 @@ class PatientClock:
         return started + (owner.step + (0.5 if missing else 1.5)) * PERIOD_S
 
     def go_on_without(self, topic: str) -> None:
-        """Wait for the replies on `topic` no longer."""
+        """Stop waiting for the replies on `topic`."""
         self._not_awaited.add(topic)
 
     def release(self) -> None:
-        """Let time pass from now on."""
+        """Follow the wall clock from now on."""
         self._offset = self() - time.monotonic()
 
 

@@ -1,4 +1,4 @@
-"""Programs as processes of their own, and a look at what is left of them (Linux /proc)."""
+"""Programs as processes of their own, and the processes that a test leaves (Linux /proc)."""
 
 import contextlib
 import os
@@ -17,12 +17,12 @@ TEST_ID = 'DDCT_TEST_ID'
 """Environment variable that marks every process which a test starts, directly or not."""
 
 START_S = 60.0
-"""How long a node or program may take to start or to end on a loaded machine."""
+"""Timeout for the start or end of a node or program on a loaded machine, s."""
 
 
 @dataclass
 class Program:
-    """A running program and the files that hold what it prints."""
+    """Running program and the files of its output."""
 
     process: subprocess.Popen[bytes]
     stdout: Path
@@ -52,10 +52,10 @@ class Program:
 
 
 class Programs:
-    """Starts programs and kills at the end what a failed test has left running."""
+    """Starter of programs that kills those still running after a failed test."""
 
     def __init__(self, logs: Path) -> None:
-        """Write what they print into `logs`."""
+        """Write the output of the programs into `logs`."""
         self._logs = logs
         self._started: list[Program] = []
 
@@ -86,7 +86,7 @@ class Programs:
         return self.start_module(module, *ros_arguments(parameters), **options)
 
     def kill(self) -> None:
-        """Kill what still runs and reap everything."""
+        """Kill and reap the programs that still run."""
         for program in self._started:
             if program.process.poll() is None:
                 program.send(signal.SIGKILL)
@@ -114,7 +114,7 @@ def processes_left() -> dict[int, str]:
     for folder in Path('/proc').iterdir():
         if not folder.name.isdigit() or int(folder.name) == os.getpid():
             continue
-        # A process may end, or belong to somebody else, while we look.
+        # A process may end, or belong to another user, during the scan.
         with contextlib.suppress(OSError):
             if mark in (folder / 'environ').read_bytes().split(b'\0'):
                 command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode()
@@ -126,10 +126,10 @@ def node_of(module: str) -> int:
     """Return the process id of the node of this test that runs `module`, once it is there."""
     found: list[int] = []
 
-    def look() -> bool:
+    def find() -> bool:
         found[:] = [pid for pid, command in processes_left().items() if module in command]
         return bool(found)
 
-    wait_until(look, f'a process of {module}', START_S)
+    wait_until(find, f'a process of {module}', START_S)
     assert len(found) == 1, f'{module} runs {len(found)} times'
     return found[0]

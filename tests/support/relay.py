@@ -1,4 +1,4 @@
-"""A bad network: relays that lose, double and delay messages between the graph's nodes."""
+"""Relays that lose, double and delay messages between the graph's nodes, as a bad network."""
 
 import random
 from collections.abc import Iterable
@@ -12,13 +12,13 @@ LOSSY = 'lossy'
 
 
 def lossy_remaps(node: str, topics: Iterable[str]) -> list[str]:
-    """Return the ROS arguments by which a node hears `topics` only from a `Relay`."""
+    """Return the ROS arguments by which a node receives `topics` only from a `Relay`."""
     rules = [f'{topic}:={_relayed(node, topic)}' for topic in topics]
     return ['--ros-args', *(part for rule in rules for part in ('-r', rule))]
 
 
 class Relay(Node):
-    """Hand one topic on to one node, with a share of the messages lost and a share doubled."""
+    """Node that forwards one topic to one node; a share of messages is lost, a share doubled."""
 
     def __init__(
         self,
@@ -31,7 +31,7 @@ class Relay(Node):
         seed: int,
         **options: Any,
     ) -> None:
-        """Hand `topic` on to the node `reader`; the shares are between 0 and 1."""
+        """Forward `topic` to the node `reader`; the shares are between 0 and 1."""
         relayed = _relayed(reader, topic)
         super().__init__(f'relay_{relayed.replace("/", "_")}', **options)
         self.lost = 0

@@ -1,4 +1,4 @@
-"""Planned runs, short ones, and what they leave."""
+"""Short planned runs, and their recordings."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 LAYOUTS = ('processes', 'single-process', 'headless')
 SHORT_S = 1.0
-"""Long enough for 40 steps under control, which starts at 0.6 s."""
+"""Duration of a short run, s: 40 steps under control, which starts at 0.6 s."""
 
 
 def plan(
@@ -33,7 +33,7 @@ def plan(
 
 
 def record(run: RunPlan, folder: Path) -> Recording:
-    """Carry out a run into a new folder and return what its bag holds."""
+    """Execute a run into a new folder and return its recording."""
     folder.mkdir(parents=True)
     execute(run, folder)
     return read_bag(folder)

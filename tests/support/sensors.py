@@ -1,4 +1,4 @@
-"""Sensors with every option on, for runs that try them."""
+"""Sensor options for test runs, each option in use."""
 
 ALL_ON = (
     'sensors={engine_speed: {noise_rad_s: 0.2, quantum_rad_s: 0.1, delay_s: 0.02, dropout: 0.1, '
@@ -10,7 +10,7 @@ ALL_ON = (
     'engine_torque: {noise_n_m: 3.0, quantum_n_m: 1.0, delay_s: 0.01, dropout: 0.1, '
     'dropout_burst: 2, gain: 1.05, bias_n_m: 2.0}}'
 )
-"""A change of a scenario."""
+"""Change of a scenario that turns every option on."""
 FLAGS = (
     'sensed_joint_held',
     'sensed_slip_held',

@@ -1,4 +1,4 @@
-"""A real-time run whose controller falls silent on the way."""
+"""Real-time run whose controller stops publishing on the way."""
 
 import signal
 from collections.abc import Callable, Sequence
@@ -21,10 +21,10 @@ def run_until_silent(
     first_step: int,
 ) -> float:
     """
-    Run with the controller in a process of its own, which gets the signals from a step on.
+    Run with the controller in a process of its own, which gets the signals at a step.
 
-    `has_come_to(step)` says whether the listener, a node, has heard of that step or a later one.
-    Return for how long, in s, the controller had waited for a processor from step 0 to then.
+    `has_come_to(step)` returns whether the listener, a node, has received that step or a later
+    one. Return the time, s, that the controller had waited for a processor from step 0 to then.
     """
     shared = graph.parameters['*'] | graph.parameters['controller']
     controller = programs.start_node('ddct_controllers.controller_node', shared)
@@ -43,6 +43,6 @@ def run_until_silent(
 
 
 def _waited_s(pid: int) -> float:
-    """Return how long the threads of a process were ready to run and did not (Linux)."""
+    """Return the time, s, that the threads of a process were ready and did not run (Linux)."""
     files = Path(f'/proc/{pid}/task').glob('*/schedstat')
     return 1e-9 * sum(int(file.read_text().split()[1]) for file in files)

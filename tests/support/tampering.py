@@ -1,4 +1,4 @@
-"""A node that hands one topic on to one reader and, from one step on, spoils what it carries."""
+"""Node that forwards one topic to one reader and, from one step on, changes its messages."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,12 +11,12 @@ from ddct_plant.graph.qos import RECORDER_QOS
 
 
 def tampered_remap(topic: str) -> list[str]:
-    """Return the ROS arguments by which a node hears `topic` only from a `Tamperer`."""
+    """Return the ROS arguments by which a node receives `topic` only from a `Tamperer`."""
     return ['--ros-args', '-r', f'{topic}:=tampered/{topic}']
 
 
 class Tamperer(Node):
-    """Hands `topic` on, and calls `spoil` on each of its messages from `from_step` on."""
+    """Node that forwards `topic`; from `from_step` on `spoil` changes each message."""
 
     def __init__(
         self,
@@ -26,7 +26,7 @@ class Tamperer(Node):
         from_step: int,
         **options: Any,
     ) -> None:
-        """Spoil what the reader with `tampered_remap(topic)` hears."""
+        """Change the messages that the reader with `tampered_remap(topic)` receives."""
         super().__init__('tamperer', **options)
         self._spoil = spoil
         self._from_step = from_step

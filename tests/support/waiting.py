@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 
 def wait_until(condition: Callable[[], bool], what: str, within_s: float = 30.0) -> None:
-    """Wait until `condition()` holds; fail, saying what did not happen, when it never does."""
+    """Wait until `condition()` holds; fail with `what` when it does not in time."""
     deadline = time.monotonic() + within_s
     while not condition():
         assert time.monotonic() < deadline, f'{what}: not within {within_s:g} s'

@@ -1,4 +1,4 @@
-"""Every number that the thesis prints, held against what all packages together compute."""
+"""Every number that the thesis prints, compared with the values computed by all packages."""
 
 import csv
 import json
@@ -200,7 +200,7 @@ def test_list_has_table_5_1_as_the_calibration_uses_it() -> None:
     assert printed_in('5, Table 5.1') == {
         f'{row.label}: {figure}': value
         for row in THESIS_TABLE
-        for figure, value in zip(figures, row.figures().values(), strict=True)
+        for figure, value in zip(figures, row.printed_values().values(), strict=True)
     }
 
 
@@ -239,7 +239,7 @@ def test_program_prints_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
     assert 'Errata of the thesis' in printed and 'distinct facts' in printed
 
 
-def test_program_without_one_of_its_sources_says_that_nothing_was_computed_for_it(
+def test_program_without_one_of_its_sources_reports_its_numbers_as_not_computed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     without = {name: source for name, source in SOURCES.items() if name != 'closed loop'}

@@ -4,8 +4,8 @@ The stable interface for scripts and notebooks: run, judge, tabulate and draw; d
     from ddct_bringup.api import run
     print(run('pi', wear_gain=0.7).metrics['engagement_time_s'])
 
-Arguments are called as the options of `ddct bringup`. What cannot be used raises `DdctError`, or
-`ParameterError`, which is one. Nothing is printed; what a scenario moved by itself is warned of.
+Arguments have the names of the options of `ddct bringup`. An invalid one raises `DdctError` or its
+subclass `ParameterError`. Nothing is printed; scenario values that were adjusted give a warning.
 """
 
 from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep

@@ -1,4 +1,4 @@
-"""Sweeps and campaigns: many runs from Python."""
+"""Run sweeps and campaigns, many runs each, from Python."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -21,12 +21,12 @@ from ddct_controllers.registry import controller_label
 
 
 class CampaignResults(NamedTuple):
-    """What a campaign left."""
+    """Results of a finished campaign."""
 
     table: Any
-    """A pandas DataFrame with a row per run, by its index: what was varied, metrics, verdict."""
+    """pandas DataFrame with a row per run, by its index: varied values, metrics, verdict."""
     summary: Summary
-    """The content of `summary.json`."""
+    """Content of `summary.json`."""
 
 
 def campaign(
@@ -39,11 +39,11 @@ def campaign(
     limits: str | Path | None = None,
 ) -> CampaignResults:
     """
-    Compute a campaign into the folder `out`, as `ddct campaign` does, and return what came out.
+    Compute a campaign into the folder `out`, as `ddct campaign` does, and return its results.
 
-    `spec` is a file, or what a file holds; files that a mapping names are relative to the working
-    directory. A script calls this below `if __name__ == '__main__':`, as its worker processes
-    import it.
+    `spec` is a file, or the content of one as a mapping; files that a mapping names are relative
+    to the working directory. A script calls this below `if __name__ == '__main__':`, as its worker
+    processes import it.
     """
     pandas_module()
     given = spec_of(spec, Path.cwd()) if isinstance(spec, Mapping) else read_spec(spec)
@@ -74,10 +74,10 @@ def sweep(
     """
     Run controllers over values, headless on all cores; return a pandas DataFrame.
 
-    `controllers` are given as for `compare`, `options` as for `run`. `over` has by key the values,
-    or the text 'START:STOP:COUNT'; of several keys every combination runs. A row per run holds
-    the controller, the values under their keys, every metric, `valid` and `reason`,
-    `verdict_state`, `verdict_limits`, and the criteria as `criterion.NAME`.
+    `controllers` are as for `compare`, `options` as for `run`. `over` maps a key to its values, or
+    to the text 'START:STOP:COUNT'; with several keys every combination runs. A row per run has the
+    controller, the values under their keys, every metric, `valid` and `reason`, `verdict_state`,
+    `verdict_limits`, and the criteria as `criterion.NAME`.
     """
     chosen = controllers_from(controllers)
     base = base_from([controller_label(each) for each in chosen], **options)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from matplotlib.figure import Figure
 
 from ddct_bringup.api.runs import Run, as_runs
-from ddct_bringup.report.quantities import Quantity, quantities_of
+from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.runs import common_conditions, run_labels, varied_conditions
 from ddct_controllers.design.drawing.chart_style import (
     chart_style,
@@ -28,10 +28,10 @@ def figure(
     """
     Return a figure with a chart per quantity over time, all runs in each.
 
-    The title names the controllers, what the runs differ in, and what they share: scenario,
+    The title names the controllers, the varied conditions and the common ones: scenario,
     architecture, clutch, wear gain. The quantities are the keys of the report's charts, such as
-    w_d, error, w_sr, A_x, C_f_request; `temperature` and others of a clutch that sticks too. Raise
-    ParameterError for another.
+    w_d, error, w_sr, A_x, C_f_request; with a clutch that sticks also `temperature` and others.
+    Raise ParameterError for another.
     """
     shown = as_runs(runs)
     if not shown or not quantities:
@@ -53,7 +53,7 @@ def figure(
 
 
 def _title(runs: Sequence[Run]) -> str:
-    """Return which controllers are drawn over what, and below it what all runs share."""
+    """Return the title: controllers, varied conditions, and below them the common conditions."""
     entries = [run.entry for run in runs]
     names = dict.fromkeys(entry['controller'] or entry['bag'] for entry in entries)
     scenarios = dict.fromkeys(
@@ -68,7 +68,7 @@ def _title(runs: Sequence[Run]) -> str:
     return headed(title, f'{"; ".join(scenarios)}; {shared}', _WIDTH_IN)
 
 
-def _quantity(run: Run, key: str) -> Quantity:
-    known = {quantity.key: quantity for quantity in quantities_of(run.trajectory)}
+def _quantity(run: Run, key: str) -> ChartSignal:
+    known = {quantity.key: quantity for quantity in chart_signals_of(run.trajectory)}
     require_known([key], known, 'quantity')
     return known[key]

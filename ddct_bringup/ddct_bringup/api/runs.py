@@ -1,4 +1,4 @@
-"""Run controllers from Python, load bags, and what to ask of a run."""
+"""Run controllers from Python or load bags; signals, metrics and verdict of a run."""
 
 import tempfile
 import threading
@@ -16,10 +16,10 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.campaign.rows import RunBase
-from ddct_bringup.run.beside_bag import RunTiming, read_timing
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.scoring import Entry, score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits
@@ -37,25 +37,25 @@ from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
-"""Held while a graph runs: its ROS domain is in the environment, which all threads share."""
+"""Lock of the one graph of this process: its ROS domain is in the environment of all threads."""
 _OF_THE_RECORD = ('headless', 'out', 'overwrite', 'limits')
-"""Options of `run` that change nothing of what a controller is built for."""
+"""Options of `run` that do not affect the context a controller is built in."""
 
 
 @dataclass(frozen=True, repr=False)
 class Run:
-    """One run, simulated, recorded from the graph, or loaded."""
+    """One run: simulated, recorded from the graph, or loaded from a bag."""
 
     recording: Recording
     entry: Entry
-    """As in `scores.json`."""
+    """Entry of the run as in `scores.json`."""
     timing: RunTiming | None
-    """None of a bag without `timing.json`."""
+    """Wall-clock times and counts; None of a bag without `timing.json`."""
     chosen: Chosen
-    """The controller, as the registry takes it."""
+    """Controller, as the registry accepts it."""
 
     def __repr__(self) -> str:
-        """Return a line: a notebook shows it after each cell that ends with a run."""
+        """Return one line on the run, which a notebook prints after a cell that ends with it."""
         facts = self.recording.facts
         counts = 'valid' if self.valid else f'not valid: {self.reason}'
         return (
@@ -66,44 +66,44 @@ class Run:
 
     @property
     def controller(self) -> str:
-        """What the controller is called."""
+        """Name of the controller."""
         return self.recording.facts.controller
 
     @property
     def path(self) -> Path | None:
-        """The MCAP file, None of a run that was not kept."""
+        """Path of the MCAP file; None of a run that was not kept."""
         return self.recording.path if self.recording.path.is_file() else None
 
     @property
     def settings(self) -> RunSettings:
-        """What was simulated; raise DdctError for a bag whose scenario cannot be built here."""
+        """Settings of the run; DdctError for a bag whose scenario this version cannot build."""
         if self.recording.settings is None:
             raise DdctError(f'{self.entry["bag"]}: its scenario cannot be built by this version')
         return self.recording.settings
 
     @property
     def trajectory(self) -> Trajectory:
-        """Every signal as an array, all SI."""
+        """Trajectory of the run: every signal as an array, all SI."""
         return self.recording.trajectory
 
     @property
     def metrics(self) -> dict[str, Any]:
-        """The metrics of `scores.json` by name, None where one is undefined."""
+        """Metrics of `scores.json` by name; None for an undefined one."""
         return self.entry['metrics']
 
     @property
     def verdict(self) -> dict[str, Any]:
-        """`state`, `limits` and `criteria`, as docs/use/verdict.md tells."""
+        """Verdict with `state`, `limits` and `criteria`, as in docs/use/verdict.md."""
         return self.entry['verdict']
 
     @property
     def valid(self) -> bool:
-        """Whether the run counts."""
+        """Whether the run is valid: recorded as planned, and finite."""
         return self.entry['valid']
 
     @property
     def reason(self) -> str:
-        """Why it does not count; empty if it does."""
+        """Reason of a run that is not valid; empty for a valid one."""
         return self.entry['reason']
 
     def dataframe(self) -> Any:
@@ -115,7 +115,7 @@ class Run:
         Return the controller's entry of `frequency.json`: margins of its sampled loop.
 
         Its `linear` is false, and the rest None, for a controller without a frequency response.
-        Raise DdctError where the controller of a loaded run is not known here.
+        Raise DdctError where the controller of a loaded run cannot be found here.
         """
         return frequency_evidence([self.chosen], self.settings)['controllers'][0]
 
@@ -137,12 +137,12 @@ def run(
     """
     Run one controller in the closed loop and judge the run.
 
-    `controller` and `name` are what `chosen_from` takes: a name, a file, a class, a factory, an
-    object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the options
-    of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those of
-    `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
-    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; of a run that is not
-    valid, whose `reason` says why, as `<out>/<name>.partial/`. `beside` names other controllers
+    `controller` and `name` are the arguments of `chosen_from`: a name, a file, a class, a factory,
+    an object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the
+    options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
+    of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
+    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
+    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `beside` names other controllers
     whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)
@@ -163,20 +163,25 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
     """
     Return a run of each controller, all with the same options of `run`.
 
-    A mapping gives their names. Text is as the option of `ddct compare`: 'pi,ls8', or 'all', which
-    warns of a third party's controller that cannot be built, and leaves it out.
+    The keys of a mapping name its controllers. Text is parsed like the option of `ddct compare`:
+    'pi,ls8', or 'all', which leaves out a third party's controller that cannot be built, with a
+    warning.
     """
     if controllers == 'all':
         described = {key: options[key] for key in options if key not in _OF_THE_RECORD}
-        tell = partial(warnings.warn, stacklevel=3)
-        controllers = working_controllers(_ready(controller_names(), **described), tell)
+        warn = partial(warnings.warn, stacklevel=3)
+        controllers = working_controllers(_ready(controller_names(), **described), warn)
     chosen = controllers_from(controllers)
     labels = [controller_label(each) for each in chosen]
     return [run(each, beside=labels, **options) for each in chosen]
 
 
 def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> list[Chosen]:
-    """Return what several controllers are, given as for `compare`; ParameterError for none."""
+    """
+    Return controllers, given as for `compare`, as the registry accepts them.
+
+    Raise ParameterError for none.
+    """
     if isinstance(controllers, str):
         controllers = [name.strip() for name in controllers.split(',') if name.strip()]
     if isinstance(controllers, Mapping):
@@ -189,7 +194,7 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
 
 
 def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
-    """Return the run that a bag holds, a folder or an .mcap file, scored anew."""
+    """Return the run in a bag, given as its folder or .mcap file, scored with `limits`."""
     path = Path(bag)
     return _read(path, path.as_posix(), load_limits(limits))
 
@@ -200,12 +205,12 @@ def table(runs: Run | Iterable[Run]) -> Any:
 
 
 def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
-    """Return a list of runs where one alone may be given."""
+    """Return a list of runs, also of a single run."""
     return [runs] if isinstance(runs, Run) else list(runs)
 
 
 def _ready(labels: list[str], *options: Any, **given: Any) -> RunSettings:
-    """Return the settings of a run, or of runs, with the controllers called `labels`."""
+    """Return the settings of one run, or of runs, with the controllers called `labels`."""
     settings = base_from(labels, *options, **given).at({})
     for line in settings.scenario.adjusted:
         warnings.warn(f'scenario {settings.scenario.name}: {line}', stacklevel=3)
@@ -219,7 +224,7 @@ def base_from(
     duration: float | None = None,
     **given: Any,
 ) -> RunBase:
-    """Return what runs with the controllers called `labels` have in common."""
+    """Return the common base of runs with the controllers called `labels`."""
     if not isinstance(set, Mapping | None):
         raise ParameterError(
             f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}"
@@ -235,7 +240,7 @@ def base_from(
 
 
 def plain(value: Any) -> Any:
-    """Return a number or list of numpy as Python's, which bags say in the same words."""
+    """Return a number or list of numpy as Python's, which bags write as the same text."""
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 

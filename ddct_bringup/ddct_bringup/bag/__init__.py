@@ -1,1 +1,1 @@
-"""Recordings: writing, reading, checking and repairing bags."""
+"""Recordings of runs as rosbag2 bags: write, read, check and repair them."""

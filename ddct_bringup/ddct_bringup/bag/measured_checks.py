@@ -1,7 +1,7 @@
 """
-What a log contradicts: a ratio, units and signs that its own signals show to be others.
+Check the total ratio, units and signs of another tool's log against its own signals.
 
-Each check is silent where the log cannot decide.
+A check that the log's signals cannot decide raises nothing.
 """
 
 from collections.abc import Mapping
@@ -12,16 +12,16 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 
 Values = Mapping[str, np.ndarray]
-"""(N+1,) by quantity, SI, every 10 ms."""
+"""Samples by quantity name: (N+1,) each, SI units, every 10 ms."""
 
 RATIO_TOLERANCE = 0.01
 TWIST_RAD = 0.5
-"""More than a driveshaft twists with its backlash: what the angles turned may differ by."""
+"""Largest twist of the driveshaft with its backlash, rad: tolerance of the turned angles."""
 _LEAST_TURNED_RAD = 5.0
 RADII_M = (0.15, 0.7)
-"""Rolling radii of the wheels of a car or truck."""
+"""Lowest and highest rolling radius of the wheels of a car or truck, m."""
 ENGINE_INERTIAS = (0.03, 1.5)
-"""J_m of a car's engine with its flywheel, kg m^2."""
+"""Lowest and highest inertia J_m of a car's engine with its flywheel, kg m^2."""
 _PER_OTHER_UNIT = {'rpm': 30.0 / np.pi, 'deg/s': 180.0 / np.pi}
 _SAME_FACTOR = 0.02
 _LOCKED_S, _LOCKED_SPREAD = 0.3, 0.05
@@ -31,7 +31,7 @@ _SURE, _SURE_OF_SLOPE = 0.9, 10.0
 
 
 def require_no_contradiction(total_ratio: float | None, values: Values) -> None:
-    """Raise DdctError, in one line that names what to mend, where the log shows another car."""
+    """Raise DdctError, in one line that names the values to mend, where signals disagree."""
     if 'wheel_speed' in values:
         if total_ratio is not None:
             _require_ratio(total_ratio, values)
@@ -43,9 +43,10 @@ def require_no_contradiction(total_ratio: float | None, values: Values) -> None:
 
 def _require_ratio(given: float, values: Values) -> None:
     """
-    Hold the total ratio against the angles that shaft and wheels turned.
+    Compare the total ratio with the angles that shaft and wheels turned; raise DdctError.
 
-    The clutch has no part in it: locked or slipping, they differ by the twist of the driveshaft.
+    The clutch has no part in it: locked or slipping, the angles differ by the driveshaft's
+    twist.
     """
     shaft, wheels = (PERIOD_S * np.sum(values[name]) for name in ('shaft_speed', 'wheel_speed'))
     if abs(wheels) < _LEAST_TURNED_RAD:
@@ -61,16 +62,16 @@ def _require_ratio(given: float, values: Values) -> None:
 
 
 def _suspects(first: str, second: str, factor: float) -> str:
-    """Return what may be wrong with two speeds of which one is `factor` times too large."""
-    what = f'unit or sign of {first} and {second}'
+    """Return the suspected mistakes in two speeds of which one is `factor` times too large."""
+    suspects = f'unit or sign of {first} and {second}'
     for unit, size in _PER_OTHER_UNIT.items():
         if min(abs(abs(factor) / size - 1.0), abs(abs(factor) * size - 1.0)) < 3.0 * _SAME_FACTOR:
-            return f'the {what} (the factor is that of {unit} to rad/s)'
-    return f'the {what}'
+            return f'the {suspects} (the factor is that of {unit} to rad/s)'
+    return f'the {suspects}'
 
 
 def _require_radius(values: Values) -> None:
-    """Hold V_x and A_x against the wheels: they turn at V_x over a radius that wheels have."""
+    """Raise DdctError where V_x or A_x over the wheel speed is no radius that wheels have."""
     wheels = values['wheel_speed']
     if 'vehicle_speed' in values and abs(PERIOD_S * np.sum(wheels)) > _LEAST_TURNED_RAD:
         _require_in(
@@ -92,7 +93,7 @@ def _require_radius(values: Values) -> None:
 
 
 def _require_same_unit(values: Values) -> None:
-    """Refuse an engine that turns at another unit's multiple of its shaft, as if locked there."""
+    """Raise DdctError where the engine speed is the shaft speed in another unit for some time."""
     engine, shaft = values['engine_speed'], values['shaft_speed']
     for unit, size in _PER_OTHER_UNIT.items():
         for factor in (size, 1.0 / size):
@@ -109,9 +110,9 @@ def _require_same_unit(values: Values) -> None:
 
 def _engine_fits(values: Values) -> bool:
     """
-    Hold both torques against J_m dw_m/dt = C_m - C_f, and say whether these explain the speed.
+    Compare both torques with J_m dw_m/dt = C_m - C_f; return whether they explain the speed.
 
-    Where they do, and agree, the signs are right whatever the slip does.
+    Where they do and no DdctError is raised, the signs are right whatever the slip is.
     """
     torques = np.column_stack(
         [_per_window(values[name], mean=True) for name in ('engine_torque', 'clutch_torque')]
@@ -138,7 +139,7 @@ def _engine_fits(values: Values) -> bool:
 
 
 def _require_friction(values: Values) -> None:
-    """Refuse a clutch that drives: friction takes power, C_f (w_m - w_p) is above zero."""
+    """Raise DdctError where the clutch gives power; friction takes it: C_f (w_m - w_p) > 0."""
     power = values['clutch_torque'] * (values['engine_speed'] - values['shaft_speed'])
     whole = float(np.sum(np.abs(power)))
     if whole > 0.0 and np.sum(power) < -0.5 * whole:
@@ -149,16 +150,16 @@ def _require_friction(values: Values) -> None:
         )
 
 
-def _require_in(found: float, bounds: tuple[float, float], what: str, of: str) -> None:
+def _require_in(found: float, bounds: tuple[float, float], text: str, of: str) -> None:
     if not bounds[0] <= found <= bounds[1]:
         raise DdctError(
-            f'{what.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
+            f'{text.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
             f'signs of {of}'
         )
 
 
 def _per_window(signal: np.ndarray, *, mean: bool) -> np.ndarray:
-    """Return means, or mean slopes, over the windows of 0.1 s that fit in."""
+    """Return the means, or the mean slopes per s, over the whole windows of 0.1 s of a signal."""
     width = round(_WINDOW_S / PERIOD_S)
     count = (len(signal) - 1) // width
     if mean:
@@ -169,9 +170,9 @@ def _per_window(signal: np.ndarray, *, mean: bool) -> np.ndarray:
 
 def _slopes(rates: np.ndarray, causes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the slopes of a least-squares fit with a constant, and of which of them one is sure.
+    Return the slopes of a least-squares fit with a constant, and whether each is significant.
 
-    None is sure where the causes explain too little of the rates.
+    None is significant where the causes explain too little of the rates.
     """
     width = causes.shape[1]
     table = np.column_stack([causes, np.ones(len(causes))])

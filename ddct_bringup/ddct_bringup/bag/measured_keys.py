@@ -1,4 +1,4 @@
-"""What a log cannot say itself: `run` of a column map."""
+"""Keys under `run` of a column map: the facts of a run that its log does not contain."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,12 @@ from ddct_plant.base.options import OptionGroup, option
 
 @dataclass(frozen=True)
 class MeasuredRun(OptionGroup, prefix='run.'):
-    """The keys, their defaults and ranges."""
+    """Keys under `run` of a column map, with their defaults and ranges."""
 
-    controller: str = option(MEASURED, 'what tables call the controller', kind=str)
-    scenario: str = option(MEASURED, 'what tables call the drive; logs of one name compare')
+    controller: str = option(MEASURED, 'name of the controller in tables', kind=str)
+    scenario: str = option(
+        MEASURED, 'name of the drive in tables; logs of one name are comparable'
+    )
     start_s: float | None = option(
         None, "the log's time at scenario time 0", 's', otherwise='that of the first row'
     )
@@ -36,7 +38,7 @@ class MeasuredRun(OptionGroup, prefix='run.'):
     total_ratio: float | None = option(
         None, 'w_p over w_r with a stiff driveshaft; w_sr needs it', above=0.0
     )
-    wear_gain: float = option(1.0, 'what tables say of the clutch', above=0.0, at_most=3.0)
+    wear_gain: float = option(1.0, 'wear gain of the clutch in tables', above=0.0, at_most=3.0)
 
     def __post_init__(self) -> None:
         """Check every option; raise ParameterError that names a bad one."""
@@ -45,7 +47,7 @@ class MeasuredRun(OptionGroup, prefix='run.'):
             raise ParameterError('run.score_window_s: give two times, [first, last]')
 
     def require_within(self, duration_s: float) -> None:
-        """Raise ParameterError for an engagement or a score window that the log does not hold."""
+        """Raise ParameterError for an engagement or a score window beyond the end of the log."""
         if self.control_start_s >= duration_s:
             raise ParameterError(
                 f'run.control_start_s is {self.control_start_s:g} s, but the log ends '

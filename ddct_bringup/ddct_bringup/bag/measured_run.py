@@ -1,4 +1,4 @@
-"""A log of another tool as a recording, so that it is scored and shown as a bag is."""
+"""Convert a log of another tool to a recording, so that it is scored and shown as a bag is."""
 
 import argparse
 from collections.abc import Mapping
@@ -22,10 +22,10 @@ from ddct_plant.measured.log import MeasuredLog, read_log
 
 NEEDED = ('engine_speed', 'shaft_speed')
 TORSION = 'torsion_speed'
-"""What is computed of shaft_speed, wheel_speed and the total ratio."""
+"""Name of the signal that is computed from shaft_speed, wheel_speed and the total ratio."""
 _LONGEST_GAP_S = 0.1
 _SLOWEST_S = 0.02
-"""Between samples of what has modes of the driveline in it."""
+"""Largest sample period, s, of signals that contain modes of the driveline."""
 _AVERAGED_BELOW_S = 0.5 * PERIOD_S
 _JOINT_SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed', TORSION)
 _JOINT_EFFORTS = ('engine_torque', 'clutch_torque', 'load_torque', 'driveshaft_torque')
@@ -33,7 +33,7 @@ _SINGLE = ('vehicle_speed', 'vehicle_accel', 'engine_torque', 'load_torque', 'to
 
 
 def add_columns_option(parser: argparse.ArgumentParser) -> None:
-    """Add --columns to a program that takes logs of other tools beside bags."""
+    """Add --columns to the options of a program that reads logs of other tools as well as bags."""
     parser.add_argument(
         '--columns',
         metavar='FILE',
@@ -42,12 +42,12 @@ def add_columns_option(parser: argparse.ArgumentParser) -> None:
 
 
 def is_log(path: Path) -> bool:
-    """Say whether a path is a log of another tool rather than a bag."""
+    """Return whether a path is a log of another tool rather than a bag."""
     return path.suffix.lower() == '.csv'
 
 
 def read_recording(path: Path, columns: ColumnMap | None) -> Recording:
-    """Read a bag, or a CSV log by its columns; raise DdctError of either."""
+    """Return the recording of a bag, or of a CSV log by its column map; raise DdctError."""
     if not is_log(path):
         return read_bag(path)
     if columns is None:
@@ -59,10 +59,10 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     """
     Return a CSV log as a recording on the grid of 10 ms.
 
-    Samples closer than 5 ms are averaged over the 10 ms around each instant, others are read by
-    what they do between samples. What the log does not have is NaN, with the reason in `absent`.
-    Raise DdctError for a log that cannot be read, is too short, has a gap over 0.1 s, or
-    contradicts what `run` or the column map says of it.
+    Samples closer than 5 ms are averaged over the 10 ms around each instant; others are
+    interpolated or held, as the column map sets. Quantities that the log lacks are NaN, with the
+    reason in `absent`. Raise DdctError for a log that cannot be read, is too short, has a gap over
+    0.1 s, or contradicts the values under `run` or the units and signs of the column map.
     """
     log = read_log(path, columns, NEEDED)
     require_known(columns.run, options_of(MeasuredRun), prefix='run.')
@@ -145,7 +145,7 @@ def _apart(log: MeasuredLog, name: str) -> float:
 
 
 def _trajectory(values: Mapping[str, np.ndarray], steps: int) -> Trajectory:
-    """Return every signal that a run without sticking has; NaN for what is not there."""
+    """Return every signal that a run with the linear clutch has; NaN for those not in the log."""
     count = steps + 1
     nothing = np.full(count, np.nan)
     columns: dict[str, Any] = {

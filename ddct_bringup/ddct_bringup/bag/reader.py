@@ -1,4 +1,4 @@
-"""Read a recorded bag back into a trajectory and what else it says; needs no ROS."""
+"""Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
@@ -15,7 +15,7 @@ from ddct_bringup.bag.run_facts import (
     RealtimeFacts,
     RunFacts,
     RunInfoOfNodes,
-    note_run_info,
+    add_run_info,
 )
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
@@ -38,29 +38,29 @@ from ddct_plant.scenario.settings import RunSettings
 
 @dataclass(frozen=True)
 class Recording:
-    """What a whole bag holds."""
+    """Contents of a complete bag: signals, facts of the run, run_info and message counts."""
 
     path: Path
-    """The MCAP file."""
+    """Path of the MCAP file."""
     trajectory: Trajectory
     facts: RunFacts
     custom_data: dict[str, str] = field(default_factory=dict)
     run_info: RunInfoOfNodes = field(default_factory=dict)
-    """Per node name its parameters and version."""
+    """Parameters and version of each node, by node name."""
     counts: dict[str, int] = field(default_factory=dict)
-    """Messages per resolved topic name."""
+    """Number of messages by resolved topic name."""
     missed: dict[str, int] = field(default_factory=dict)
-    """Per reply topic, at how many stamps the last reply had to be held; real time only."""
+    """Number of stamps without a reply, by reply topic; real time only."""
     realtime: RealtimeFacts = field(default_factory=RealtimeFacts)
-    """What `/diagnostics` says; empty in lock-step."""
+    """Counts and safe states published on `/diagnostics`; empty in lock-step."""
     absent: Mapping[str, str] = field(default_factory=dict)
-    """Of a log of another tool: quantities that it does not have, NaN here, and why."""
+    """Reason by quantity for quantities that a log of another tool lacks; they are NaN here."""
     simulated: RunSettings | None = None
-    """What was simulated here, and so need not be read."""
+    """Settings of a run that was simulated in this process; None of a bag."""
 
     @cached_property
     def settings(self) -> RunSettings | None:
-        """What was simulated; None where the bag does not tell, or it cannot be built here."""
+        """Settings of the run; None where the bag lacks them or this version cannot build them."""
         if self.simulated is not None:
             return self.simulated
         facts = self.facts
@@ -78,17 +78,17 @@ class Recording:
 
     @property
     def measured(self) -> bool:
-        """Whether it is the log of another tool: then nothing of ours lies beside it."""
+        """Whether this is the log of another tool, without the files beside a bag."""
         return self.facts.mode == MEASURED
 
     @property
     def before_schema(self) -> bool:
-        """Whether the bag is older than the version numbers of scenarios."""
+        """Whether the recorded scenario is older than the version numbers of scenarios."""
         return not isinstance(self._scenario, dict) or SCHEMA_KEY not in self._scenario
 
     @cached_property
     def _scenario(self) -> Any:
-        """Content of the recorded scenario, None without a readable one."""
+        """Content of the recorded scenario; None without a readable one."""
         try:
             return parse_yaml(self.custom_data.get('scenario_yaml', ''))
         except DdctError:
@@ -100,8 +100,8 @@ def read_bag(path: Path) -> Recording:
     Read a bag folder or its .mcap file.
 
     Raise DdctError for a missing, unfinished, damaged or foreign bag, for a message that is
-    missing, doubled or cannot be decoded, and for a node that says two things on `run_info`. A run
-    that ended early, or that holds non-finite values, is no error here.
+    missing, doubled or cannot be decoded, and for a node with two different messages on
+    `run_info`. A run that ended early, or that has non-finite values, is no error here.
     """
     records = read_records(mcap_of(path))
     with located(str(records.path)):
@@ -122,7 +122,7 @@ def recording_of(records: BagRecords) -> Recording:
     for topic in recorded_topics(run):
         if not topic.signals:
             continue
-        rows, held = _rows(topic, messages.get(topic.resolved_name, []), last)
+        rows, missing = _rows(topic, messages.get(topic.resolved_name, []), last)
         signals = topic.signals_in(run)
         if len(rows[0]) != len(signals):
             raise DdctError(
@@ -131,8 +131,8 @@ def recording_of(records: BagRecords) -> Recording:
             )
         for signal, column in zip(signals, zip(*rows, strict=True), strict=True):
             columns[signal.name] = column
-        if held:
-            missed[topic.name] = held
+        if missing:
+            missed[topic.name] = missing
     return Recording(
         path=records.path,
         trajectory=Trajectory.of_columns(columns),
@@ -149,12 +149,12 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
     facts = RealtimeFacts()
     for _, message in messages:
         if message.status:
-            facts.hear(*DIAGNOSTICS.read(message))
+            facts.receive(*DIAGNOSTICS.read(message))
     return facts
 
 
 def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
-    """Return per topic of ours its (stamp in ns, message), in the order of the file."""
+    """Return the (stamp in ns, message) pairs of each known topic, in the order of the file."""
     decoders = _decoders(records)
     messages: dict[str, list[tuple[int, Any]]] = defaultdict(list)
     for topic, log_time, data in records.messages:
@@ -172,7 +172,7 @@ def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
 
 
 def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
-    """Return a decoder for each topic of ours; raise DdctError for one of another type."""
+    """Return a decoder for each known topic; raise DdctError for a topic of another type."""
     factory = DecoderFactory()
     ours = {topic.resolved_name: topic.type for topic in all_topics()}
     decoders = {}
@@ -194,9 +194,9 @@ def _rows(
     topic: Topic, messages: list[tuple[int, Any]], last: int
 ) -> tuple[list[tuple[Any, ...]], int]:
     """
-    Return the values at t_0..t_N, and at how many of these stamps there was no message.
+    Return the values at t_0..t_N, and the number of these stamps without a message.
 
-    There the last message before counts; before the first message, the first one.
+    A stamp without a message repeats the last one before; before the first message, the first.
     """
     if not messages:
         raise DdctError(f'no message on {topic.resolved_name}')
@@ -205,17 +205,17 @@ def _rows(
     except (LookupError, AttributeError) as error:
         raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
     row = values[min(values)]
-    rows, held = [], 0
+    rows, missing = [], 0
     for step in range(last + 1):
         found = values.get(stamp_of_step(step))
-        held += found is None
+        missing += found is None
         row = row if found is None else found
         rows.append(row)
-    return rows, held
+    return rows, missing
 
 
 def _run_info(messages: list[tuple[int, Any]]) -> RunInfoOfNodes:
-    said: RunInfoOfNodes = {}
+    received: RunInfoOfNodes = {}
     for _, message in messages:
-        note_run_info(said, *RUN_INFO.read(message))
-    return said
+        add_run_info(received, *RUN_INFO.read(message))
+    return received

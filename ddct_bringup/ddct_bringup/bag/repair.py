@@ -1,4 +1,4 @@
-"""Rescue what an interrupted or damaged recording holds."""
+"""Rescue the complete ticks of an interrupted or damaged recording."""
 
 import tempfile
 from collections import defaultdict
@@ -23,21 +23,21 @@ from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.files.input_file import located, mcap_of
 
 REPAIRED_KEY = 'repaired'
-"""Custom data of a repaired bag has this key, with 'true'."""
+"""Key in the custom data of a repaired bag; its value is 'true'."""
 
 
 @dataclass(frozen=True)
 class Repair:
-    """What was done to one recording."""
+    """Result of repairing one recording."""
 
     path: Path
-    """The MCAP file, whole now."""
+    """Path of the MCAP file, complete now."""
     original: Path | None
-    """Where the damaged file is kept; None when the bag was whole before."""
+    """Path where the damaged file is kept; None when the bag was complete before."""
     last_step: int
-    """Step of the last complete tick, kept with all before it."""
+    """Step of the last complete tick; it and all ticks before it are kept."""
     dropped: int
-    """Readable messages after that tick, left out."""
+    """Number of readable messages after that tick, which are left out."""
 
     def __str__(self) -> str:
         kept = f'steps 0 to {self.last_step} ({time_of_step(self.last_step):g} s)'
@@ -51,11 +51,12 @@ class Repair:
 
 def repair_bag(path: Path) -> Repair:
     """
-    Make a whole bag of an unfinished or damaged one, a bag folder or its .mcap file.
+    Repair an unfinished or damaged bag, given as its folder or its .mcap file.
 
-    The new file holds every tick up to the first incomplete one. It is written and read back
-    before it takes the place of the damaged file, which is kept beside it. A whole file that only
-    lacks its `metadata.yaml` gets that. Raise DdctError when nothing can be rescued.
+    The new file contains every tick up to the first incomplete one. It is written and read
+    back before it takes the place of the damaged file, which is kept beside it. A complete
+    file that only lacks its `metadata.yaml` gets one. Raise DdctError when nothing can be
+    rescued.
     """
     mcap = mcap_of(path)
     try:
@@ -101,7 +102,7 @@ def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes
 
 
 def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int]:
-    """Return the messages up to the last complete tick, and its step."""
+    """Return the messages up to the last complete tick, and the step of that tick."""
     facts = RunFacts.from_custom_data(records.custom_data)
     stamps: dict[str, list[int]] = defaultdict(list)
     for topic, stamp, _ in records.messages:
@@ -123,7 +124,7 @@ def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':
 
 
 def _swap(new: Path, mcap: Path) -> Path:
-    """Put the new bag where the damaged one is, and return where that is kept."""
+    """Move the new bag to the place of the damaged one; return the path where that is kept."""
     numbers = chain([''], count(2))
     places = (mcap.with_name(f'{mcap.name}.damaged{number}') for number in numbers)
     original = next(place for place in places if not place.exists())

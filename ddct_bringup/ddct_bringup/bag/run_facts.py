@@ -1,4 +1,4 @@
-"""What a recording says about its run: facts as text, the nodes' own words, real-time counts."""
+"""Facts of a recorded run as text, the nodes' `run_info`, and the counts of a real-time run."""
 
 import json
 from collections.abc import Container, Iterable, Mapping
@@ -18,23 +18,23 @@ from ddct_plant.graph.topics import (
 )
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
-"""Facts that are plain names: they go into tables, labels and names of files."""
+"""Facts that are plain names, used in tables, labels and file names."""
 
 _LARGEST = 2.0**31
-"""Of any number, in its unit; the largest seed is one less."""
+"""Upper bound of any number, in its unit; the largest seed is one less."""
 
 MEASURED = 'measured'
-"""Mode of the log of another tool, and what stands where it tells no fact."""
+"""Mode of the log of another tool, and the text for facts that such a log lacks."""
 
 RunInfoOfNodes = dict[str, Mapping[str, str]]
-"""Per node name what it says of itself on `run_info`."""
+"""Key-value pairs that each node publishes on `run_info`, by node name."""
 
 _CONTROLLER_NODE = 'controller'
 
 
 @dataclass(frozen=True)
 class RunFacts:
-    """The facts that scoring needs and scores repeat."""
+    """Facts of a run that scoring needs and that its scores repeat."""
 
     controller: str
     architecture: str
@@ -46,40 +46,40 @@ class RunFacts:
     """'lockstep' or 'realtime', MEASURED of a log of another tool."""
     seed: int
     control_start_s: float
-    """When feedback starts, scenario time."""
+    """Scenario time at which feedback starts, s."""
     score_window_s: tuple[float, float]
-    """First and last time of the scored samples, scenario time."""
+    """Scenario time of the first and last scored sample, s."""
     duration_s: float
-    """Length that the run was meant to have."""
+    """Planned duration of the run, s."""
 
     def __post_init__(self) -> None:
-        """Check the names, so that a bag neither gets nor gives another; ParameterError."""
+        """Raise ParameterError for a name that a bag could not store or return unchanged."""
         for name in _NAMES:
             require_name(name, getattr(self, name))
 
     @property
     def steps(self) -> int:
-        """How many periods the run was meant to have."""
+        """Planned number of periods."""
         return steps_in('duration_s', self.duration_s)
 
     @property
     def lockstep(self) -> bool:
-        """Whether every tick had to be complete."""
+        """Whether every tick must be complete, as in lock-step."""
         return self.mode == 'lockstep'
 
     def kind(self, *, two_input: bool, sensed: bool) -> RunKind:
-        """Return what decides which topics the run has."""
+        """Return the kind of the run, which decides which topics it has."""
         return RunKind(self.lockstep, two_input, self.clutch, sensed)
 
     def kind_of_bag(self, topics: Container[str]) -> RunKind:
-        """Return the same of a bag that has these topics, by resolved name."""
+        """Return the kind of run of a bag that has these topics, given by resolved name."""
         return self.kind(
             two_input=ENGINE_REQUEST.resolved_name in topics,
             sensed=any(topic.resolved_name in topics for topic in SENSED_TOPICS),
         )
 
     def to_custom_data(self) -> dict[str, str]:
-        """Return the facts as text; numbers as JSON, which gives them back to the last bit."""
+        """Return the facts as text by name; numbers as JSON, which keeps them to the last bit."""
         return {
             each.name: value if isinstance(value, str) else json.dumps(value)
             for each in fields(self)
@@ -88,7 +88,7 @@ class RunFacts:
 
     @classmethod
     def from_custom_data(cls, custom_data: Mapping[str, str]) -> 'RunFacts':
-        """Return the facts; raise DdctError that names a missing or unusable one."""
+        """Return the facts in a bag's custom data; DdctError names a missing or invalid one."""
         values: dict[str, Any] = {}
         for name in (each.name for each in fields(cls)):
             if name not in custom_data:
@@ -99,7 +99,7 @@ class RunFacts:
 
 
 def _parsed(name: str, text: str) -> Any:
-    """Return the number that `text` is, or the two of the score window."""
+    """Return the number in `text`, or the two numbers of the score window."""
     try:
         value = parse_json(text)
         if name == 'score_window_s':
@@ -116,29 +116,29 @@ def _parsed(name: str, text: str) -> Any:
 
 @dataclass
 class RealtimeCounts:
-    """What the driveline counts in a real-time run, and who went to its safe state."""
+    """Counts of a real-time run by the driveline, and the nodes that entered their safe state."""
 
     missed_steps: int = 0
-    """Steps that had to hold a torque."""
+    """Number of steps that held the last torque because a reply was missing."""
     resends: int = 0
-    """Ticks that were sent again."""
+    """Number of ticks that were sent again."""
     late_messages: int = 0
-    """Replies to a tick that was over."""
+    """Number of replies to a tick that was over."""
     worst_lateness_us: float | None = None
-    """How much too late the driveline took a step at most; None in lock-step."""
+    """Largest lateness of a step of the driveline, us; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
-    """Per node that went to its safe state the stamp in ns since when."""
+    """Stamp in ns at which a node entered its safe state, by node name."""
 
 
 @dataclass
 class RealtimeFacts(RealtimeCounts):
-    """The last that a real-time run says on `/diagnostics`, live and in its bag."""
+    """Last counts and safe states published on `/diagnostics` of a real-time run or of its bag."""
 
     steps: int = 0
-    """Step at which the driveline counted."""
+    """Step of the driveline's last count."""
 
-    def hear(self, name: str, pairs: Mapping[str, str]) -> bool:
-        """Take one status; say whether it was one of ours."""
+    def receive(self, name: str, pairs: Mapping[str, str]) -> bool:
+        """Store one status of `/diagnostics`; return whether it is one of this project's."""
         try:
             if name.endswith(SAFE_STATE):
                 self.safe_states[name.removesuffix(SAFE_STATE)] = int(pairs[SINCE])
@@ -154,13 +154,13 @@ class RealtimeFacts(RealtimeCounts):
         return True
 
 
-def note_run_info(said: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
+def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
     """
-    Add what `node` says on `run_info`.
+    Add the key-value pairs that `node` published on `run_info`.
 
-    Raise DdctError when a node of this name has said another thing.
+    Raise DdctError where a node of this name has published different pairs before.
     """
-    before = said.setdefault(node, pairs)
+    before = received.setdefault(node, pairs)
     if pairs == before:
         return
     key = next(key for key in (*before, *pairs) if before.get(key) != pairs.get(key))
@@ -176,6 +176,6 @@ def run_info_order(nodes: Iterable[str]) -> list[str]:
     Return the names of the nodes sorted, `controller` last.
 
     Viewers such as Foxglove keep only the last message of a topic when they are opened or moved
-    in time; the controller's is the one that says which controller runs, and with which gains.
+    in time; the controller's names the controller that runs and its gains.
     """
     return sorted(nodes, key=lambda node: (node == _CONTROLLER_NODE, node))

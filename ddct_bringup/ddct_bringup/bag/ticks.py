@@ -1,4 +1,4 @@
-"""Which ticks of a recording are complete, judged by the stamps of its messages alone."""
+"""Find the complete ticks of a recording, by the stamps of its messages alone."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ from ddct_plant.base.timebase import stamp_of_step, step_of_stamp, time_of_step
 from ddct_plant.graph.topics import JOINT_STATES, RunKind, recorded_topics
 
 Stamps = Mapping[str, Sequence[int]]
-"""Per resolved topic name the stamps in ns of its messages."""
+"""Stamps in ns of a topic's messages, by resolved topic name."""
 
 
 def tick_topics(run: RunKind, *, replies: bool) -> list[str]:
@@ -21,7 +21,7 @@ def tick_topics(run: RunKind, *, replies: bool) -> list[str]:
 
 
 def complete_ticks(stamps: Stamps, topics: Sequence[str]) -> int:
-    """Return how many ticks from t_0 on have a message on each of `topics`, without a gap."""
+    """Return the number of ticks from t_0 on with a message on each of `topics`, without a gap."""
     present = [set(stamps.get(topic, ())) for topic in topics]
     count = 0
     while all(stamp_of_step(count) in each for each in present):
@@ -31,11 +31,11 @@ def complete_ticks(stamps: Stamps, topics: Sequence[str]) -> int:
 
 def check_ticks(stamps: Stamps, run: RunKind) -> int:
     """
-    Return N when the topics that every tick must have hold t_0..t_N, as the joint states do.
+    Return N when every required topic has a message at each of t_0..t_N.
 
-    In lock-step these are all topics of a tick; in real time replies may be missing.
-
-    Raise DdctError that names the topic and stamp of a missing, doubled or misplaced message.
+    N is the last step of the joint states. In lock-step all topics of a tick are required; in real
+    time replies may be missing. Raise DdctError that names the topic and stamp of a missing,
+    doubled or misplaced message.
     """
     joint_states = JOINT_STATES.resolved_name
     if not stamps.get(joint_states):
@@ -44,13 +44,13 @@ def check_ticks(stamps: Stamps, run: RunKind) -> int:
         _check_single(topic, stamps.get(topic, ()))
     last = step_of_stamp(max(stamps[joint_states]))
     for topic in tick_topics(run, replies=run.lockstep):
-        held = set(stamps.get(topic, ()))
-        if not held:
+        found = set(stamps.get(topic, ()))
+        if not found:
             raise DdctError(f'no message on {topic}')
         for step in range(last + 1):
-            if stamp_of_step(step) not in held:
+            if stamp_of_step(step) not in found:
                 raise DdctError(f'{topic} has no message at {_place(step)}')
-        if max(held) > stamp_of_step(last):
+        if max(found) > stamp_of_step(last):
             raise DdctError(f'{topic} goes on after the last tick at {_place(last)}')
     return last
 

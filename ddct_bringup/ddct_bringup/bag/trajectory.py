@@ -1,4 +1,4 @@
-"""One closed-loop run as plain arrays: the headless loop makes it, a bag holds it."""
+"""Trajectory of one closed-loop run as plain arrays, simulated without ROS or read from a bag."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -15,20 +15,23 @@ from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_SLIP, Signal, all_sig
 @dataclass(frozen=True)
 class Trajectory:
     """
-    Every signal of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
+    Signals of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
 
     A signal of `ddct_plant.graph.topics` is an attribute of its name. States, slip and vehicle
-    signals hold at t_k (efforts and `vehicle_accel` are left limits); torques, reference and
-    request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept although nothing
-    applied them.
+    signals are valid at t_k (efforts and `vehicle_accel` are left limits); torques, reference
+    and request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept although
+    nothing applied them.
     """
 
     signals: Mapping[str, Any]
-    """By name, (N+1,) or (N+1, n) numbers or N + 1 texts; without what the run does not have."""
+    """
+    Values by signal name: (N+1,) or (N+1, n) numbers, or N + 1 texts; only signals of this
+    run.
+    """
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Sequence[Any]]) -> 'Trajectory':
-        """Take the values per signal, in any order; raise DdctError where their size changes."""
+        """Return a trajectory of values by signal name; raise DdctError for uneven sizes."""
         return cls(
             {
                 signal.name: _column(signal, columns[signal.name])
@@ -38,7 +41,7 @@ class Trajectory:
         )
 
     def __getattr__(self, name: str) -> Any:
-        """Return a signal, None where the run has it not; AttributeError for any other name."""
+        """Return a signal, or None where the run lacks it; AttributeError for an unknown name."""
         signals = self.__dict__.get('signals', {})
         if name in signals:
             return signals[name]
@@ -67,7 +70,7 @@ class Trajectory:
         return np.arange(self.steps + 1) / 100.0
 
     def sha256(self) -> str:
-        """Return the hash over every array to the last bit and every status pair."""
+        """Return the SHA-256 over every array to the last bit and every text."""
         digest = hashlib.sha256()
         for name, value in self.signals.items():
             digest.update(name.encode())

@@ -1,7 +1,7 @@
 """
-Write a trajectory as the bag that the graph's recorder would have left of the same run.
+Write a trajectory as a bag with the same bytes as the recorder's of the same run.
 
-Without ROS: messages are made and serialised by the MCAP library, from their definitions.
+Needs no ROS: the MCAP library builds and serialises the messages from their definitions.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,7 +19,7 @@ from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.topics import RUN_INFO, recorded_topics
 
 _ZEROS = b'\x00\x01' + bytes(510)
-"""More than any of the types needs: zeros decode as zeros, empty texts and empty lists."""
+"""CDR of zeros, longer than any recorded type: decodes as zeros, empty texts and empty lists."""
 
 
 def write_trajectory(
@@ -58,7 +58,7 @@ def write_trajectory(
 
 @cache
 def plain_class(type_name: str) -> Callable[..., Any]:
-    """Return what makes messages of a type, as its ROS class does: `new(field=value)`."""
+    """Return a constructor of messages of a type, called as its ROS class: `new(field=value)`."""
     decode = generate_dynamic(type_name, load_definition(type_name).schema_text)[type_name]
 
     def new(**values: Any) -> Any:
@@ -72,5 +72,5 @@ def plain_class(type_name: str) -> Callable[..., Any]:
 
 @cache
 def serialiser(type_name: str) -> Callable[[Any], bytes]:
-    """Return what turns a message of a type into CDR, the same bytes as ROS's own."""
+    """Return the CDR serialiser of a message type; its bytes equal those of ROS."""
     return serialize_dynamic(type_name, load_definition(type_name).schema_text)[type_name]

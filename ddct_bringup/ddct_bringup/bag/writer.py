@@ -1,4 +1,4 @@
-"""Write a run as a rosbag2 bag: one MCAP file and its `metadata.yaml`, byte for byte the same."""
+"""Write rosbag2 bags, one MCAP file and its `metadata.yaml` each, reproducible to the byte."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -25,7 +25,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.topics import Topic
 
 _CHUNK_BYTES = 64 * 1024
-"""About 0.2 s of a run; a killed recorder loses the chunk it was filling."""
+"""Size of an MCAP chunk in bytes, about 0.2 s of a run; a killed recorder loses its last chunk."""
 
 
 def bag_file(folder: Path, name: str) -> Path:
@@ -37,9 +37,9 @@ def new_bag(
     folder: Path, name: str, topics: Sequence[Topic], custom_data: Mapping[str, str]
 ) -> 'BagWriter':
     """
-    Begin the bag `<folder>/<name>_0.mcap` of topics of the graph.
+    Return a writer of the new bag `<folder>/<name>_0.mcap` with topics of the graph.
 
-    Raise DdctError where that is impossible or it is already there.
+    Raise DdctError where it cannot be created or already exists.
     """
     channels = []
     for topic in topics:
@@ -59,18 +59,18 @@ def new_bag(
 
 class BagWriter:
     """
-    A bag in the making: an MCAP file and, once closed, the `metadata.yaml` beside it.
+    Writer of a bag: an MCAP file and, once closed, the `metadata.yaml` beside it.
 
     The same messages in the same order give the same bytes: times are the given stamps, and bytes
     that carry no value are set to zero. After an error the file stays unfinished: readers refuse
-    it, repairing can rescue it. As a context manager it closes the bag, or leaves it unfinished
-    when an exception passes.
+    it, repair can rescue it. As a context manager it closes the bag, or leaves it unfinished when
+    an exception passes.
     """
 
     def __init__(
         self, path: Path, channels: Sequence[Channel], custom_data: Mapping[str, str]
     ) -> None:
-        """Create the file; raise DdctError where that is impossible or it is already there."""
+        """Create the file; raise DdctError where that fails or the file already exists."""
         self.path = path
         self._channels = tuple(channels)
         self._custom_data = dict(custom_data)
@@ -90,7 +90,7 @@ class BagWriter:
             raise self._cannot_write(error) from error
         self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, enable_data_crcs=True)
         try:
-            # The library would name itself with its version here, and the bytes change with it.
+            # The default is the library's name and version, with which the bytes would change.
             self._writer.start('ros2', 'ddct_bringup')
             self._ids = [self._register(channel) for channel in channels]
             self._add_metadata()
@@ -120,7 +120,7 @@ class BagWriter:
         self._counts[index] += 1
         try:
             self._writer.add_message(self._ids[index], stamp_ns, data, stamp_ns)
-            self._file.flush()  # what a finished chunk holds survives a killed process
+            self._file.flush()  # finished chunks survive a killed process
         except OSError as error:
             raise self._gave_up(error) from error
 
@@ -169,11 +169,11 @@ class BagWriter:
         return information
 
     def _abandon(self) -> None:
-        with suppress(OSError):  # what could not be written is tried once more
+        with suppress(OSError):  # closing tries to write the rest once more
             self._file.close()
 
     def _gave_up(self, error: OSError) -> DdctError:
-        """Leave the file unfinished, and return what to tell of it."""
+        """Leave the file unfinished, and return the error to raise."""
         self._abandon()
         return self._cannot_write(error)
 

@@ -1,1 +1,1 @@
-"""Many runs of linear plants and controllers at once, one column of an array for each run."""
+"""Simulation of many runs of linear plants and controllers at once, one array column per run."""

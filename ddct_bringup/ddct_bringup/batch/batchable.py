@@ -1,4 +1,4 @@
-"""Which runs can be computed in a batch, and the linear feedback of those that can."""
+"""Decide which runs can be computed in a batch, and find their linear feedback."""
 
 import dataclasses
 
@@ -12,7 +12,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
 from ddct_plant.scenario.settings import RunSettings
 
-HEEDED = frozenset(
+SUPPORTED_KEYS = frozenset(
     {
         *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
@@ -20,17 +20,20 @@ HEEDED = frozenset(
         *('engine_authority', 'engine_speed_reference', 'pedal_position'),
     }
 )
-"""What a scenario may give: a batch has it too, or no linear controller has to do with it."""
-_PLAYED_STEPS = 60
-_SAME = 1e-11
-"""Of the largest torque: how far `update` of somebody else's class may be off its model."""
+"""Scenario keys that a batch supports, or that have no effect with a linear controller."""
+_TRIAL_STEPS = 60
+_MODEL_TOLERANCE = 1e-11
+"""
+Largest difference between `update` of a foreign class and its model, relative to the largest
+torque.
+"""
 
 
 def batchable(settings: RunSettings, controller: Controller) -> str:
     """
-    Return in a line why a run cannot be computed in a batch, empty if it can.
+    Return in one line why a run cannot be computed in a batch, empty if it can.
 
-    The controller is not changed but for a reset.
+    The controller is not changed except for a reset.
     """
     return _why_not_plant(settings) or _why_not_controller(controller)
 
@@ -44,7 +47,7 @@ def _why_not_plant(settings: RunSettings) -> str:
         return f'reference.shape is {ENGINE_SPEED_TARGET}'
     scenario = settings.scenario
     for field in dataclasses.fields(scenario):
-        if field.name not in HEEDED and getattr(scenario, field.name) != field.default:
+        if field.name not in SUPPORTED_KEYS and getattr(scenario, field.name) != field.default:
             return f'the scenario gives {field.name}'
     return ''
 
@@ -55,45 +58,49 @@ def _why_not_controller(controller: Controller) -> str:
     kind = type(controller)
     if kind.hold is not Controller.hold:
         return 'the controller does more than reset while feedback is held off'
-    if _is_ours(kind):
+    if _is_packaged(kind):
         return ''
     try:
         model = controller.linear_model()
         if model is None:
             return 'the controller is not linear'
         controller.reset()
-        same = _acts_as(controller, model)
+        same = _matches_model(controller, model)
         controller.reset()
     except FOREIGN_FAILURES as error:
         return f'the controller failed when it was tried ({type(error).__name__}: {error})'
     return '' if same else 'the controller does not do what its linear_model says'
 
 
-def _is_ours(kind: type[Controller]) -> bool:
-    """Say whether `update` and `linear_model` are those of one of our classes, which agree."""
+def _is_packaged(kind: type[Controller]) -> bool:
+    """Return whether `update` and `linear_model` belong to one packaged class and so agree."""
     return any(
         kind.update is ours.update and kind.linear_model is ours.linear_model
         for ours in (LinearController, PiController)
     )
 
 
-def _acts_as(controller: Controller, model: object) -> bool:
-    """Say whether it answers played measurements, up to very large ones, as its model does."""
+def _matches_model(controller: Controller, model: object) -> bool:
+    """
+    Return whether the controller and its model give equal outputs for random measurements.
+
+    The measurements grow up to very large values, so that a saturation shows.
+    """
     if not isinstance(model, StateSpace) or model.d.shape != (1, 1) or model.period_s != PERIOD_S:
         return False
     random, filtered = np.random.default_rng(0), DiscreteFilter(model)
     largest = worst = 0.0
-    for step in range(_PLAYED_STEPS):
+    for step in range(_TRIAL_STEPS):
         played = _measurement(random, step, controller.preview_steps)
         torque = filtered.update(played.slip_error_rpm)
         largest = max(largest, abs(torque))
         worst = max(worst, abs(controller.update(played).clutch_torque - torque))
-    return bool(worst <= _SAME * largest or worst == 0.0)
+    return bool(worst <= _MODEL_TOLERANCE * largest or worst == 0.0)
 
 
 def _measurement(random: np.random.Generator, step: int, preview_steps: int) -> Measurement:
-    """Return speeds, torques and references in which nothing is related, larger step by step."""
-    size = 10.0 ** (3.0 * step / _PLAYED_STEPS)
+    """Return random speeds, torques and references without relation; they grow with the step."""
+    size = 10.0 ** (3.0 * step / _TRIAL_STEPS)
     values = random.normal(scale=size, size=7).tolist()
     references = random.normal(scale=size, size=(2, preview_steps + 1)).tolist()
     return Measurement(step, *values[:5], *references, *values[5:])

@@ -1,4 +1,4 @@
-"""What differs from run to run, as arrays with one column for each run, and filters of them."""
+"""Arrays with one column per run for quantities that differ from run to run, and their filters."""
 
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import fields
@@ -12,9 +12,9 @@ from ddct_plant.linear.lti import StateSpace
 
 def stacked(things: Sequence[Any]) -> Any:
     """
-    Return something with the fields of dataclasses, each an array, (R,).
+    Return an object with the fields of dataclasses, each an array, (R,).
 
-    Equations that only read fields take it as one of them.
+    It can replace one of the dataclasses in equations that only read fields.
     """
     names = [field.name for field in fields(things[0])]
     columns = {name: np.array([getattr(each, name) for each in things]) for name in names}
@@ -22,7 +22,7 @@ def stacked(things: Sequence[Any]) -> Any:
 
 
 def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
-    """Return where each key stands first, and for each key its place among those, (R,)."""
+    """Return the index of each key's first occurrence, and per key its index among those, (R,)."""
     places: dict[Any, int] = {}
     first: list[int] = []
     inverse = []
@@ -36,22 +36,22 @@ def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
 
 def product(matrix: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """
-    Return matrix @ columns, (m, R), of one matrix (m, n) or one for each run (m, n, R).
+    Return matrix @ columns, (m, R), for one matrix (m, n) or one per run (m, n, R).
 
-    BLAS is faster with one matrix, but rounds a column by what stands beside it.
+    BLAS is faster with one matrix, but the rounding of a column depends on its neighbours.
     """
     return np.einsum('ijr,jr->ir' if matrix.ndim == 3 else 'ij,jr->ir', matrix, columns)
 
 
 class Filters:
     """
-    `DiscreteFilter` over columns: many sampled linear systems as they run.
+    Many sampled linear systems as columns, the counterpart of `DiscreteFilter`.
 
-    y_k = c x_k + d u_k, x_(k+1) = a x_k + b u_k of each run, all of one order, one output.
+    y_k = c x_k + d u_k, x_(k+1) = a x_k + b u_k for each run, all of one order, one output.
     """
 
     def __init__(self, models: Sequence[StateSpace], states: np.ndarray | float = 0.0) -> None:
-        """Start at `states`, (n, R)."""
+        """Start in the states `states`, (n, R)."""
         systems = [(model.a, model.b, model.c, model.d) for model in models]
         first, places = distinct(tuple(map(np.ndarray.tobytes, each)) for each in systems)
         # From states and inputs to the next states and the output, (n + 1, n + m) each.
@@ -63,7 +63,7 @@ class Filters:
         self._states_and_inputs[: self._order] = states
 
     def update(self, *inputs: np.ndarray) -> np.ndarray:
-        """Return the outputs of this period, (R,), and advance the states to the next one."""
+        """Return the outputs of this period, (R,), and advance the states by one period."""
         values = self._states_and_inputs
         values[self._order :] = inputs
         following = product(self._matrix, values)

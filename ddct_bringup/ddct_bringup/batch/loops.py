@@ -1,4 +1,4 @@
-"""The closed loops of many runs, `ClosedLoop` over columns, and their slip references."""
+"""Closed loops of many runs as columns, the counterpart of `ClosedLoop`, and their references."""
 
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -18,17 +18,17 @@ from ddct_reference.factory import make_descent
 
 RAMP = 'ramp'
 _ROWS = 14
-"""Signals per step, each joint's for itself."""
+"""Number of signals per step; each joint has its own."""
 OpenLoops = Callable[[int, np.ndarray], np.ndarray]
-"""Returns the torques in N m, (R,), that do not depend on the slip, for step and C_load."""
+"""Function of step and C_load that returns the open-loop torques in N m, (R,)."""
 
 
 def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) -> Trajectory:
     """
-    Return the signals of `run_headless` that scores need, each with the runs as its first axis.
+    Return the signals of `run_headless` that scores need, with the runs as their first axis.
 
-    `feedback` is the `linear_model` of each controller. All runs are as long, of one architecture,
-    equilibrium, control start and kind of reference; all models are of one order.
+    `feedback` is the `linear_model` of each controller. All runs have one length, architecture,
+    equilibrium, control start and kind of reference; all models have one order.
     """
     steps, start = runs[0].scenario.steps, runs[0].scenario.control_start_step
     plants = Plants(runs, [run.scenario.actuator for run in runs], steps)
@@ -54,12 +54,12 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
 
 
 def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
-    """Return what `make_architecture` does of each run."""
+    """Return the open loops of the runs, as `make_architecture` makes them for one run."""
     if runs[0].detailed:
         return plants.static_torque
     if runs[0].architecture == 'base':
         return lambda step, load: np.zeros(len(runs))
-    # Only here: the other architectures need not wait for the imports of the design.
+    # Imported here, so that the other architectures do not wait for the imports of the design.
     from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
 
     designed = cache(design_feedforward)
@@ -71,8 +71,8 @@ def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
 
 
 def _trajectory(record: np.ndarray) -> Trajectory:
-    """Return the signals of rows (N+1, rows, R)."""
-    # Each run's samples side by side, in which metrics are summed up.
+    """Return the trajectory of recorded rows (N+1, rows, R)."""
+    # The samples of each run are contiguous, so metrics are summed in the order of a single run.
     signals = np.empty((record.shape[1], record.shape[2], record.shape[0]))
     for index in range(len(signals)):
         signals[index] = record[:, index].T
@@ -91,16 +91,16 @@ def _trajectory(record: np.ndarray) -> Trajectory:
 
 
 def reference_kind(settings: RunSettings) -> str:
-    """Return what runs must have in common for one `References`."""
+    """Return the key that runs with one common `References` share."""
     shape = settings.reference_shape
     return shape if shape in (RAMP, PROFILE) else 'timed'
 
 
 class References:
-    """`SlipReference` over columns, without preview: R of one kind, architecture and start."""
+    """Slip references as columns, without preview: R runs of one kind, architecture and start."""
 
     def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
-        """Know what there is to know of them up to step `steps`."""
+        """Compute everything that does not depend on the slip, up to step `steps`."""
         self._start = runs[0].scenario.control_start_step
         self._stored = None if runs[0].detailed else _nominal_slips(runs, self._start)
         self._start_value = np.zeros(len(runs)) if self._stored is None else self._stored[-1]
@@ -133,7 +133,7 @@ class References:
 
 
 def _timed(runs: Sequence[RunSettings], periods: np.ndarray) -> np.ndarray:
-    """Return the share of its start that is left of each descent, (periods, R)."""
+    """Return the remaining share of the initial slip along each descent, (periods, R)."""
     first, places = distinct((run.reference_shape, run.scenario.reference) for run in runs)
     descents = [make_descent(runs[index]) for index in first]
     shares = [[descent.at(1.0, since * PERIOD_S)[0] for since in periods] for descent in descents]
@@ -141,7 +141,7 @@ def _timed(runs: Sequence[RunSettings], periods: np.ndarray) -> np.ndarray:
 
 
 def _nominal_slips(runs: Sequence[RunSettings], control_start: int) -> np.ndarray:
-    """Return what `nominal_slip` does of each run, (control_start + 1, R)."""
+    """Return the nominal slip of each run as `nominal_slip` does, (control_start + 1, R)."""
     nominal = [RunSettings(run.scenario, architecture='detailed') for run in runs]
     plants = Plants(nominal, [ActuatorParameters()] * len(runs), control_start)
     slips = [plants.outputs().slip_speed]

@@ -1,4 +1,4 @@
-"""The linear plants of many runs: engine, load, actuator, clutch and driveline."""
+"""Linear plants of many runs: engine, load, actuator, clutch and driveline."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -18,23 +18,24 @@ from ddct_plant.scenario.settings import RunSettings
 _STATES = slice(0, 4)
 _ENGINE, _LOAD = 4, 5
 _ACTUATOR = slice(6, 12)
-"""Rows of what a step takes: states, C_m, C_load, and what `Actuators` has as values."""
+"""Row indices of the input of a step: states, C_m, C_load, and `values` of `Actuators`."""
 _LAG_STATES = slice(0, 4)
 _EARLIER, _LATER = 4, 5
-"""Rows of what an actuator takes: G_a's states, and the two requests in effect in a period."""
+"""Row indices of the input of an actuator: states of G_a, and both requests in a period."""
 
 
 class Plants:
     """
-    `WholePlant` for R runs of one equilibrium, with a linear clutch and an engine without limits.
+    Plants of R runs as columns, the counterpart of `WholePlant`.
 
-    Angles are left out: nothing that is scored depends on them.
+    All runs have one equilibrium, a linear clutch and an engine without limits. Angles are left
+    out: no score depends on them.
     """
 
     def __init__(
         self, runs: Sequence[RunSettings], actuators: Sequence[ActuatorParameters], steps: int
     ) -> None:
-        """Start in the initial states; engine and road are known up to step `steps`."""
+        """Start in the initial states; profiles of engine and road extend to step `steps`."""
         scenarios = [run.scenario for run in runs]
         self._driveline = stacked([scenario.driveline for scenario in scenarios])
         self._static: Any = StaticTorque(self._driveline, scenarios[0].equilibrium)
@@ -54,7 +55,7 @@ class Plants:
             np.interp(times, engines[index].time_s, engines[index].torque_n_m) for index in first
         ]
         self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)
-        """C_m in N m at every step, (N+1, R), what `Engine.demand` returns."""
+        """Engine torque C_m in N m at every step, (N+1, R), as `Engine.demand` returns it."""
         self._actuators = Actuators(actuators, start.torque_request, steps + 1)
         nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
         self._step = _step_matrices([each.driveline for each in scenarios], nodes)
@@ -64,28 +65,28 @@ class Plants:
         self._torques: Any = (start.engine_torque, start.clutch_torque, start.load_torque)
 
     def outputs(self) -> Any:
-        """Return `DrivelineOutputs` at the present stamp, each value (R,) and without angles."""
+        """Return `DrivelineOutputs` at the current step, each value (R,), without angles."""
         states: Any = self._values[_STATES]
         return driveline_outputs(self._driveline, self._wheel_radius, states, self._torques)
 
     def load_torque(self, step: int) -> np.ndarray:
-        """Return C_load in N m, (R,), at step `step` in the present state."""
+        """Return C_load in N m, (R,), at step `step` in the current state."""
         vehicle_speed = self._wheel_radius * self._values[2]
         return resisting_torque(
             self._drag, self._wind, self._forces[step], self._wheel_radius, vehicle_speed
         )
 
     def static_torque(self, step: int, load_torque: np.ndarray) -> np.ndarray:
-        """Return C_fOL in N m, (R,), for C_load in N m in the present state."""
+        """Return C_fOL in N m, (R,), for C_load in N m in the current state."""
         engine_speed, shaft_speed = self._values[:2]
         return self._static.torque(
             self.engine_torque[step], load_torque, engine_speed, shaft_speed
         )
 
     def advance(self, step: int, load_torque: np.ndarray, request: np.ndarray) -> None:
-        """Step by 10 ms with held C_m and C_load, (R,) in N m, and what the clutch is asked."""
+        """Advance by 10 ms with C_m and C_load held and the clutch request, (R,) in N m each."""
         values, engine_torque = self._values, self.engine_torque[step]
-        self._actuators.ask(step, request)
+        self._actuators.request(step, request)
         values[_ENGINE], values[_LOAD] = engine_torque, load_torque
         values[_ACTUATOR] = self._actuators.values
         values[_STATES] = product(self._step, values)
@@ -94,56 +95,56 @@ class Plants:
 
 def _step_matrices(drivelines: Sequence[DrivelineParameters], nodes: np.ndarray) -> np.ndarray:
     """
-    Return the (4, 12, R) map to the next states, actuator and clutch included.
+    Return the (4, 12, R) map to the next states, including actuator and clutch.
 
-    `nodes` (R, 11, 6) give C_f within a period by the values of the actuators.
+    `nodes` (R, 11, 6) map the values of the actuators to C_f within a period.
     """
     first, places = distinct(drivelines)
     steps = step_matrix(stacked([drivelines[index] for index in first]), angles=False)[places]
-    # Up to there it takes the four states, C_m and C_load; what follows are the nodes of C_f.
+    # The first six columns belong to the states, C_m and C_load, the others to the nodes of C_f.
     matrices = np.concatenate([steps[:, :, :6], steps[:, :, 6:] @ nodes], axis=-1)
     return np.ascontiguousarray(matrices.transpose(1, 2, 0))
 
 
 class Actuators:
     """
-    `Actuator` over columns, R of them.
+    Actuators of R runs as columns, the counterpart of `Actuator`.
 
-    Where a delay is whole periods its earlier request has no effect.
+    Where a delay is a whole number of periods the earlier request has no effect.
     """
 
     def __init__(
         self, parameters: Sequence[ActuatorParameters], requests: np.ndarray, steps: int
     ) -> None:
-        """Start at rest on requests, (R,) in N m; they last `steps` periods."""
+        """Start in steady state at requests, (R,) in N m, for `steps` periods."""
         first, places = distinct(parameters)
         periods = np.array([each.delay_substeps // SUBSTEPS for each in parameters])
         made = [_actuator_matrices(parameters[index]) for index in first]
         updates, nodes, rest = (np.stack(each) for each in zip(*made, strict=True))
         self.nodes = nodes[places]
-        """(R, 11, 6): the torque at 0, 1, ..., 10 ms by `values`."""
+        """Matrices (R, 11, 6) from `values` to the torque at 0, 1, ..., 10 ms."""
         rows = np.concatenate([updates, nodes[:, -1:]], axis=1).transpose(1, 2, 0)
         self._rows = rows[..., 0] if len(first) == 1 else np.take(rows, places, axis=-1)
         delayed = np.maximum(requests, 0.0)
         self.values = np.zeros((_LATER + 1, len(parameters)))
-        """(6, R): states, and once `ask` has been called the requests in effect."""
+        """States and requests in effect, (6, R); the requests are valid after `request`."""
         self.values[_LAG_STATES] = np.take(rest.T, places, axis=-1) * delayed
         self._before = int(periods.max()) + 1
-        self._asked = np.empty((self._before + steps, len(parameters)))
-        self._asked[: self._before] = delayed
+        self._requests = np.empty((self._before + steps, len(parameters)))
+        self._requests[: self._before] = delayed
         alike = bool((periods == periods[0]).all())
         self._later = self._before - (int(periods[0]) if alike else periods)
         self._columns = slice(None) if alike else np.arange(len(parameters))
 
-    def ask(self, step: int, requests: np.ndarray) -> None:
-        """Take the requests of step k in, (R,) in N m, cut off below zero."""
-        np.maximum(requests, 0.0, out=self._asked[self._before + step])
+    def request(self, step: int, requests: np.ndarray) -> None:
+        """Store the requests of step k, (R,) in N m, saturated at zero."""
+        np.maximum(requests, 0.0, out=self._requests[self._before + step])
         later = self._later + step
-        self.values[_EARLIER] = self._asked[later - 1, self._columns]
-        self.values[_LATER] = self._asked[later, self._columns]
+        self.values[_EARLIER] = self._requests[later - 1, self._columns]
+        self.values[_LATER] = self._requests[later, self._columns]
 
     def advance(self) -> np.ndarray:
-        """Go to the end of the period; return the torque there, (R,) in N m."""
+        """Advance to the end of the period; return the torque there, (R,) in N m."""
         followed = product(self._rows, self.values)
         self.values[_LAG_STATES] = followed[:-1]
         return followed[-1]
@@ -152,7 +153,7 @@ class Actuators:
 def _actuator_matrices(
     parameters: ActuatorParameters,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the (4, 6) next state, the (11, 6) nodes and the state of rest for 1 N m."""
+    """Return the (4, 6) next state, the (11, 6) nodes and the steady state for 1 N m."""
     model, late = parameters.dynamics(), parameters.delay_substeps % SUBSTEPS
     update, nodes = lifted(model, late)
     if not late:

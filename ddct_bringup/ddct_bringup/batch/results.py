@@ -1,4 +1,4 @@
-"""What scores say of many runs that are not recorded: metrics, criteria and verdict."""
+"""Metrics, criteria and verdicts of many runs that are not recorded."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ from ddct_plant.scenario.settings import RunSettings
 _NO_TIMING = {'update_time_median_us': None, 'update_time_p99_us': None, 'worst_lateness_us': None}
 _NOTHING_MISSED = {'missed_steps': 0, 'resends': 0}
 _PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
-"""Samples that `sosfiltfilt` adds at both ends of a stretch."""
+"""Number of samples that `sosfiltfilt` adds at each end of an interval."""
 
 
 def stacked_results(
@@ -36,8 +36,9 @@ def stacked_results(
     """
     Return the results of runs of one length, control start and score window.
 
-    `trajectory` holds them as a stack in which all is finite. A result is what `scores.json` says
-    of a run that counts, but for what needs a bag or a clock: the times of updates are None.
+    `trajectory` is a stack of these runs in which all values are finite. A result is the entry of
+    a valid run in `scores.json`, without the keys that need a bag or a clock: the times of updates
+    are None.
     """
     scenario = runs[0].scenario
     start = scenario.control_start_step
@@ -74,12 +75,12 @@ def stacked_results(
 
 
 def stacked_plants(plants: Sequence[JudgedPlant]) -> Any:
-    """Return a plant whose values are those of many, (R,) each."""
+    """Return one plant whose parameters are those of many plants, (R,) each."""
     return JudgedPlant(**vars(stacked(plants)))
 
 
 def one_or_more(stack: Trajectory, index: Any) -> Trajectory:
-    """Return one run of a stack, or of some a stack."""
+    """Return one run of a stack for an integer index, or a smaller stack."""
     return Trajectory({name: values[index] for name, values in stack.signals.items()})
 
 
@@ -98,16 +99,15 @@ def _column(values: Any, runs: int) -> list[float | int | None]:
 @dataclass(frozen=True)
 class JudgedRuns(JudgedRun):
     """
-    R runs of one length and score window whose trajectory is a stack; all signals are finite.
+    R runs of one length and score window whose trajectory is a stack of finite signals.
 
-    Their clutches are linear, and never lock.
-
-    Values are (R,), not finite where they are not defined.
+    Their clutches are linear, and never lock. Values are (R,), not finite where they are not
+    defined.
     """
 
     @cached_property
     def first_together(self) -> np.ndarray:
-        """First step at or after t_a, (R,); one behind the last where there is none."""
+        """First step at or after t_a, (R,); one after the last step where there is none."""
         at_s = time_of_step(self.control_start) + self.metrics['engagement_time_s']
         steps = self.trajectory.slip_speed.shape[-1]
         return np.array([steps if np.isnan(time) else step_at(time) for time in at_s.tolist()])
@@ -120,7 +120,7 @@ class JudgedRuns(JudgedRun):
 
     @cached_property
     def slipping_spans(self) -> tuple[np.ndarray, np.ndarray]:
-        """First sample of slipping from control start on and the one behind the last, (R,)."""
+        """First sample with slip from control start on, and one after the last, (R,) each."""
         sample = np.arange(self.trajectory.slip_speed.shape[-1])
         mask = self.trajectory.slip_speed != 0.0
         mask &= sample >= self.control_start
@@ -130,7 +130,7 @@ class JudgedRuns(JudgedRun):
 
     @cached_property
     def shuffle(self) -> tuple[Values, Values]:
-        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
+        """Amplitude in rpm and decay time in s of w_sr after the plates have engaged."""
         samples = np.arange(self.torsion_speed_rpm.shape[-1])
         together = samples >= self.first_together[:, np.newaxis]
         magnitude = np.where(together, np.abs(self.torsion_speed_rpm), -1.0)
@@ -153,7 +153,7 @@ class JudgedRuns(JudgedRun):
 
     @cached_property
     def strongest(self) -> tuple[Values | None, Values | None]:
-        """Weighted acceleration and dose where they are strongest."""
+        """Largest weighted acceleration in m/s^2 and dose in m/s^1.75, (R,) each."""
         dose = self.metrics['vdv_m_s1_75']
         defined = np.isfinite(dose)
         if not defined.any():
@@ -165,10 +165,10 @@ class JudgedRuns(JudgedRun):
 
 def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -> np.ndarray:
     """
-    Return what `vibration.judder` returns of torsion_speed[r, first[r]:after[r]], (R,).
+    Return the judder of torsion_speed[r, first[r]:after[r]] as `vibration.judder` does, (R,).
 
-    `torsion_speed` is (R, N+1); a stretch has more than `_PADDING` samples. Each is moved to the
-    start of its row, so that one call filters all; what stands behind a stretch does not count.
+    `torsion_speed` is (R, N+1); an interval has more than `_PADDING` samples. Each is shifted to
+    the start of its row, so that one call filters all; samples after an interval do not count.
     """
     sos = band_pass()
     length = (after - first)[:, np.newaxis]
@@ -185,7 +185,7 @@ def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -
 def _padded(
     values: np.ndarray, first: np.ndarray, length: np.ndarray, sample: np.ndarray
 ) -> np.ndarray:
-    """Return samples of the stretches, beyond their ends turned about the value there."""
+    """Return the intervals with point-symmetric extensions about their end values."""
     last = length - 1
     turned = np.where(sample > last, 2 * last - sample, np.abs(sample))
     mirrored = np.take_along_axis(values, first + np.clip(turned, 0, last), axis=-1)

@@ -4,7 +4,7 @@ Compute many runs of linear plants and controllers at once.
     from ddct_bringup.batch.run_batch import run_batch
     results = run_batch([(settings, controller), ...], limits)
 
-A result equals that of the run step by step to 1e-9 of each value, and does not depend on what
+A result equals that of the run step by step to 1e-9 of each value, and does not depend on which
 other runs are in the batch. A run in which rounding grows beyond that has no result.
 """
 
@@ -26,25 +26,25 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_RUNS = 1000
-"""At once: a step's matrices of as many stay in the processor's cache."""
-_FEW_CUTS = 5
-"""Below which a request that is cut off at zero so often has never let rounding grow."""
-_MOVED = 1.0 + 2.0**-46
-"""By how much feedback is multiplied to see what rounding, some times less, may do."""
-_SAME = 1e-10
-"""Of the largest slip: how far that may move it."""
+"""Largest number of runs at once: their matrices of a step fit the processor's cache."""
+_FEWEST_SWITCHES = 5
+"""Fewest saturation switches that trigger the rounding test."""
+_FEEDBACK_FACTOR = 1.0 + 2.0**-46
+"""Factor on the feedback in the rounding test, several times the rounding error."""
+_SLIP_TOLERANCE = 1e-10
+"""Largest change of the slip in the rounding test, relative to the largest slip."""
 Run = tuple[RunSettings, Controller]
 _Linear = tuple[RunSettings, StateSpace]
-"""A run, and the feedback in it."""
+"""Settings of a run, and its linear feedback."""
 
 
 def run_batch(runs: Sequence[Run], limits: Limits) -> list[Entry | None]:
     """
-    Return the result of each run, all `batchable`, in their order, as `stacked_results`.
+    Return the result of each run as `stacked_results`, in order; all are `batchable`.
 
-    A controller may stand in many runs; each starts with it as it is after a reset. None stands
-    for a run that must go step by step: there one that grows beyond all numbers or cannot be built
-    ends with the words that say so, and one that is chaotic has figures that repeat.
+    A controller may occur in many runs; each starts with it as it is after a reset. A result is
+    None for a run that must be computed step by step: a divergent run or one that cannot be built
+    gets its reason there, and a chaotic one gets repeatable metrics.
     """
     linear = _linear(runs)
     results: list[Entry | None] = [None] * len(runs)
@@ -57,17 +57,17 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[Entry | None]:
 
 def trajectories(runs: Sequence[Run]) -> Trajectory:
     """
-    Return the signals of runs as a stack, the runs as the first axis of each.
+    Return the signals of runs as a stack, with the runs as the first axis of each.
 
     They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference,
-    request and demand. All runs have one length, control start, architecture, equilibrium, kind
-    of reference and order of the controller.
+    request and demand. All runs have one length, control start, architecture, equilibrium, kind of
+    reference and order of the controller.
     """
     return _stack(_linear(runs))
 
 
 def _linear(runs: Sequence[Run]) -> list[_Linear]:
-    """Return runs with the feedback of their controllers; of one in many runs it is made once."""
+    """Return the runs with the linear feedback of their controllers, one per controller."""
     controllers = {id(controller): controller for _, controller in runs}
     models: dict[int, Any] = {key: each.linear_model() for key, each in controllers.items()}
     assert None not in models.values(), 'run_batch takes batchable runs'
@@ -75,14 +75,14 @@ def _linear(runs: Sequence[Run]) -> list[_Linear]:
 
 
 def _stack(runs: Sequence[_Linear]) -> Trajectory:
-    # A sum over one column alone is rounded in another order than one over many.
+    # numpy sums a single column in another order than many columns, so one run is doubled.
     several = [*runs] * 2 if len(runs) == 1 else runs
     stack = simulate_batch([settings for settings, _ in several], [model for _, model in several])
     return one_or_more(stack, slice(len(runs)))
 
 
 def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
-    """Return what runs must have in common to be computed together."""
+    """Return the key that runs computed together share."""
     scenario = settings.scenario
     return (
         scenario.steps,
@@ -96,7 +96,7 @@ def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
 
 
 def _chunks(runs: Sequence[_Linear]) -> list[list[int]]:
-    """Return which runs are computed together."""
+    """Return the indices of the runs that are computed together, chunk by chunk."""
     groups = defaultdict(list)
     for index, (settings, model) in enumerate(runs):
         groups[_alike(settings, model)].append(index)
@@ -125,29 +125,29 @@ def _results(runs: Sequence[_Linear], limits: Limits) -> list[Entry | None]:
 
 def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
     """
-    Return of each run of a stack whether rounding stays small in it, (R,).
+    Return for each run of a stack whether its rounding errors stay small, (R,).
 
-    Feedback that is too strong for its loop swings through the cut-off at zero torque: each pass
-    may multiply a difference, until the figures are those of another run.
+    Feedback that is too strong for its loop oscillates across the saturation at zero torque: each
+    pass may amplify a difference, until the metrics are those of another run.
     """
     cut = stack.torque_request < 0.0
-    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEW_CUTS)
+    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEWEST_SWITCHES)
     repeatable = np.ones(len(runs), dtype=bool)
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
         moved = [
-            (settings, replace(model, c=_MOVED * model.c, d=_MOVED * model.d))
+            (settings, replace(model, c=_FEEDBACK_FACTOR * model.c, d=_FEEDBACK_FACTOR * model.d))
             for settings, model in suspected
         ]
         slip = stack.slip_speed[suspects]
         again = _stack(moved).slip_speed
         difference = np.max(np.abs(again - slip), axis=-1)
-        repeatable[suspects] = difference <= _SAME * np.max(np.abs(slip), axis=-1)
+        repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)
     return repeatable
 
 
 def _finite(stack: Trajectory) -> np.ndarray:
-    """Return of each run of a stack whether all its signals are finite, (R,)."""
+    """Return for each run of a stack whether all its signals are finite, (R,)."""
     each = [
         np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
         for values in stack.signals.values()

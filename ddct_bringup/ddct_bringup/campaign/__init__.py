@@ -1,1 +1,1 @@
-"""Many headless runs: what each is, its row, and the processes that share the work."""
+"""Campaigns of many headless runs: specification, rows of results, and worker processes."""

@@ -1,4 +1,4 @@
-"""The columns of `results.parquet`, and how rows become the bytes of a Parquet file."""
+"""Columns of `results.parquet`, and the conversion of rows to the bytes of a Parquet file."""
 
 import json
 import math
@@ -14,11 +14,11 @@ from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
 
 SCHEMA_VERSION = 2
-"""Of the columns: from 2 on each row has its `seed`."""
+"""Schema version of the columns; from version 2 on each row has its `seed`."""
 INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
-"""Rows at least, but in the last group: each group costs a reader memory."""
+"""Smallest number of rows in a row group except the last: each group costs a reader memory."""
 _VERDICT = (
     ('valid', pa.bool_()),
     ('reason', pa.string()),
@@ -26,13 +26,13 @@ _VERDICT = (
     ('verdict_limits', pa.string()),
 )
 COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
-"""What a run that is made again must have as its row has it."""
+"""Columns that a repeated run is compared in with its row."""
 VECTORISED_RTOL = 1e-9
-"""What a row of the vectorised path may differ by then, relative to the larger value."""
+"""Largest difference of a row of the vectorised path, relative to the larger value."""
 
 
 def schema_of(spec: CampaignSpec) -> pa.Schema:
-    """Return the columns of a campaign; what varies has one by its dotted key."""
+    """Return the columns of a campaign; each varied key has one under its dotted name."""
     fields = [
         (INDEX, pa.int64()),
         (CONTROLLER, pa.string()),
@@ -55,8 +55,8 @@ def shard_bytes(schema: pa.Schema, rows: Iterable[Mapping[str, Any]]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def holds_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
-    """Say whether a file is whole and holds the rows `first` to `last`, the latter excluded."""
+def contains_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
+    """Return whether a file is complete, with the rows `first` to `last`, `last` excluded."""
     try:
         table = parquet.read_table(path)
     except (OSError, pa.ArrowException):
@@ -68,7 +68,7 @@ def merge(
     shards: Sequence[Path], shard_size: int, schema: pa.Schema, target: Path, advice: str
 ) -> None:
     """
-    Write the rows of all shards, in their order, into one file, whole or not at all.
+    Write the rows of all shards, in their order, to one file, completely or not at all.
 
     `shard_size` is the number of rows in each but the last. Raise DdctError, with an advice, when
     that fails.
@@ -91,7 +91,7 @@ def merge(
 
 
 def read_row(results: Path, index: int) -> dict[str, Any]:
-    """Return one row by column name; raise DdctError for a file or a row that is not there."""
+    """Return one row by column name; raise DdctError for a missing file or row."""
     try:
         rows = parquet.read_table(results, filters=[(INDEX, '=', index)]).to_pylist()
     except (OSError, pa.ArrowException) as error:
@@ -104,16 +104,16 @@ def read_row(results: Path, index: int) -> dict[str, Any]:
 
 
 def compared_in(row: Mapping[str, Any]) -> list[str]:
-    """Return what of `COMPARED` a row has: that of another version may lack some."""
+    """Return the columns of `COMPARED` that a row has; a row of another version may lack some."""
     return [name for name in COMPARED if name in row]
 
 
 def differences(row: Mapping[str, Any], again: Mapping[str, Any]) -> list[str]:
     """
-    Return in words what of a run that was made again is not what its row says.
+    Return the differences of a repeated run from its row, as text.
 
-    Its seed and every metric, criterion and word of the verdict count: of a serial row to the
-    last bit.
+    Its seed and every metric, criterion and state of the verdict are compared: for a serial row to
+    the last bit.
     """
     rtol = 0.0 if row[PATH] == SERIAL else VECTORISED_RTOL
     return [
@@ -130,7 +130,7 @@ def _same(ours: Any, theirs: Any, rtol: float) -> bool:
 
 
 def _cell(value: Any) -> Any:
-    """Return a value as a cell holds it: a list, or a group of keys, as text."""
+    """Return the value of a cell; a list or a group of keys becomes text."""
     return json.dumps(value) if isinstance(value, (list, tuple, Mapping)) else value
 
 

@@ -1,4 +1,4 @@
-"""Carry out a campaign: the shards that are missing, each written whole, then all in one file."""
+"""Carry out a campaign: compute the missing shards, write each completely, and merge them."""
 
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
@@ -6,13 +6,18 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from ddct_bringup.campaign.columns import holds_rows, merge, schema_of
+from ddct_bringup.campaign.columns import contains_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import ShardJob, timed_shard
 from ddct_bringup.campaign.time_left import TimeLeft, each_controller_first
-from ddct_bringup.run.output_folder import MARKER, held, mark_folder, require_ours_or_empty
+from ddct_bringup.run.output_folder import (
+    MARKER,
+    locked_folders,
+    mark_folder,
+    require_ours_or_empty,
+)
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
@@ -22,11 +27,11 @@ RESULTS = 'results.parquet'
 SHARDS = 'shards'
 RESUME = 'what is done stays: go on with --resume'
 _AHEAD = 2
-"""Shards that each worker has at hand, so that none waits for the next."""
+"""Number of shards queued per worker, so that none waits for the next."""
 _MOST_DEATHS = 3
-"""Of workers, one after the other, without a shard done in between."""
-_LOOK_S = 0.2
-"""Between two looks at signals and workers."""
+"""Largest number of failed workers in succession without a completed shard."""
+_POLL_S = 0.2
+"""Time in s between two checks of signals and workers."""
 
 
 def carry_out(
@@ -42,17 +47,17 @@ def carry_out(
     """
     Carry out a campaign in the folder `out` and return its results file.
 
-    Raise DdctError for what cannot be used or does not end well, KeyboardInterrupt when
-    `stopped()` becomes true: the shards that are done stay, and `resume` goes on with them.
+    Raise DdctError for unusable arguments and for a failure, KeyboardInterrupt when `stopped()`
+    becomes true: completed shards stay, and `resume` continues with them.
     """
-    with held(out), workers_of(workers, scheduler) as ready:
+    with locked_folders(out), workers_of(workers, scheduler) as ready:
         manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
         schema = schema_of(campaign.spec)
         shards = _shards(campaign, limits, manifest, out)
         missing = {
             file: job
             for file, job in shards.items()
-            if not holds_rows(file, schema, job.first, job.last)
+            if not contains_rows(file, schema, job.first, job.last)
         }
         done = manifest.runs - sum(job.last - job.first for job in missing.values())
         progress = Progress('runs', manifest.runs, done=done)
@@ -65,7 +70,7 @@ def carry_out(
 def _begin(
     campaign: Campaign, limits: Limits, out: Path, *, resume: bool, stopped: Callable[[], bool]
 ) -> Manifest:
-    """Return the manifest in the folder, which is written first unless the campaign goes on."""
+    """Return the manifest in the folder; write it first unless the campaign is resumed."""
     manifest = Manifest.of(campaign, limits)
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
@@ -94,7 +99,7 @@ def _begin(
 def _shards(
     campaign: Campaign, limits: Limits, manifest: Manifest, out: Path
 ) -> dict[Path, ShardJob]:
-    """Return what computes each shard, by its file, in the order of the runs."""
+    """Return the jobs of the shards by file, in the order of the runs."""
     size, runs = manifest.shard_size, manifest.runs
     return {
         out / SHARDS / f'{first:08d}.parquet': ShardJob(
@@ -106,7 +111,7 @@ def _shards(
 
 @dataclass
 class _Conduct:
-    """Keeps workers at work until every shard is on the disk."""
+    """Executes shard jobs on the workers until every shard is on the disk."""
 
     workers: Workers
     progress: Progress
@@ -114,7 +119,7 @@ class _Conduct:
     time_left: TimeLeft
 
     def compute(self, shards: Mapping[Path, ShardJob], done: int) -> None:
-        """Compute shards and write each into its file; `done` runs were so before."""
+        """Compute shards and write each to its file; `done` runs were computed before."""
         missing = dict(shards)
         deaths = 0
         while missing:
@@ -136,7 +141,7 @@ class _Conduct:
         self.progress.end()
 
     def _written(self, shards: Mapping[Path, ShardJob]) -> Iterator[Path]:
-        """Yield the file of each shard once it is written; raise what breaks an executor."""
+        """Yield the file of each shard after it is written; raise an error of the executor."""
         executor = self.workers.executor()
         waiting = iter(each_controller_first(shards, self.time_left.cases))
         running: dict[Future[tuple[bytes, float]], Path] = {}
@@ -146,7 +151,7 @@ class _Conduct:
                 running[executor.submit(timed_shard, shards[file])] = file
             if not running:
                 return
-            finished = wait(running, _LOOK_S, FIRST_COMPLETED).done
+            finished = wait(running, _POLL_S, FIRST_COMPLETED).done
             require_going_on(self.stopped)
             if not finished:
                 self.workers.require_alive()
@@ -159,7 +164,7 @@ class _Conduct:
 
 
 def require_going_on(stopped: Callable[[], bool]) -> None:
-    """Raise KeyboardInterrupt where the user wants an end."""
+    """Raise KeyboardInterrupt where the user has stopped the campaign."""
     if stopped():
         raise KeyboardInterrupt(f'interrupted; {RESUME}')
 

@@ -1,4 +1,4 @@
-"""The distributions that a campaign draws from, by name, each by its quantile function."""
+"""Distributions for the random keys of a campaign, by name, each with its quantile function."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -15,21 +15,21 @@ from ddct_plant.base.timebase import PERIOD_S
 KIND, LOW, HIGH, STEP, CHOICE = 'distribution', 'low', 'high', 'step', 'choice'
 Numbers = Mapping[str, float]
 _DIGITS = 12
-"""After the point, of a value that is rounded to a step: 0.035, not 0.035000000000000003."""
+"""Decimals of a value that is rounded to a step: 0.035, not 0.035000000000000003."""
 
 
 @dataclass(frozen=True)
 class Distribution:
-    """One quantity that varies at random."""
+    """Distribution of one key that varies at random."""
 
     kind: str
-    """A name of `KINDS`, or `CHOICE`."""
+    """Name of the distribution: a key of `KINDS`, or `CHOICE`."""
     numbers: Numbers
-    """Its parameters by name; of a choice none."""
+    """Parameters by name; none for a choice."""
     values: tuple[Any, ...] = ()
-    """Of a choice."""
+    """Values of a choice; empty for other kinds."""
     weights: tuple[float, ...] = ()
-    """Of a choice: how often each value, summing to 1."""
+    """Probabilities of the values of a choice, summing to 1; empty for other kinds."""
 
     def value(self, uniform: float) -> Any:
         """Return the quantile of a number between 0 and 1, both excluded."""
@@ -47,12 +47,12 @@ class Distribution:
 
     @property
     def whole(self) -> bool:
-        """Whether its values are whole numbers."""
+        """Whether all values are whole numbers."""
         return float(self.numbers.get(STEP, 0.5)).is_integer()
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The least and the largest value, infinite where there is no bound."""
+        """Smallest and largest value, infinite where there is no bound."""
         low = KINDS[self.kind].least
         return self.numbers.get(LOW, low), self.numbers.get(HIGH, math.inf)
 
@@ -64,10 +64,10 @@ class Kind:
     quantile: Callable[[Numbers, float], float]
     required: Sequence[str]
     above_zero: Sequence[str] = ()
-    """Parameters that must be above zero."""
+    """Names of the parameters that must be above zero."""
     optional: Sequence[str] = ()
     least: float = -math.inf
-    """Below which it has nothing, without bounds."""
+    """Lower end of the distribution without bounds."""
 
 
 def _uniform(p: Numbers, uniform: float) -> float:
@@ -99,7 +99,7 @@ def _lognormal(p: Numbers, uniform: float) -> float:
 
 def _standard_normal(uniform: float, low: float, high: float) -> float:
     """Return the quantile of the standard normal distribution between two ends."""
-    if low > 0.0:  # above it the distribution function is 1 to rounding
+    if low > 0.0:  # far above 0 the distribution function rounds to 1
         return -_standard_normal(1.0 - uniform, -high, -low)
     least, most = scipy.special.ndtr(low), scipy.special.ndtr(high)
     return float(scipy.special.ndtri(least + uniform * (most - least)))
@@ -119,10 +119,11 @@ KINDS: Mapping[str, Kind] = {
 
 def distribution_of(where: str, content: Any, option: Option | None) -> Distribution:
     """
-    Return the distribution that a specification describes at the key `where`.
+    Return the distribution that a specification gives at the key `where`.
 
-    `option` says what the varied key takes, None where nobody knows. Raise ParameterError for an
-    unknown name or parameter, and where the key has a bound that the distribution does not keep.
+    `option` describes the values of the varied key, None where they are not known. Raise
+    ParameterError for an unknown name or parameter, and where the distribution exceeds a bound of
+    the key.
     """
     if not isinstance(content, Mapping):
         raise ParameterError(
@@ -172,7 +173,7 @@ def _require_known(where: str, content: Mapping[str, Any], known: Sequence[str])
 
 
 def _require_order(where: str, distribution: Distribution) -> None:
-    """Refuse bounds that hold nothing."""
+    """Raise ParameterError for bounds without a value between them."""
     low, high = distribution.ends
     mode = distribution.numbers.get('mode', low)
     if not low < high or not low <= mode <= high:
@@ -185,7 +186,7 @@ def _require_order(where: str, distribution: Distribution) -> None:
 
 
 def _require_steps(where: str, numbers: Numbers) -> None:
-    """Refuse a bound that rounding would leave."""
+    """Raise ParameterError for a bound that rounding to the step would exceed."""
     for name in (LOW, HIGH):
         if STEP in numbers and name in numbers:
             parts = numbers[name] / numbers[STEP]
@@ -197,7 +198,7 @@ def _require_steps(where: str, numbers: Numbers) -> None:
 
 
 def _require_within(where: str, distribution: Distribution, option: Option) -> None:
-    """Refuse a distribution that can give what the key does not take."""
+    """Raise ParameterError for a distribution with values outside the range of the key."""
     key = where.rpartition('vary.')[2]
     if option.many or option.choices or option.kind not in (float, int):
         raise ParameterError(

@@ -1,4 +1,4 @@
-"""Who computes shards: processes of this machine, or a Dask cluster."""
+"""Executors that compute shards: processes of this machine, or a Dask cluster."""
 
 import multiprocessing
 import os
@@ -11,36 +11,36 @@ from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.program.workers import begin_worker
 
 CONNECT_S = 10.0
-"""How long a scheduler may take to answer."""
+"""Longest time in s for the connection to a scheduler."""
 LOST_S = 30.0
-"""How long a cluster may be without any worker."""
+"""Longest time in s without any worker in a cluster."""
 _ONE_THREAD = dict.fromkeys(('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
-"""So that sums are taken in one order, and workers do not wait for one another."""
+"""Environment of the workers: one thread, so that sums have one order and workers do not wait."""
 
 
 class LocalWorkers:
-    """Processes of this machine, each with one thread for its numerics; `count` at once."""
+    """Processes of this machine, each with one numerics thread; `count` at once."""
 
     def __init__(self, count: int | None = None) -> None:
-        """Take as many as there are cores, unless told; raise ParameterError for less than one."""
+        """Use `count` workers, by default one per core; raise ParameterError for less than one."""
         if count is not None and count < 1:
             raise ParameterError(f'workers is {count}: give 1 or more')
         self.count = count or len(os.sched_getaffinity(0))
         self._pool: ProcessPoolExecutor | None = None
 
     def executor(self) -> Executor:
-        """Return a new pool: that of before, if any, has broken."""
+        """Return a new pool; a former pool has broken."""
         self.close()
-        # A new interpreter: a copy of this process would keep its threads' locks and its BLAS.
+        # Each worker is a new interpreter: a fork would inherit the locks of threads and of BLAS.
         context = multiprocessing.get_context('spawn')
         self._pool = ProcessPoolExecutor(self.count, context, begin_worker)
         return self._pool
 
     def require_alive(self) -> None:
-        """Say nothing: a pool whose processes die is broken by itself."""
+        """Do nothing: a pool whose processes die breaks without a check."""
 
     def close(self) -> None:
-        """Kill the processes; what is being computed is lost."""
+        """Kill the processes; unfinished results are lost."""
         if self._pool is None:
             return
         processes = list((self._pool._processes or {}).values())
@@ -56,7 +56,7 @@ class DaskWorkers:
     """The workers of a Dask cluster."""
 
     def __init__(self, address: str) -> None:
-        """Connect; raise DdctError for an address where no scheduler is."""
+        """Connect to a scheduler; raise DdctError for an address without one."""
         try:
             from distributed import Client
         except ImportError as error:
@@ -65,7 +65,7 @@ class DaskWorkers:
             ) from error
         try:
             self._client = Client(address, timeout=CONNECT_S, set_as_default=False)
-        except FOREIGN_FAILURES as error:  # also of what answers and is no scheduler
+        except FOREIGN_FAILURES as error:  # also where another kind of server answers
             raise DdctError(
                 f'--scheduler {address}: no scheduler answers there ({error}): start one, or '
                 'leave the option out'
@@ -75,16 +75,16 @@ class DaskWorkers:
 
     @property
     def count(self) -> int:
-        """The threads of all workers."""
+        """Number of threads of all workers."""
         workers = self._client.scheduler_info(n_workers=-1)['workers'].values()
         return sum(worker['nthreads'] for worker in workers) or 1
 
     def executor(self) -> Executor:
-        """Return an executor of the cluster; a task whose worker dies goes to another."""
+        """Return an executor of the cluster; the task of a failed worker goes to another one."""
         return self._client.get_executor(pure=False)
 
     def require_alive(self) -> None:
-        """Raise DdctError when the scheduler is gone, or has had no worker for a while."""
+        """Raise DdctError when the scheduler is gone, or has had no worker for `LOST_S`."""
         if self._client.status != 'running':
             raise DdctError(f'--scheduler {self._address}: the scheduler has gone')
         if self._client.scheduler_info(n_workers=-1)['workers']:
@@ -96,17 +96,17 @@ class DaskWorkers:
             raise DdctError(f'--scheduler {self._address}: it has no worker: start one')
 
     def close(self) -> None:
-        """Disconnect; the cluster drops what it has not begun."""
+        """Disconnect; the cluster drops tasks that have not started."""
         self._client.close(timeout=CONNECT_S)
 
 
 Workers = LocalWorkers | DaskWorkers
-"""Executors of shards, and what to know of them."""
+"""Executor of shards, and its number of workers."""
 
 
 @contextmanager
 def workers_of(count: int | None, scheduler: str | None) -> Iterator[Workers]:
-    """Give the workers of an address, or local ones, and end them."""
+    """Yield the workers of a scheduler address, or local ones, and close them."""
     workers: Workers = DaskWorkers(scheduler) if scheduler else LocalWorkers(count)
     before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ.update(_ONE_THREAD)

@@ -1,4 +1,4 @@
-"""What a campaign can vary: scenario keys, and the settings of a run."""
+"""Keys that a campaign can vary: scenario keys, and the settings of a run."""
 
 from dataclasses import fields
 from functools import cache
@@ -13,9 +13,9 @@ from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
 COMMON = (SCENARIO, 'architecture', 'clutch')
-"""Given for all runs, or varied."""
+"""Keys that are given for all runs, or varied."""
 FILE_KEY = '.csv'
-"""Ends the key of a file with a profile."""
+"""Suffix of the key of a file with a profile."""
 
 
 @cache
@@ -26,9 +26,9 @@ def run_options() -> Options:
 
 def option_of(where: str, key: str) -> Option | None:
     """
-    Return what a key takes, None where only the scenario or a controller can tell.
+    Return the option of a key, None where only the scenario or a controller defines it.
 
-    Raise ParameterError, which begins with `where`, for a key that there is not.
+    Raise ParameterError, which begins with `where`, for an unknown key.
     """
     known = {**run_options(), **scenario_options()}
     if key in known:
@@ -36,7 +36,7 @@ def option_of(where: str, key: str) -> Option | None:
     section, _, rest = key.partition('.')
     if section == CONTROLLERS:
         name, _, option = rest.partition('.')
-        if name not in controller_names():  # that of a file or an object, or of nobody
+        if name not in controller_names():  # the name of a file or an object, or unknown
             return None
         return (controller_spec(name).options or {}).get(option)
     if rest == FACTOR and section in sections():

@@ -1,4 +1,4 @@
-"""`manifest.json`: what a campaign is, so that it can go on and its rows can be made again."""
+"""`manifest.json`: the inputs of a campaign, used to resume it and to repeat its rows."""
 
 import hashlib
 import json
@@ -20,40 +20,40 @@ from ddct_plant.program.command_line import package_version
 
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1
-"""Of the manifest."""
+"""Schema version of the manifest."""
 _PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 _SOURCES = ('.py', '.yaml')
 _MOST_RUNS = 2000
-"""Of a shard."""
+"""Largest number of runs in a shard."""
 _LEAST_SHARDS = 50
-"""Of a campaign with so many runs: enough that all workers end together."""
+"""Smallest number of shards of a large campaign, so that all workers end together."""
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """What a campaign was started with."""
+    """Inputs of a campaign: versions, seed, specification and limits."""
 
     schema_version: int
     root_seed: int
     version: str
-    """Of the packages."""
+    """Version of the packages."""
     commit: str
-    """As in `run_info`."""
+    """Commit of the sources, as in `run_info`."""
     code_digest: str
     spec_digest: str
-    """Of the specification and the files that it names."""
+    """Digest of the specification and of the files that it names."""
     limits: dict[str, Any]
-    """`name`, `digest` and `schema_version` of what the runs are judged by."""
+    """Name, digest and schema version of the limits by which the runs are judged."""
     runs: int
     shard_size: int
-    """How many runs a shard has: it depends on nothing but their number."""
+    """Number of runs in a shard; it depends only on the number of runs."""
     folder: str
-    """What files of the specification are relative to."""
+    """Folder that files of the specification are relative to."""
     spec: dict[str, Any]
 
     @classmethod
     def of(cls, campaign: Campaign, limits: Limits) -> 'Manifest':
-        """Describe a campaign that this program computes."""
+        """Return the manifest of a campaign that this version of the program computes."""
         return cls(
             schema_version=SCHEMA_VERSION,
             root_seed=campaign.spec.root,
@@ -70,7 +70,7 @@ class Manifest:
 
     @classmethod
     def read(cls, out: Path) -> 'Manifest':
-        """Read the manifest in a campaign's folder; raise DdctError without a good one."""
+        """Return the manifest in a campaign's folder; raise DdctError without a valid one."""
         path = out / MANIFEST
         try:
             content = parse_json(read_text_file(path))
@@ -86,17 +86,17 @@ class Manifest:
             raise DdctError(f'{path}: cannot be read ({error})') from error
 
     def write(self, out: Path) -> None:
-        """Write it into a campaign's folder; raise DdctError when that fails."""
+        """Write the manifest to a campaign's folder; raise DdctError when that fails."""
         write_json(str(out / MANIFEST), asdict(self))
 
     @property
     def grid(self) -> tuple[str, ...]:
-        """What was varied on a grid, also by a version whose keys have other names."""
+        """Keys varied on a grid, also in a manifest of a version with other keys."""
         return _keys(self.spec.get('grid'))
 
     @property
     def random(self) -> tuple[str, ...]:
-        """What was drawn at random, likewise."""
+        """Keys drawn at random, also in a manifest of a version with other keys."""
         return _keys((self.spec.get('random') or {}).get('vary'))
 
     def campaign_spec(self) -> CampaignSpec:
@@ -114,7 +114,7 @@ class Manifest:
         return campaign
 
     def require_same(self, other: 'Manifest', out: Path) -> None:
-        """Raise DdctError that says what of another campaign is not as in this one, in `out`."""
+        """Raise DdctError with the differences of another campaign from this one, in `out`."""
         for what, ours, theirs in (
             ('root seed', str(self.root_seed), str(other.root_seed)),
             ('code', self.code, other.code),
@@ -128,7 +128,7 @@ class Manifest:
                 )
 
     def require_limits(self, limits: Limits, out: Path) -> None:
-        """Raise DdctError unless runs are judged by the limits of this campaign, in `out`."""
+        """Raise DdctError unless the limits are those of this campaign, in `out`."""
         if self.limits != limits.origin:
             raise DdctError(
                 f'{out}: its runs were judged by the limits {json.dumps(self.limits)}, not by '
@@ -137,13 +137,13 @@ class Manifest:
 
     @property
     def code(self) -> str:
-        """The commit, and what tells two dirty ones apart."""
+        """Commit, and a digest that distinguishes two dirty ones."""
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
 
 
 @cache
 def code_digest() -> str:
-    """Return a hash of the sources of our packages as they are now: a commit may be dirty."""
+    """Return a hash of the current sources of the packages: a commit may be dirty."""
     digest = hashlib.sha256()
     for package in _PACKAGES:
         _add(digest, package, files(package))
@@ -151,12 +151,12 @@ def code_digest() -> str:
 
 
 def _keys(group: Any) -> tuple[str, ...]:
-    """Return the keys of a part of a specification that may be left out."""
+    """Return the keys of an optional part of a specification."""
     return tuple(group or ())
 
 
 def require_code(digest: str) -> None:
-    """Raise DdctError unless this process has the sources that a campaign began with."""
+    """Raise DdctError unless this process has the sources of the campaign's start."""
     if code_digest() != digest:
         raise DdctError(
             'a worker has other sources than the program that started the campaign: install the '

@@ -1,20 +1,20 @@
-"""A run among many: its settings by what is varied, its scores without a bag, and its row."""
+"""One of many runs: its settings from the varied values, its scores without a bag, and its row."""
 
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import require_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable
@@ -24,35 +24,35 @@ from ddct_plant.scenario.file import ScenarioFile, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
 SERIAL, VECTORISED = 'serial', 'vectorised'
-"""Column `path`: of a run that was simulated step by step, and of one among many at once."""
+"""Values of the column `path`: simulated step by step, or together with other runs."""
 WALL_CLOCK = ('update_time_median_us', 'update_time_p99_us')
-"""Metrics that differ each time; those of missed steps and lateness do not without a graph."""
+"""Metrics that differ between repetitions; missed steps and lateness do not without a graph."""
 METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
-"""Those of `scores.json` that are the same each time a run is computed."""
+"""Metrics of `scores.json` that are equal in every repetition of a run."""
 CRITERION = 'criterion.'
-"""Before the name of a criterion's column."""
+"""Prefix of the column of a criterion."""
 CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
 _SETTINGS = options_of(RunSettings)
 
 
 @dataclass(frozen=True)
 class RunBase:
-    """What runs have in common, before something is varied."""
+    """Common settings of runs, before keys are varied."""
 
     file: ScenarioFile
-    """Their scenario as it is without changes."""
+    """Scenario of the runs without changes."""
     changes: Mapping[str, Any]
     """Values by dotted scenario key, as `--set` gives them."""
     settings: Mapping[str, Any]
-    """Those of `RunSettings` by name, such as `clutch`."""
+    """Values of `RunSettings` by name, such as `clutch`."""
     labels: Sequence[str]
-    """What the controllers are called: `changes` may hold options of theirs."""
+    """Names of the controllers, since `changes` may contain options of theirs."""
 
     def at(self, varied: Mapping[str, Any]) -> RunSettings:
         """
         Return the settings with values by key: those of `RunSettings`, or dotted scenario keys.
 
-        What belongs together is moved with them, as `--set` does. Raise DdctError for what cannot
+        Dependent values change with them, as with `--set`. Raise DdctError for values that cannot
         be used.
         """
         settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
@@ -63,7 +63,7 @@ class RunBase:
 
 
 def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
-    """Return what the options of `add_settings_options` say of all runs of these controllers."""
+    """Return the common settings of runs with these controllers from program options."""
     changes = dict(map(parsed_override, options.overrides))
     if options.duration is not None:
         changes['duration_s'] = options.duration
@@ -72,7 +72,7 @@ def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
 
 
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
-    """Refuse a controller that its user has to mend; one that fails by itself has its rows."""
+    """Raise an error of the user's controller; a controller that fails in a run gets its rows."""
     try:
         make_architecture(settings, make_controller(controller, settings))
     except ParameterError:
@@ -83,9 +83,9 @@ def require_suitable(controller: Chosen, settings: RunSettings) -> None:
 
 def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> Entry:
     """
-    Carry out a run headless and return its entry of `scores.json`; of one that fails, why.
+    Carry out a run headless and return its entry of `scores.json`, with the reason if it fails.
 
-    It has no figures of wall-clock time: a row is the same each time it is computed.
+    It has no wall-clock metrics: a row is equal in every repetition.
     """
     name, timing = controller_label(controller), RunTiming()
     try:
@@ -93,7 +93,7 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
         trajectory = run_headless(settings, controller, timing)
     except DdctError as error:
         reason = str(error)
-    except FOREIGN_FAILURES as error:  # one of many runs must not take the others along
+    except FOREIGN_FAILURES as error:  # a failed run must not end the others
         reason = printable(f'{type(error).__name__}: {error}')
     else:
         entry = score_run(in_memory(settings, name, trajectory), name, limits, timing)
@@ -103,7 +103,7 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
 
 
 def result_row(entry: Entry, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
-    """Return a run as one row: controller, path, what was varied, metrics, verdict, criteria."""
+    """Return a run as one row: controller, path, varied values, metrics, verdict, criteria."""
     verdict = entry['verdict']
     criteria = {f'{CRITERION}{each["name"]}': each['value'] for each in verdict['criteria']}
     return {

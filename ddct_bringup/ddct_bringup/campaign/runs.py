@@ -1,4 +1,4 @@
-"""The runs of a campaign, by index: what each of them is, and that all can be built."""
+"""The runs of a campaign by index: settings of each, and a check that all can be built."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -39,28 +39,29 @@ class Campaign:
     """
     The runs that a specification describes.
 
-    A case is a point of the grid with one sample. All controllers meet the same cases, noise
-    included: first those of the first controller have their index, then those of the next.
+    A case is a point of the grid with one sample. All controllers have the same cases, noise
+    included. The runs of the first controller have the first indices, then follow those of the
+    next.
     """
 
     def __init__(self, spec: CampaignSpec) -> None:
-        """Read what the specification names; raise DdctError for what is not there."""
+        """Read the files that the specification names; raise DdctError for a missing one."""
         self.spec = spec
         points = prod(len(values) for values in spec.grid.values())
         self.cases = points * spec.samples
-        """How many runs each controller has."""
+        """Number of runs of each controller."""
         self._names = [
             str(spec.folder / each) if is_controller_file(each) else each
             for each in spec.controllers
         ]
         self.controllers = [controller_spec(each) for each in self._names]
         self.labels = [each.name for each in self.controllers]
-        """What the controllers are called."""
+        """Names of the controllers in results."""
         for label in self.labels:
             if self.labels.count(label) > 1:
                 raise ParameterError(f'{CONTROLLERS}: two are called {label}: rename one')
         self.runs = self.cases * len(self.controllers)
-        """How many runs there are."""
+        """Number of runs."""
         if self.runs > MOST_RUNS:
             raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}')
         varied = SCENARIO in spec.keys
@@ -70,7 +71,7 @@ class Campaign:
         }
 
     def run(self, index: int) -> CampaignRun:
-        """Return a run; raise ParameterError that names it where its scenario refuses it."""
+        """Return a run; raise ParameterError with its index where its scenario is invalid."""
         number, case = divmod(index, self.cases)
         varied = self.varied(case)
         given = {'seed': run_seed(self.spec.root, case), **self.spec.common, **varied}
@@ -96,10 +97,9 @@ class Campaign:
 
     def plan(self) -> Iterator[int]:
         """
-        Build what every run needs, and each controller in the first run of each kind.
+        Build the settings of every run, and each controller in the first run of each kind.
 
-        Yield the number of cases that are done. Raise ParameterError that names the first run
-        that is refused.
+        Yield the number of cases that are done. Raise ParameterError with the first invalid run.
         """
         known: set[tuple[str, ...]] = set()
         for case in range(self.cases):
@@ -125,7 +125,7 @@ class Campaign:
         return digest.hexdigest()
 
     def _named_files(self) -> Iterator[Path]:
-        """Yield the scenarios and profiles that are files of the user's."""
+        """Yield the scenarios and profiles that are files of the user."""
         for file in (base.file for base in self._bases.values()):
             if not is_packaged(file.name):
                 yield Path(file.name)
@@ -141,7 +141,7 @@ class Campaign:
                     yield Path(placed[_CSV])
 
     def _placed(self, key: str, value: Any) -> Any:
-        """Return a value with the file that it names, if any, placed in the folder."""
+        """Return a value; if it names a file, with the folder in front."""
         if key.endswith(FILE_KEY) and isinstance(value, str):
             return str(self.spec.folder / value)
         if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):
@@ -150,6 +150,6 @@ class Campaign:
 
 
 def _name(index: int, varied: Mapping[str, Any]) -> str:
-    """Return how a refusal names a run."""
+    """Return the name of a run in error messages."""
     values = ', '.join(f'{key} {value}' for key, value in varied.items())
     return f'run {index} ({values})'

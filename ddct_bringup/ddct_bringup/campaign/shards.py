@@ -1,4 +1,4 @@
-"""The unit of work: the runs of a fixed range of indices, which become one file."""
+"""Shards, the unit of work: the runs of a fixed range of indices, whose rows become one file."""
 
 import time
 from collections.abc import Sequence
@@ -23,37 +23,37 @@ from ddct_plant.base.errors import FOREIGN_FAILURES
 
 @dataclass(frozen=True)
 class ShardJob:
-    """What a worker is sent; it needs nothing else but the files that the specification names."""
+    """Input of a worker; the only other inputs are the files that the specification names."""
 
     spec: CampaignSpec
     limits: Limits
     code: str
-    """Digest of the sources that the campaign is computed with."""
+    """Digest of the sources that compute the campaign."""
     first: int
     last: int
-    """One beyond the last index."""
+    """One after the last index."""
 
 
 def timed_shard(job: ShardJob) -> tuple[bytes, float]:
-    """Return the file of a shard, and how many seconds it took."""
+    """Return the file content of a shard, and its computing time in s."""
     started = time.monotonic()
     return compute_shard(job), time.monotonic() - started
 
 
 def compute_shard(job: ShardJob) -> bytes:
-    """Return the file of a shard; raise DdctError where this machine cannot compute it."""
+    """Return the file content of a shard; raise DdctError where this machine cannot compute it."""
     require_code(job.code)
     campaign = Campaign(job.spec)
     runs = [campaign.run(index) for index in range(job.first, job.last)]
-    with np.errstate(all='ignore'):  # what is not finite becomes a reason in its row
+    with np.errstate(all='ignore'):  # a value that is not finite becomes a reason in its row
         return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
 
 
 def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, Any]]:
     """
-    Return a row for every run, in their order; one that fails has a row with its reason.
+    Return a row for every run, in their order; a failed run has a row with its reason.
 
-    What is linear is computed at once, all else step by step.
+    Linear runs are computed at once, all others step by step.
     """
     found = _vectorised(runs, limits)
     rows = []
@@ -74,7 +74,7 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
         try:
             controller = _controller(run, shared)
         except FOREIGN_FAILURES:
-            continue  # step by step it says why
+            continue  # the run step by step gives the reason
         if not batchable(run.settings, controller):
             suited.append((run, controller))
     results = run_batch([(run.settings, controller) for run, controller in suited], limits)
@@ -86,7 +86,7 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
 
 
 def _controller(run: CampaignRun, shared: dict[str, Controller]) -> Controller:
-    """Return the controller of a run: one of ours that no run changes is made once."""
+    """Return the controller of a run; a packaged one that no run changes is built once."""
     spec = run.controller
     if spec.computed_from != THESIS or spec.name not in own_controller_names():
         return make_controller(spec, run.settings)

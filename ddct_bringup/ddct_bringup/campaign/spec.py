@@ -1,4 +1,4 @@
-"""SPEC.yaml: what a campaign varies, checked; every mistake is named with its line."""
+"""SPEC.yaml: keys that a campaign varies; every mistake is reported with its line."""
 
 import json
 from collections.abc import Mapping
@@ -15,9 +15,9 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 from ddct_plant.scenario.file import ScenarioFile, is_packaged
 
 SCHEMA_VERSION = 1
-"""Of a specification."""
+"""Schema version of a specification."""
 MOST_RUNS = 10_000_000
-"""Of one campaign."""
+"""Largest number of runs of one campaign."""
 _GRID, _RANDOM, _VARY, _SAMPLES, _SEED = 'grid', 'random', 'vary', 'samples', 'seed'
 _KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, _SEED, _GRID, _RANDOM)
 _ROOT = Option(0, 'root of all random numbers', at_least=0, at_most=2**31 - 1)
@@ -26,37 +26,37 @@ _NUMBER_OF_SAMPLES = Option(1, 'samples at each point of the grid', at_least=1, 
 
 @dataclass(frozen=True)
 class CampaignSpec:
-    """A specification that is known to make sense."""
+    """A valid specification of a campaign."""
 
     content: Mapping[str, Any]
-    """As given."""
+    """Specification as given."""
     folder: Path
-    """What files are relative to."""
+    """Folder that files are relative to."""
     controllers: tuple[str, ...]
     common: Mapping[str, str]
-    """`scenario`, and `architecture` and `clutch` where they are given, for all runs."""
+    """Values for all runs: `scenario`, and `architecture` and `clutch` where they are given."""
     root: int
     grid: Mapping[str, tuple[Any, ...]]
-    """Values by key."""
+    """Values on the grid by key."""
     samples: int
     vary: Mapping[str, Distribution]
-    """What is drawn in each sample, by key."""
+    """Distributions of the keys that are drawn in each sample, by key."""
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """What varies, in the order of the columns."""
+        """Varied keys, in the order of the columns."""
         return (*self.grid, *self.vary)
 
     def values_of(self, key: str) -> tuple[Any, ...]:
-        """Return the values that a key can take, of numbers from a distribution none."""
+        """Return the possible values of a key; none for a distribution of numbers."""
         return self.grid[key] if key in self.grid else self.vary[key].values
 
     def scenario_file(self, name: str) -> ScenarioFile:
-        """Return a scenario that a specification names; raise DdctError that says why not."""
+        """Return a scenario that a specification names; raise DdctError for an invalid one."""
         return ScenarioFile.read(name if is_packaged(name) else str(self.folder / name))
 
     def text(self) -> str:
-        """Return what was given as one text, the same however it was written."""
+        """Return the specification as canonical text, independent of its formatting."""
         return json.dumps(self.content)
 
 
@@ -71,7 +71,7 @@ def read_spec(file: str | Path) -> CampaignSpec:
 
 def spec_of(content: Any, folder: Path) -> CampaignSpec:
     """
-    Return the specification that nested mappings hold; files in it are relative to `folder`.
+    Return the specification in nested mappings; files in it are relative to `folder`.
 
     Raise ParameterError that names the key.
     """
@@ -94,7 +94,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
     )
     try:
         spec.text()
-    except (TypeError, ValueError) as error:  # what no file can hold, as Python may give it
+    except (TypeError, ValueError) as error:  # Python objects that no file can contain
         raise ParameterError(f'the specification holds what YAML does not: {error}') from error
     return spec
 
@@ -170,7 +170,7 @@ def _random(content: Mapping[str, Any]) -> tuple[int, dict[str, Distribution]]:
 
 
 def _require_apart(content: Mapping[str, Any], keys: tuple[str, ...]) -> None:
-    """Refuse a key that is given twice, or that is within another."""
+    """Raise ParameterError for a key that is given twice, or inside another."""
     for place, key in enumerate(keys):
         if key in content:
             raise ParameterError(f'{key} is given for all runs and varied: give it once')

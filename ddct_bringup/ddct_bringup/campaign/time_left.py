@@ -1,4 +1,4 @@
-"""How long the rest of a campaign takes: each controller by its own shards."""
+"""Estimate of the remaining time of a campaign from the shards of each controller."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,15 +9,15 @@ from ddct_bringup.campaign.shards import ShardJob
 
 @dataclass
 class TimeLeft:
-    """Estimates the time that remains from shards that are done."""
+    """Estimates the remaining time from completed shards."""
 
     cases: int
-    """Runs of each controller: the first so many are those of the first controller."""
+    """Number of runs of each controller, in the order of the controllers."""
     _runs: dict[int, int] = field(default_factory=dict)
     _seconds: dict[int, float] = field(default_factory=dict)
 
     def add(self, job: ShardJob, seconds: float) -> None:
-        """Count a shard that took a worker so many seconds."""
+        """Count a completed shard with its computing time in s."""
         for controller, runs in self._parts(job):
             share = seconds * runs / (job.last - job.first)
             self._runs[controller] = self._runs.get(controller, 0) + runs
@@ -25,9 +25,9 @@ class TimeLeft:
 
     def left_s(self, missing: Iterable[ShardJob], workers: int) -> float | None:
         """
-        Return the seconds that the missing shards take so many workers, None before the first.
+        Return the time in s for the missing shards with this many workers, None before the first.
 
-        A controller of which no shard is done yet counts like the mean of the others.
+        A controller without a completed shard counts as the mean of the others.
         """
         if not self._runs:
             return None
@@ -37,7 +37,7 @@ class TimeLeft:
         return sum(runs * rates.get(controller, mean) for controller, runs in parts) / workers
 
     def _parts(self, job: ShardJob) -> Iterable[tuple[int, int]]:
-        """Yield each controller in a shard, by its place, with how many of its runs are there."""
+        """Yield the index of each controller in a shard with the number of its runs there."""
         for controller in range(job.first // self.cases, (job.last - 1) // self.cases + 1):
             first = max(job.first, controller * self.cases)
             yield controller, min(job.last, (controller + 1) * self.cases) - first
@@ -45,9 +45,9 @@ class TimeLeft:
 
 def each_controller_first(shards: Mapping[Path, ShardJob], cases: int) -> Sequence[Path]:
     """
-    Return the files of shards in the order in which they are to be computed.
+    Return the files of shards in the order of their computation.
 
-    The first shard of each controller comes before all others, so that soon each is measured.
+    The first shard of each controller comes before all others, so that each is soon measured.
     """
     first: dict[int, Path] = {}
     for file, job in shards.items():

@@ -1,1 +1,1 @@
-"""Out of a campaign: how often and how badly engagements fail, where, and what drives it."""
+"""Analysis of a campaign: frequency, severity, location and causes of failed engagements."""

@@ -1,5 +1,5 @@
 """
-Which of several keys that were drawn independently drive failure.
+Attribution of failure to keys that were drawn independently.
 
 The measure is the main effect of a key, the first-order sensitivity index (Saltelli et al. 2008,
 Section 1.2.3): the part of the variance of failure that the key explains by itself,
@@ -8,7 +8,7 @@ Section 1.2.3): the part of the variance of failure that the key explains by its
 
 It is estimated from the runs as they are, over parts of the key's range with equally many runs
 (Plischke, Borgonovo and Smith 2013), and freed from what chance explains (Kelley's epsilon
-squared). It needs no direction: a key of which too much and too little fails counts too. It misses
+squared). It needs no direction: a key that causes failure at both ends counts too. It misses
 a key that acts through another alone, and is less than S where failure begins within a part.
 
 Whether a key drives failure is tested by permutation: failures are dealt out at random among the
@@ -25,21 +25,21 @@ from ddct_bringup.campaign_report.outcome import CONFIDENCE
 
 METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
 FEWEST = 5
-"""Failed runs, and runs that did not fail, that say anything of keys."""
+"""Fewest failed runs, and fewest other runs, for an attribution to keys."""
 MOST_PARTS = 10
 _RUNS_IN_PART = 10
 _DEALS = 5000
 _RESAMPLES = 2000
 _SEED = 0
-"""So that the same runs give the same figures."""
+"""Seed of the random numbers, so that the same runs give the same results."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """Runs in a part of a key's range."""
+    """Runs in one part of a key's range."""
 
     low: float
-    """Least and largest value that was drawn in it."""
+    """Smallest value drawn in the part; `high` is the largest."""
     high: float
     runs: int
     failed: int
@@ -47,15 +47,15 @@ class Part:
 
 @dataclass(frozen=True)
 class Effect:
-    """What one key has to do with failure."""
+    """Effect of one key on failure."""
 
     key: str
     explained: float
-    """Its main effect on failure, 0 to 1."""
+    """Main effect of the key on failure, 0 to 1."""
     interval: tuple[float, float]
-    """Of the main effect, at `CONFIDENCE`."""
+    """Ends of the interval of the main effect, at `CONFIDENCE`."""
     p_value: float
-    """That chance alone explains so much, corrected for the number of keys."""
+    """Probability of such an effect by chance alone, corrected for the number of keys."""
     parts: tuple[Part, ...]
 
     @property
@@ -65,12 +65,12 @@ class Effect:
 
     @property
     def worst_part(self) -> Part:
-        """The part of the range with the largest share of failed runs, the first of equals."""
+        """Part of the range with the largest share of failed runs, the first of equals."""
         return max(self.parts, key=lambda part: part.failed / part.runs)
 
 
 def too_few(failed: np.ndarray) -> str:
-    """Return why (n,) failures say nothing of keys, empty if they do."""
+    """Return why (n,) failures are too few for an attribution, empty if they are enough."""
     failures, others = int(np.sum(failed)), int(np.sum(~failed))
     if min(failures, others) >= FEWEST:
         return ''
@@ -99,7 +99,7 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
 
 
 def _parts(values: np.ndarray, failed: np.ndarray) -> tuple[Part, ...]:
-    """Return the parts of a key's range: of few values each by itself, else of equal size."""
+    """Return the parts of a key's range: one per value if there are few, else of equal size."""
     distinct = np.unique(values)
     count = min(MOST_PARTS, max(2, len(values) // _RUNS_IN_PART))
     edges = distinct
@@ -119,12 +119,12 @@ def _parts(values: np.ndarray, failed: np.ndarray) -> tuple[Part, ...]:
 
 
 def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many runs and how many failed ones are in each part, (parts,) each."""
+    """Return the numbers of runs and of failed runs in each part, (parts,) each."""
     return np.array([part.runs for part in parts]), np.array([part.failed for part in parts])
 
 
 def _ratio(runs: np.ndarray, failed: np.ndarray) -> np.ndarray:
-    """Return the part of the variance of failure between parts, (...,), of (..., parts) counts."""
+    """Return the share of failure's variance between parts, (...,), from (..., parts) counts."""
     total = runs.sum(axis=-1)
     mean = failed.sum(axis=-1) / total
     with np.errstate(all='ignore'):
@@ -134,12 +134,12 @@ def _ratio(runs: np.ndarray, failed: np.ndarray) -> np.ndarray:
 
 
 def _without_chance(ratio: np.ndarray | float, runs: int, parts: int) -> np.ndarray | float:
-    """Return epsilon squared of a ratio: what so many parts explain by chance is zero."""
+    """Return epsilon squared of a ratio: the share that chance explains is subtracted."""
     return 1.0 - (1.0 - ratio) * (runs - 1) / (runs - parts)
 
 
 def _chance(random: np.random.Generator, parts: tuple[Part, ...]) -> float:
-    """Return how often failures dealt out at random are as unequal as these, 0 to 1."""
+    """Return the probability that random failures are as unequal as these, 0 to 1."""
     runs, failed = _counts(parts)
     dealt = random.multivariate_hypergeometric(
         runs, int(failed.sum()), size=_DEALS, method='marginals'

@@ -1,4 +1,4 @@
-"""Where failure begins on a grid: the first failure along a line from its start outward."""
+"""Boundary of failure on a grid: the first failure along a line from its start outward."""
 
 from dataclasses import dataclass
 
@@ -10,20 +10,22 @@ from ddct_bringup.verdict.state import INVALID
 
 @dataclass(frozen=True)
 class Boundary:
-    """What happens along a line from its start to one end."""
+    """Boundary of failure along a line from its start to one end."""
 
     last_good: float | None
-    """The last value up to which no run failed and all are valid; None where the start is none."""
+    """
+    Last value up to which no run failed and all are valid; None where the start has a failure.
+    """
     first_failure: float | None
-    """The first value at which a run failed; None where none did."""
+    """First value at which a run failed; None where none did."""
     row: int | None
-    """Position of the first failed run there."""
+    """Position of the first failed run at `first_failure`."""
     failed: int = 0
-    """How many runs failed there."""
+    """Number of failed runs at `first_failure`."""
     runs: int = 0
-    """How many runs there are at that value."""
+    """Number of runs at `first_failure`."""
     invalid: int = 0
-    """How many runs up to there, or to the end of the line, do not count."""
+    """Number of invalid runs up to `first_failure`, or to the end of the line."""
 
 
 def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[str, Boundary]:
@@ -39,7 +41,7 @@ def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[s
 
 
 def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) -> Boundary:
-    """Return the boundary along (n,) distances from the start; below zero is the other side."""
+    """Return the boundary along (n,) distances from the start; those behind it are negative."""
     ahead = distance >= 0.0
     failure = _least(distance, ahead & (outcomes == FAILED))
     doubt = _least(distance, ahead & (outcomes == INVALID))
@@ -55,5 +57,5 @@ def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) ->
 
 
 def _least(distance: np.ndarray, chosen: np.ndarray) -> float:
-    """Return the least of the chosen distances, infinite without one."""
+    """Return the smallest of the chosen distances, infinite without one."""
     return float(np.min(distance, where=chosen, initial=np.inf))

@@ -27,7 +27,7 @@
 
   const words = [...new Set(data.maps.flatMap((map) => map.panels.flatMap((panel) => panel.state)))]
     .filter((state) => state !== 'engaged').sort();
-  const spoken = (state) => state.replace('_', ' ');
+  const state_text = (state) => state.replace('_', ' ');
   const number = (value, digits = 12) => String(Number(value.toPrecision(digits))).replace('-', '\u2212');
 
   function element(name, attributes = {}, text = '') {
@@ -77,12 +77,12 @@
     const lost = invalid > 0 || (!share && failed > 0);
     const count = invalid ? invalid : failed;
     const state = panel.state[place];
-    const word = lost ? (runs > 1 ? `${count} of ${runs} ${invalid ? 'invalid' : 'failed'}` : spoken(state)) : value === null ? UNDEFINED : '';
+    const word = lost ? (runs > 1 ? `${count} of ${runs} ${invalid ? 'invalid' : 'failed'}` : state_text(state)) : value === null ? UNDEFINED : '';
     const index = lost || share || !panel.rows ? panel.index[place] : panel.rows[quantity.key][place] ?? panel.index[place];
     const at = map.keys.map((key, axis) => `${key} ${number(panel.at[axis][place])}`);
     const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(value, 4)}`;
     const interval = panel.intervals?.[place].map((end) => number(100 * end, 3)).join(' to ');
-    const came = runs > 1 ? `${failed} of ${runs} runs failed (95 % interval ${interval} %)${invalid ? `, ${invalid} invalid` : ''}` : spoken(state);
+    const came = runs > 1 ? `${failed} of ${runs} runs failed (95 % interval ${interval} %)${invalid ? `, ${invalid} invalid` : ''}` : state_text(state);
     const second = !lost && !share && state !== 'engaged' ? state : '';
     return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', second, index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
   }
@@ -205,7 +205,7 @@
       item.className = 'item';
       const svg = element('svg', {viewBox: '0 0 26 14', 'aria-hidden': 'true'});
       svg.append(hatched(word, {x: 0, y: 0, width: 26, height: 14}));
-      item.append(svg, spoken(word));
+      item.append(svg, state_text(word));
       return item;
     }));
   }

@@ -1,4 +1,4 @@
-"""The figure of a campaign: how the main metrics are distributed, a curve for each controller."""
+"""Quantity of a campaign: distributions of the main metrics, a curve for each controller."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as Drawing
 
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, look_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
@@ -20,26 +20,26 @@ from ddct_plant.program.table import Quantity
 
 PICTURES = ('.png', '.svg')
 _DRAWN = (
-    *(figure.key for figure in TABLE_5_1),
+    *(quantity.key for quantity in TABLE_5_1),
     *('slip_rmse_rpm', 'peak_jerk_m_s3', 'friction_energy_j'),
 )
 _ACROSS = 3
 _WIDTH_IN, _PANEL_IN, _LINE_IN = 11.0, 2.7, 0.25
 _LEGEND_COLUMNS = 5
 _TITLE_CHARACTERS = 120
-"""In a line."""
+"""Largest number of characters in a line of the title."""
 _MOST_STEPS = 500
-"""Of a curve: more cannot be told apart."""
+"""Largest number of steps of a curve: more cannot be distinguished."""
 
 
 def require_picture(target: str) -> None:
-    """Raise ParameterError unless a file's ending is that of a picture."""
+    """Raise ParameterError unless the extension of a file is that of a picture."""
     if Path(target).suffix not in PICTURES:
         raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
 
 
 def write_distributions(results: Results, scenario: str, path: Path) -> None:
-    """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
+    """Write the figure as PNG or SVG by the file's extension; raise DdctError where that fails."""
     with chart_style():
         save_chart(distributions_figure(results, scenario), path)
 
@@ -48,8 +48,8 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
     """
     Return the figure: a panel for each main metric, a curve for each controller.
 
-    A curve is the share of the valid runs that engaged with at most this value. So it ends at the
-    share of the runs that engaged and have a value; what is missing to 1 did not, or has none.
+    A curve is the share of the valid runs that engaged with at most this value. It ends at the
+    share of the runs that engaged and have a value; the rest up to 1 failed, or has no value.
     """
     metrics = [each for each in (*TABLE_5_1, *FURTHER) if each.key in _DRAWN]
     metrics = [each for each in metrics if each in results.quantities]
@@ -59,10 +59,10 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
     drawing.suptitle(f'{_title(results, scenario)}\n{_conditions(results)}', fontsize=11)
     panels = drawing.subplots(rows, _ACROSS, squeeze=False, sharey=True)
     looks = looks_of(group.names['controller'] for group in results.groups)
-    for axes, figure in zip(panels.flat, metrics, strict=False):
+    for axes, quantity in zip(panels.flat, metrics, strict=False):
         for group, look in zip(results.groups, looks, strict=True):
-            _draw(axes, results, group, figure, look_style(look))
-        axes.set_xlabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
+            _draw(axes, results, group, quantity, look_style(look))
+        axes.set_xlabel(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit)))))
         axes.set_ylim(0.0, 1.02)
     for axes in panels[:, 0]:
         axes.set_ylabel('share of valid runs')
@@ -85,11 +85,11 @@ def _conditions(results: Results) -> str:
 
 
 def _draw(
-    axes: Axes, results: Results, group: Group, figure: Quantity, style: Mapping[str, Any]
+    axes: Axes, results: Results, group: Group, quantity: Quantity, style: Mapping[str, Any]
 ) -> None:
     """Draw one curve; a controller without an engaged run has a line at zero."""
     outcomes = results.outcomes[group.rows]
-    values = results.columns[figure.key][group.rows]
+    values = results.columns[quantity.key][group.rows]
     taken = np.sort(values[(outcomes == ENGAGED) & ~np.isnan(values)])
     valid = max(int(np.sum(outcomes != INVALID)), 1)
     if not len(taken):

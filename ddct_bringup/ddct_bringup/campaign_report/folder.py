@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.manifest import Manifest
-from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.distributions import distributions_figure
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.outcome import FAILED
@@ -26,8 +26,8 @@ from ddct_bringup.report.page_parts import (
     page_template,
     value_text,
 )
-from ddct_bringup.run.output_folder import held
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.run.output_folder import locked_folders
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.output_file import write_json, write_text
@@ -38,22 +38,24 @@ SUMMARY, PAGE = 'summary.json', 'report.html'
 THESIS = 'thesis'
 _ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
 _RAMP = tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))
-"""Dark to light, made for colour-blind eyes (Nunez, Anderton and Renslow 2018)."""
+"""
+Colours from dark to light, readable for colour-blind people (Nunez, Anderton and Renslow 2018).
+"""
 _SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
-"""The quantity of the maps when the page opens: the first of these that there is."""
+"""Quantities that the maps show when the page opens, the first available one of these."""
 
 
 def write_campaign_page(folder: Path) -> Summary:
     """
-    Write the summary and the page of a campaign into its folder, and return the summary.
+    Write the summary and the page of a campaign to its folder, and return the summary.
 
-    Raise DdctError for a folder that is no finished campaign, and when a file cannot be written.
+    Raise DdctError for a folder without a finished campaign, and when a file cannot be written.
     """
     manifest = Manifest.read(folder)
     results = results_of(manifest, read_table(folder, manifest))
     summary = summary_of(results)
     page = campaign_page(results, summary, folder.as_posix(), facts_of(manifest))
-    with held(folder):
+    with locked_folders(folder):
         write_json(str(folder / SUMMARY), summary)
         write_text(str(folder / PAGE), page)
     return summary
@@ -65,7 +67,7 @@ def scenario_of(manifest: Manifest) -> str:
 
 
 def facts_of(manifest: Manifest) -> dict[str, Any]:
-    """Return in words where a campaign is from."""
+    """Return the origin of a campaign as text by label."""
     common = {key: manifest.spec[key] for key in COMMON if key in manifest.spec}
     limits = manifest.limits
     return {
@@ -83,9 +85,9 @@ def facts_of(manifest: Manifest) -> dict[str, Any]:
 def campaign_page(
     results: Results, summary: Summary, folder: str, facts: Mapping[str, str]
 ) -> str:
-    """Return the HTML over a campaign in a folder; `facts` are words about where it is from."""
+    """Return the HTML page of a campaign in a folder; `facts` describe its origin."""
     maps = campaign_maps(results)
-    replay = words.replay_command(folder, 'INDEX')
+    replay = texts.replay_command(folder, 'INDEX')
     return page_template(_ROOM, 'campaign.html.j2').render(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
@@ -99,7 +101,7 @@ def campaign_page(
         distributions=_distributions(results, facts[SCENARIO]),
         main=MAIN,
         second_rank=len(set(results.outcomes.tolist()) - {ENGAGED, FAILED, INVALID}) > 0,
-        words=words,
+        texts=texts,
         value_text=value_text,
         number_text=number_text,
         figures={figure.key: figure for figure in results.quantities},
@@ -112,13 +114,13 @@ def campaign_page(
 
 
 def _distributions(results: Results, scenario: str) -> str:
-    """Return the figure of the distributions as a part of a data URI."""
+    """Return the figure of the distributions, encoded for a data URI."""
     with chart_style():
         figure = distributions_figure(results, scenario)
         return b64encode(chart_bytes(figure, 'svg')).decode()
 
 
 def _chosen(quantities: list[dict[str, Any]]) -> int:
-    """Return the place of the quantity that the maps show when the page opens."""
+    """Return the index of the quantity that the maps show when the page opens."""
     keys = [each['key'] for each in quantities]
     return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)

@@ -1,4 +1,4 @@
-"""Maps: quantities over two varied numbers, for every group, as the page draws them."""
+"""Maps of quantities over two varied numbers for every group, as JSON for the page."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -12,25 +12,25 @@ from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
 
 FAILED_SHARE = 'failed_share'
-"""The quantity that is the share of failed engagements in a cell."""
+"""Key of the share of failed engagements in a cell."""
 MOST_MAPS = 10
-"""That the page offers: all pairs of five numbers."""
+"""Largest number of maps on the page: all pairs of five numbers."""
 MOST_POINTS = 2500
-"""Of a group that a map of samples draws; it says so where there are more."""
+"""Largest number of points of a group in a map of samples; a note gives the number of runs."""
 _FIRST = (INVALID, FAILED, *SUCCESSES[::-1])
-"""Which outcome of several runs marks their cell: the first of these that there is."""
+"""Outcomes that mark a cell of several runs, in order of precedence."""
 _DIGITS, _PLACE_DIGITS = 4, 9
-"""Of values and of coordinates."""
+"""Significant digits of values and of coordinates."""
 
 
 def campaign_maps(results: Results) -> dict[str, Any] | None:
     """
-    Return what the page draws, as JSON has it; None where no number was varied.
+    Return the maps of the page as JSON content; None where no number was varied.
 
-    A map goes over two numbers, or over one alone. On a grid it has cells, in each the worst of
-    the runs that differ in what was drawn at random; of random samples it has a point per run.
-    The points of all maps are in `points`; a map has the places of its own among them, or None
-    for all. The grid's other numbers are at their start.
+    A map has two varied numbers as axes, or one. On a grid it has cells, each with the worst of
+    the runs that differ only at random; for random samples it has a point per run. The points of
+    all maps are in `points`; a map has the indices of its own, or None for all. The other numbers
+    of the grid are at their start.
     """
     numbers = results.numbers
     if not numbers:
@@ -55,7 +55,7 @@ def _on_grid(results: Results, keys: Sequence[str]) -> bool:
 
 
 def _scales(results: Results) -> list[dict[str, Any]]:
-    """Return the ends of each quantity's scale of colours: magnitudes of the engaged runs."""
+    """Return the ends of each quantity's colour scale: magnitudes of the engaged runs."""
     engaged = results.outcomes == ENGAGED
     found = []
     for figure in results.quantities:
@@ -85,7 +85,7 @@ def _cells(results: Results, keys: Sequence[str]) -> dict[str, Any]:
 def _points(
     results: Results, pairs: Sequence[Sequence[str]]
 ) -> tuple[list[dict[str, Any]] | None, list[dict[str, Any]]]:
-    """Return the points of each group that a map of samples draws, and these maps."""
+    """Return the points of each group in maps of samples, and these maps."""
     if not pairs:
         return None, []
     chosen = {
@@ -113,7 +113,7 @@ def _points(
 
 
 def _evenly(rows: np.ndarray) -> np.ndarray:
-    """Return rows, or of too many as many as can be drawn, evenly spaced."""
+    """Return at most `MOST_POINTS` of the rows, evenly spaced."""
     if len(rows) <= MOST_POINTS:
         return rows
     return rows[np.arange(MOST_POINTS) * len(rows) // MOST_POINTS]
@@ -124,7 +124,7 @@ def _others(results: Results, keys: Sequence[str]) -> dict[str, float]:
 
 
 def _extent(drawn: int, runs: int) -> str:
-    """Return which runs a map shows."""
+    """Return the note on which runs a map shows."""
     return f'all {runs} runs' if drawn == runs else f'{drawn} of {runs} runs'
 
 
@@ -174,5 +174,5 @@ def _worst(
 
 
 def _places(values: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray) -> list[float]:
-    """Return the varied number of each cell."""
+    """Return the value of the varied number in each cell."""
     return [float(f'{values[rows[0]]:.{_PLACE_DIGITS}g}') for rows in parts]

@@ -1,12 +1,12 @@
 """
-What runs came to, and the shares of it with their intervals.
+Outcomes of runs, and their shares with confidence intervals.
 
     engaged   the run is valid, and the state of its verdict is `engaged`
     failed    the run is valid, and its state is none of `SUCCESSES`
-    invalid   the run does not count: it is neither, and is never left out
+    invalid   the run does not count as engaged or failed, but is always listed
 
-Another state of `SUCCESSES` is an outcome of its own: it is no failure, and not engaged. A
-criterion beyond its limit is no failed engagement: the verdict tells the two apart.
+Another state of `SUCCESSES` is a separate outcome: it is neither engaged nor failed. A
+criterion beyond its limit is no failed engagement: the verdict distinguishes the two.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ def outcomes_of(valid: np.ndarray, states: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Share:
-    """How many of some runs are of one kind."""
+    """Number of runs of one outcome among all runs."""
 
     count: int
     invalid: int
@@ -37,16 +37,16 @@ class Share:
 
     @property
     def share(self) -> float | None:
-        """Those of the kind among the valid runs, 0 to 1; None without a valid one."""
+        """Share of this outcome among the valid runs, 0 to 1; None without a valid one."""
         valid = self.runs - self.invalid
         return self.count / valid if valid else None
 
     def interval(self) -> tuple[float, float]:
         """
-        Return the ends of the Clopper-Pearson interval of the share, for runs that are a sample.
+        Return the ends of the Clopper-Pearson interval of the share, for a random sample of runs.
 
-        Nobody knows what an invalid run would have come to: at the lower end none is of this kind,
-        at the upper end each is.
+        The outcome of an invalid run is unknown: at the lower end none has this outcome, at the
+        upper end each has it.
         """
         outside = (1.0 - CONFIDENCE) / 2.0
         least, most, runs = self.count, self.count + self.invalid, self.runs
@@ -59,7 +59,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Outcomes:
-    """How many runs came to what."""
+    """Number of runs of each outcome."""
 
     runs: int
     engaged: int
@@ -68,7 +68,7 @@ class Outcomes:
 
     @property
     def failed_share(self) -> Share:
-        """The share of failed engagements."""
+        """Share of failed engagements."""
         return Share(self.failed, self.invalid, self.runs)
 
 

@@ -13,8 +13,8 @@ METHOD = 'sign test'
 
 
 @dataclass(frozen=True)
-class Together:
-    """In how many cases which of two controllers engaged."""
+class JointOutcomes:
+    """Number of cases in which both, one or none of two controllers engaged."""
 
     cases: int
     both: int
@@ -23,23 +23,23 @@ class Together:
     neither: int
 
 
-def together(first: np.ndarray, second: np.ndarray) -> Together:
-    """Return the counts of (n,) outcomes of two controllers, case by case."""
+def joint_outcomes(first: np.ndarray, second: np.ndarray) -> JointOutcomes:
+    """Return the counts of joint outcomes of two controllers from (n,) outcomes, case by case."""
     ours, theirs = first == ENGAGED, second == ENGAGED
     counts = (ours & theirs, ours & ~theirs, ~ours & theirs, ~ours & ~theirs)
-    return Together(len(first), *(int(np.sum(each)) for each in counts))
+    return JointOutcomes(len(first), *(int(np.sum(each)) for each in counts))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """By how much the first of two controllers is above the second in one quantity."""
+    """Difference of two controllers in one quantity, first minus second."""
 
     cases: int
-    """In which both engaged and have a value."""
+    """Number of cases in which both engaged and have a value."""
     quantiles: dict[str, float | None]
-    """P5, P50, P95 of the difference of magnitudes."""
+    """Quantiles P5, P50, P95 of the difference of magnitudes."""
     interval: tuple[float, float] | None
-    """Of the median, for cases that are a random sample; None of fewer than six."""
+    """Interval of the median for a random sample of cases; None for fewer than six."""
 
 
 def difference_of(
@@ -48,8 +48,8 @@ def difference_of(
     """
     Return the difference of magnitudes over the cases in which both engaged and have a value.
 
-    `first` and `second` are the (n,) values of both controllers, NaN where there is none.
-    Below zero the first controller is the better one: of each quantity less is better.
+    `first` and `second` are the (n,) values of both controllers, NaN where there is none. Negative
+    values are in favour of the first controller: smaller is better for each quantity.
     """
     both = (outcomes[0] == ENGAGED) & (outcomes[1] == ENGAGED)
     differences = (np.abs(first) - np.abs(second))[both]
@@ -59,10 +59,10 @@ def difference_of(
 
 def median_interval(values: np.ndarray) -> tuple[float, float] | None:
     """
-    Return the interval of the median that the sign test gives, whatever the distribution.
+    Return the interval of the median by the sign test, valid for every distribution.
 
-    Its ends are the values of rank k and n + 1 - k, with the largest k for which
-    P(Binomial(n, 1/2) < k) is at most 2.5 %. Fewer than six values have none.
+    Its ends are the values of rank k and n + 1 - k, with the largest k for which P(Binomial(n,
+    1/2) < k) is at most 2.5 %. Fewer than six values have none.
     """
     outside = (1.0 - CONFIDENCE) / 2.0
     runs = len(values)

@@ -1,4 +1,4 @@
-"""Read the results of a campaign, of this version or another, for what they have."""
+"""Read the results of a campaign of this version or another, with the columns that exist."""
 
 from pathlib import Path
 
@@ -18,16 +18,16 @@ from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.settings import RunSettings
 
 REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', 'verdict_state')
-"""Columns without which nothing can be counted, besides those of what was varied."""
-_AGAIN = 'give --resume to ddct campaign, which writes it from what is done'
+"""Required columns, besides those of the varied keys."""
+_RESUME_ADVICE = 'give --resume to ddct campaign, which writes it from what is done'
 
 
 def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     """
     Return the rows of a finished campaign, with the columns that its file has.
 
-    A version with fewer metrics, or with others, is read too. Raise DdctError without the rows,
-    or without a column that is needed.
+    Results of a version with fewer or other metrics are read too. Raise DdctError without the
+    rows, or without a required column.
     """
     path = folder / RESULTS
     try:
@@ -38,26 +38,26 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
         )
     except FileNotFoundError as error:
         raise DdctError(
-            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_AGAIN}'
+            f'{folder}: no {RESULTS} in it, so the campaign is not finished: {_RESUME_ADVICE}'
         ) from error
     except ParameterError as error:
         raise DdctError(f'{path}: {error}') from error
     except (OSError, ValueError, pa.ArrowException) as error:
         why = next(iter(str(error).splitlines()), type(error).__name__)
-        raise DdctError(f'{path}: it is damaged ({why}): {_AGAIN}') from error
+        raise DdctError(f'{path}: it is damaged ({why}): {_RESUME_ADVICE}') from error
     for name in (*REQUIRED, *manifest.grid, *manifest.random):
         if name not in table.column_names:
-            raise DdctError(f'{path}: it has no column {name}: {_AGAIN}')
+            raise DdctError(f'{path}: it has no column {name}: {_RESUME_ADVICE}')
     if table[INDEX].to_pylist() != list(range(manifest.runs)):
         raise DdctError(
             f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '
-            f'{_AGAIN}'
+            f'{_RESUME_ADVICE}'
         )
     return table
 
 
 def results_of(manifest: Manifest, table: pa.Table) -> Results:
-    """Return the rows with what the manifest says of them."""
+    """Return the results from the rows and the manifest."""
     columns = {name: table[name].to_numpy() for name in table.column_names}
     ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
@@ -74,10 +74,10 @@ def results_of(manifest: Manifest, table: pa.Table) -> Results:
 
 def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     """
-    Return the numbers that a specification varies as they are without it.
+    Return the nominal values of the numbers that a specification varies.
 
-    That is in its scenario, the first of several; of what the scenario leaves out, by default.
-    Raise DdctError for a scenario that cannot be read any more.
+    They are those of its scenario, the first of several, or the default where the scenario has
+    none. Raise DdctError for a scenario that can no longer be read.
     """
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}

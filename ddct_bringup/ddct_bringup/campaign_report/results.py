@@ -1,4 +1,4 @@
-"""The rows of a campaign: what was varied, how they are grouped, what they are judged by."""
+"""Rows of a campaign: varied keys, groups of runs, and the quantities that are evaluated."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,11 +12,11 @@ from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
 from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_plant.program.table import Quantity
 
 _NOT_JUDGED = ('steps',)
-"""Of the metrics more of these is not worse."""
+"""Metrics for which more is not worse."""
 QUANTITIES = (
     *(figure for figure in (*TABLE_5_1, *FURTHER) if figure.key not in _NOT_JUDGED),
     *(
@@ -25,48 +25,48 @@ QUANTITIES = (
         if not criterion.metric
     ),
 )
-"""The metrics and the other criteria, by their columns. Less of a magnitude is better for each."""
+"""Metrics and further criteria by column; for each a smaller magnitude is better."""
 
 
 @dataclass(frozen=True)
 class OtherVersion:
-    """How results differ from those that this version writes; all empty where they do not."""
+    """Differences of results from those of this version; all empty where there are none."""
 
     absent: tuple[str, ...] = ()
-    """Columns that they lack."""
+    """Missing columns."""
     unknown: tuple[str, ...] = ()
-    """Columns that this version does not know."""
+    """Columns that do not exist in this version."""
     no_nominal: str = ''
-    """Why the nominal values of what was varied are not known."""
+    """Reason why the nominal values of the varied keys are not known."""
 
 
 @dataclass(frozen=True)
 class Results:
-    """The columns of `results.parquet`, and what the manifest says of them."""
+    """Columns of `results.parquet`, with the varied keys of the manifest."""
 
     columns: Mapping[str, np.ndarray]
-    """(n,) each, n >= 1, by name; NaN for a number that is not defined."""
+    """Columns by name, (n,) each, n >= 1; NaN for an undefined number."""
     grid: Sequence[str]
-    """Names of what was varied on a grid."""
+    """Names of the keys varied on a grid."""
     random: Sequence[str]
-    """Names of what was drawn at random."""
+    """Names of the keys drawn at random."""
     nominal: Mapping[str, float]
-    """The numbers of the scenario before it was varied, as far as it has them."""
+    """Numbers of the scenario before they were varied, where it has them."""
     other: OtherVersion = OtherVersion()
 
     @property
     def rows(self) -> int:
-        """How many runs there are."""
+        """Number of runs."""
         return len(self.columns[CONTROLLER])
 
     @cached_property
     def outcomes(self) -> np.ndarray:
-        """(n,) what each run came to."""
+        """Outcome of each run, (n,)."""
         return outcomes_of(self.columns['valid'], self.columns['verdict_state'])
 
     @cached_property
     def quantities(self) -> list[Quantity]:
-        """What a campaign is judged by, as far as a run has a value."""
+        """Evaluated quantities for which at least one run has a value."""
         return [
             each
             for each in QUANTITIES
@@ -78,16 +78,16 @@ class Results:
 
     @cached_property
     def cases(self) -> np.ndarray:
-        """(n,) which case each run has: all controllers have the same ones."""
+        """Case of each run, (n,); all controllers have the same cases."""
         per_controller = self.rows // len(set(self.columns[CONTROLLER].tolist()))
         return self.columns[INDEX] % per_controller
 
     @cached_property
     def numbers(self) -> list[str]:
         """
-        What was varied and is a number, in more than one value; of the grid first.
+        Varied keys that are numbers with more than one value; those of the grid first.
 
-        A seed is none: one that is larger is no more of anything.
+        Seeds are excluded: their size has no meaning.
         """
         return [
             key
@@ -99,13 +99,13 @@ class Results:
 
     @property
     def lines(self) -> list[str]:
-        """The numbers along which failure has a boundary: those of a grid with nothing random."""
+        """Numbers along which failure has a boundary: those of a grid without random keys."""
         random = [key for key in self.random if len(set(self.columns[key].tolist())) > 1]
         return [] if random else [key for key in self.numbers if key in self.grid]
 
     @cached_property
     def groups(self) -> list['Group']:
-        """The runs by controller, and by all else that varies and is no number."""
+        """Runs grouped by controller, and by all other varied keys that are not numbers."""
         varied = (*self.grid, *self.random)
         named = [key for key in varied if not is_number(self.columns[key])]
         keys = [CONTROLLER, *(key for key in named if len(set(self.columns[key].tolist())) > 1)]
@@ -116,7 +116,7 @@ class Results:
 
     @cached_property
     def pairs(self) -> list[tuple['Group', 'Group']]:
-        """All pairs of controllers, with the cases that both have in one order."""
+        """All pairs of controllers, with the cases of both in one order."""
         return [
             (Group(first.names, first.rows[ours]), Group(second.names, second.rows[theirs]))
             for first, second in combinations(self.groups, 2)
@@ -130,7 +130,7 @@ class Results:
         ]
 
     def alike(self, rows: np.ndarray, keys: Sequence[str]) -> list[np.ndarray]:
-        """Return rows in parts, each of those with the same values of keys."""
+        """Return rows in parts with equal values of the keys."""
         found: dict[tuple[Any, ...], list[int]] = {}
         values = zip(*(self.columns[key][rows].tolist() for key in keys), strict=True)
         for row, of_row in zip(rows, values, strict=True):
@@ -138,17 +138,17 @@ class Results:
         return [np.array(each) for each in found.values()]
 
     def is_sample(self, group: 'Group') -> bool:
-        """Say whether the runs of a group differ by what was drawn at random alone."""
+        """Return whether the runs of a group differ only by random keys."""
         on_grid = [key for key in self.numbers if key in self.grid]
         constant = all(len(np.unique(self.columns[key][group.rows])) == 1 for key in on_grid)
         return bool(self.random) and constant
 
     def start_of(self, key: str) -> float:
         """
-        Return where the line over a number of the grid starts.
+        Return the start of the line over a number of the grid.
 
-        It is the value nearest to the nominal one, the lower of two. Where the scenario
-        has no such number, as without an optional part, zero stands for it. Where nominal values
+        It is the value nearest to the nominal one, the lower of two. Where the scenario has no
+        such number, as without an optional part, the nominal value is zero. Where nominal values
         are not known, it is the middle of the grid.
         """
         values = np.unique(self.columns[key])
@@ -170,24 +170,24 @@ class Results:
 
 @dataclass(frozen=True)
 class Group:
-    """Runs that are counted together."""
+    """Runs that are evaluated together."""
 
     names: Mapping[str, str]
-    """The controller, and what else tells the groups apart."""
+    """Controller and other names of the group."""
     rows: np.ndarray
-    """(m,) positions in the columns."""
+    """Positions in the columns, (m,)."""
 
     @property
     def varied(self) -> dict[str, str]:
-        """What tells it apart besides the controller."""
+        """Names of the group besides the controller."""
         return {key: name for key, name in self.names.items() if key != CONTROLLER}
 
     @property
     def label(self) -> str:
-        """What a table calls it."""
+        """Label of the group in tables."""
         return ', '.join(self.names.values())
 
 
 def is_number(column: np.ndarray | None) -> bool:
-    """Return whether there is a column and it holds numbers; booleans are none."""
+    """Return whether there is a column of numbers; booleans are none."""
     return column is not None and bool(np.issubdtype(column.dtype, np.number))

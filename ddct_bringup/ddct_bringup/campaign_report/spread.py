@@ -1,4 +1,4 @@
-"""How a quantity spreads over the engaged runs, and its worst case."""
+"""Distribution of a quantity over the engaged runs, and its worst case."""
 
 from dataclasses import dataclass
 
@@ -7,35 +7,37 @@ import numpy as np
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 QUANTILES = {'p5': 0.05, 'p50': 0.50, 'p95': 0.95}
-"""By name."""
+"""Probabilities of the quantiles by name."""
 ONE_IN = 20
-"""The worst runs are one in so many: 5 %. Of fewer engaged runs there is no such part."""
+"""Inverse of the share of worst runs, 5 %; with fewer engaged runs there is no CVaR."""
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Figures of one quantity over some runs; runs by their position among them."""
+    """Statistics of one quantity over some runs; runs by their position among them."""
 
     engaged: int
-    """How many runs are engaged."""
+    """Number of engaged runs."""
     with_value: int
-    """How many of those have a value."""
+    """Number of engaged runs that have a value."""
     quantiles: dict[str, float | None]
-    """P5, P50 and P95 of these, with their signs; None without a value."""
+    """
+    Quantiles P5, P50 and P95 of the values of engaged runs, with signs; None without a value.
+    """
     cvar: float | None
-    """Mean magnitude of the worst 5 % of these, None of fewer than 20."""
+    """Mean magnitude of the worst 5 % of the engaged runs with a value, None for fewer than 20."""
     worst_engaged: int | None
-    """The engaged run with the largest magnitude, the first of equals."""
+    """Position of the engaged run with the largest magnitude, the first of equals."""
     worst: int | None
-    """The same of the valid runs, failed ones too."""
+    """Position of the valid run with the largest magnitude, failed ones included."""
 
 
 def spread_of(values: np.ndarray, outcomes: np.ndarray) -> Spread:
     """
-    Return the figures of (n,) values, NaN where there is none, with the runs' outcomes.
+    Return the statistics of (n,) values, NaN where there is none, with the runs' outcomes.
 
-    Only engaged runs with a value take part in quantiles and CVaR. No run that failed does, and
-    none is ranked: how many there are is a figure of its own.
+    Only engaged runs with a value take part in quantiles and CVaR. Failed runs are neither
+    included nor ranked: their number is a separate result.
     """
     engaged = outcomes == ENGAGED
     taken = values[engaged & ~np.isnan(values)]
@@ -51,7 +53,7 @@ def spread_of(values: np.ndarray, outcomes: np.ndarray) -> Spread:
 
 
 def quantiles_of(values: np.ndarray) -> dict[str, float | None]:
-    """Return P5, P50 and P95 of (n,) values, between two of them by a line (Hyndman-Fan 7)."""
+    """Return P5, P50 and P95 of (n,) values with linear interpolation (Hyndman-Fan 7)."""
     if not len(values):
         return dict.fromkeys(QUANTILES)
     found = np.quantile(values, [*QUANTILES.values()])
@@ -62,8 +64,8 @@ def conditional_value_at_risk(values: np.ndarray) -> float:
     """
     Return the mean of the largest n / 20 of (n,) values, n >= 20.
 
-    Where that is no whole number, the next value counts with the rest of it (Rockafellar and
-    Uryasev 2002, Proposition 8).
+    Where that is no whole number, the next value has the remaining fraction as its weight
+    (Rockafellar and Uryasev 2002, Proposition 8).
     """
     descending = np.sort(values)[::-1]
     whole, rest = divmod(len(values), ONE_IN)

@@ -1,4 +1,4 @@
-"""Put the summary of a campaign together: the content of `summary.json`."""
+"""Build the summary of a campaign: the content of `summary.json`."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -23,16 +23,16 @@ from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Quantity
 
 Summary = dict[str, Any]
-"""As the page on campaigns describes it."""
+"""Content of `summary.json` or a part of it; the page on campaigns describes its keys."""
 SCHEMA_VERSION = 2
-"""Of `summary.json`."""
+"""Schema version of `summary.json`."""
 MOST_REASONS = 5
-"""That are given of why runs are invalid, the most frequent ones."""
+"""Largest number of reasons for invalid runs in a summary, the most frequent ones."""
 NO_SAMPLE = 'the runs are spread over a grid and are no random sample'
 
 
 def summary_of(results: Results) -> Summary:
-    """Return what came out of a campaign."""
+    """Return the summary of the results of a campaign."""
     return {
         'schema_version': SCHEMA_VERSION,
         'runs': results.rows,
@@ -58,7 +58,7 @@ def _group(results: Results, group: Group) -> Summary:
         'failed': _failed(results, group),
         'boundaries': [_boundary(results, group, key) for key in results.lines],
         'attribution': _attribution(results, group) if results.random else None,
-        'quantities': [_quantity(results, group, figure) for figure in results.quantities],
+        'quantities': [_quantity(results, group, quantity) for quantity in results.quantities],
     }
 
 
@@ -78,7 +78,7 @@ def _failed(results: Results, group: Group) -> Summary:
 
 
 def _states(results: Results, group: Group, invalid: int, *, sample: bool) -> Summary:
-    """Return how many valid runs are in each state, those of another version last."""
+    """Return the number of valid runs in each state, those of another version last."""
     valid = group.rows[results.outcomes[group.rows] != INVALID]
     found = Counter(results.columns['verdict_state'][valid].tolist())
     return {
@@ -96,7 +96,7 @@ def _share(share: Share, *, sample: bool) -> Summary:
 
 
 def _reasons(results: Results, group: Group) -> list[Summary]:
-    """Return why runs are invalid: each reason with how many runs, and the first of them."""
+    """Return the reasons for invalid runs: each with the number of runs, and the first of them."""
     rows = [row for row in group.rows.tolist() if results.outcomes[row] == INVALID]
     reasons = [str(results.columns['reason'][row]) for row in rows]
     return [
@@ -134,7 +134,7 @@ def _boundary(results: Results, group: Group, key: str) -> Summary:
 
 
 def _attribution(results: Results, group: Group) -> Summary:
-    """Return which keys drive failure, or why that cannot be known."""
+    """Return the keys that drive failure, or why there is no attribution."""
     rows = group.rows[results.outcomes[group.rows] != INVALID]
     failed = results.outcomes[rows] == FAILED
     values = {key: results.columns[key][rows] for key in results.numbers}
@@ -159,13 +159,13 @@ def _attribution(results: Results, group: Group) -> Summary:
     }
 
 
-def _quantity(results: Results, group: Group, figure: Quantity) -> Summary:
-    """Return how a quantity spreads over the engaged runs, and how bad it becomes."""
-    values = results.columns[figure.key][group.rows]
+def _quantity(results: Results, group: Group, quantity: Quantity) -> Summary:
+    """Return the distribution of a quantity over the engaged runs, and its worst cases."""
+    values = results.columns[quantity.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])
     return {
-        'name': figure.key,
-        'unit': figure.unit,
+        'name': quantity.key,
+        'unit': quantity.unit,
         'engaged': spread.engaged,
         'with_value': spread.with_value,
         **spread.quantiles,
@@ -176,17 +176,17 @@ def _quantity(results: Results, group: Group, figure: Quantity) -> Summary:
 
 
 def _pair(results: Results, first: Group, second: Group) -> Summary:
-    """Return by how much the first of two controllers differs from the second, case by case."""
+    """Return the differences of two controllers, first minus second, case by case."""
     outcomes = results.outcomes[first.rows], results.outcomes[second.rows]
     sample = results.is_sample(first)
     differences = []
-    for figure in results.quantities:
-        column = results.columns[figure.key]
+    for quantity in results.quantities:
+        column = results.columns[quantity.key]
         found = paired.difference_of(column[first.rows], column[second.rows], outcomes)
         differences.append(
             {
-                'name': figure.key,
-                'unit': figure.unit,
+                'name': quantity.key,
+                'unit': quantity.unit,
                 'cases': found.cases,
                 **found.quantiles,
                 'interval': list(found.interval) if found.interval and sample else None,
@@ -196,7 +196,7 @@ def _pair(results: Results, first: Group, second: Group) -> Summary:
         'first': first.names[CONTROLLER],
         'second': second.names[CONTROLLER],
         'varied': first.varied,
-        **asdict(paired.together(*outcomes)),
+        **asdict(paired.joint_outcomes(*outcomes)),
         'no_interval': '' if sample else NO_SAMPLE,
         'differences': differences,
     }
@@ -210,7 +210,7 @@ def _case(
 
 
 def _run(results: Results, rows: np.ndarray, place: int | None) -> Mapping[str, Any]:
-    """Return which run it is and what it came to."""
+    """Return index and state of a run."""
     if place is None:
         return {'index': None, 'state': None}
     row = rows[place]

@@ -1,20 +1,20 @@
-"""The tables of a campaign as the terminal prints them."""
+"""Tables of a campaign for the terminal."""
 
 from collections.abc import Iterator, Sequence
 
-from ddct_bringup.campaign_report import words
+from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.summary import Summary
-from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import METRICS, TABLE_5_1
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 
 _QUANTILES = ('p5', 'p50', 'p95')
 MAIN = (*(figure.key for figure in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
-"""The metrics whose differences and distributions come first."""
+"""Main metrics, whose differences and distributions are shown."""
 
 
 def summary_tables(summary: Summary) -> list[Table]:
-    """Return how often, where failure begins or what drives it, how badly, and differences."""
+    """Return the tables of failed runs, boundaries or causes, quantities, and differences."""
     return [
         _failed(summary),
         *_boundaries(summary),
@@ -25,21 +25,21 @@ def summary_tables(summary: Summary) -> list[Table]:
 
 
 def print_summary(summary: Summary, folder: str) -> None:
-    """Print what came out of the campaign in a folder."""
+    """Print the summary of the campaign in a folder."""
     print_tables(summary_tables(summary))
-    for note in words.notes_of(summary):
+    for note in texts.notes_of(summary):
         print(printable(note))
-    print(f'the bag of a run: {words.replay_command(folder, "I")}')
+    print(f'the bag of a run: {texts.replay_command(folder, "I")}')
 
 
 def _failed(summary: Summary) -> Table:
     rows = [
         (
-            words.label_of(group),
-            words.share_text(failed['share']),
-            words.interval_text(failed['interval']),
+            texts.label_of(group),
+            texts.share_text(failed['share']),
+            texts.interval_text(failed['interval']),
             *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
-            words.states_text(failed) or UNDEFINED,
+            texts.states_text(failed) or UNDEFINED,
         )
         for group in summary['groups']
         for failed in [group['failed']]
@@ -54,14 +54,14 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             found['key'],
-            words.label_of(group),
-            words.value_text(found['start']),
+            texts.label_of(group),
+            texts.value_text(found['start']),
             *(
                 text(found[side])
                 for side in ('below', 'above')
-                for text in (words.good_text, words.boundary_text)
+                for text in (texts.good_text, texts.boundary_text)
             ),
-            ', '.join(f'{key} {words.value_text(at)}' for key, at in found['others'].items())
+            ', '.join(f'{key} {texts.value_text(at)}' for key, at in found['others'].items())
             or UNDEFINED,
         )
         for group, found in _by_place(summary, 'boundaries')
@@ -74,13 +74,13 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
 def _attribution(summary: Summary) -> Iterator[Table]:
     rows = [
         (
-            words.label_of(group),
+            texts.label_of(group),
             each['key'],
             'yes' if each['drives'] else 'no evidence',
             f'{each["explained"]:.2f}',
             '{:.2f} to {:.2f}'.format(*each['interval']),
-            words.p_text(each['p_value']),
-            words.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
+            texts.p_text(each['p_value']),
+            texts.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
         )
         for group in summary['groups']
         if group['attribution']
@@ -102,9 +102,9 @@ def _by_place(summary: Summary, name: str) -> Iterator[tuple[Summary, Summary]]:
 
 
 def _quantities(summary: Summary) -> Table:
-    """Return the metrics; the page has the other criteria too."""
+    """Return the table of the metrics; the page has the other criteria too."""
     rows = [
-        _quantity(words.label_of(group), found)
+        _quantity(texts.label_of(group), found)
         for group, found in _by_place(summary, 'quantities')
         if found['name'] in METRICS
     ]
@@ -131,12 +131,12 @@ def _quantity(label: str, found: Summary) -> Sequence[str]:
         text_or_dash(worst['value'], figure.form),
         UNDEFINED
         if worst['index'] is None
-        else f'{worst["index"]} ({words.spoken(worst["state"])})',
+        else f'{worst["index"]} ({texts.state_text(worst["state"])})',
     )
 
 
 def _differences(summary: Summary) -> Iterator[Table]:
-    """Yield how the other controllers differ from the first in the main metrics."""
+    """Yield the differences of the other controllers from the first in the main metrics."""
     if not summary['pairs']:
         return
     first = summary['pairs'][0]['first']
@@ -144,7 +144,7 @@ def _differences(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             METRICS[found['name']].heading,
-            words.pair_label(pair),
+            texts.pair_label(pair),
             str(found['cases']),
             *(text_or_dash(found[name], METRICS[found['name']].form) for name in _QUANTILES),
             UNDEFINED
@@ -159,5 +159,5 @@ def _differences(summary: Summary) -> Iterator[Table]:
     headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
     title = 'Differences on the same cases, where both engaged (interval: sign test)'
     yield Table(title, headers, rows, numbers=[False, False, *[True] * 4])
-    both = [(words.pair_label(pair), words.together_text(pair)) for pair in pairs]
+    both = [(texts.pair_label(pair), texts.joint_outcomes_text(pair)) for pair in pairs]
     yield Table('Cases of these differences', ('controllers', 'both engaged'), both)

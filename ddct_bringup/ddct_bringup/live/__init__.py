@@ -1,1 +1,1 @@
-"""The running graph in Foxglove: a WebSocket server and the node that feeds it."""
+"""Live view of the graph in Foxglove: a WebSocket server and the node that feeds it."""

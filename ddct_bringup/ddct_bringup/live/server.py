@@ -9,23 +9,25 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.topics import all_topics
 
 _BACKLOG = 65_536
-"""Messages kept for a viewer that reads slowly, about 40 s of a run; then the oldest go."""
+"""
+Number of messages queued for a slow viewer, about 40 s of a run; then the oldest are dropped.
+"""
 
 
 class LiveServer:
     """
-    A Foxglove WebSocket server with one channel per topic of the graph.
+    Foxglove WebSocket server with one channel per topic of the graph.
 
-    It sends what it is given, as it is: CDR with the schema of the type, as in a bag. Its clock
-    is the simulated one. `on_view(topic)` is called, in a thread of the server's own, when a
-    viewer begins to show a topic.
+    It forwards CDR unchanged, with the schema of the type as in a bag. Its clock is the
+    simulated one. `on_view(topic)` is called, in a thread of the server, when a viewer begins
+    to show a topic.
     """
 
     def __init__(self, host: str, port: int, on_view: Callable[[str], None]) -> None:
-        """Begin to serve; port 0 takes a free one. Raise DdctError where that is impossible."""
+        """Start to serve; port 0 takes a free one. Raise DdctError where that is impossible."""
         foxglove = _foxglove()
         self._on_view = on_view
-        # Kept: its channels close when it goes.
+        # Stored, because its channels close when it is deleted.
         self._context = foxglove.Context()
         self._channels = {
             topic.name: foxglove.Channel(
@@ -59,11 +61,11 @@ class LiveServer:
         self.url = f'ws://{f"[{host}]" if ":" in host else host}:{self._server.port}'
 
     def send(self, topic: str, stamp_ns: int, cdr: bytes) -> None:
-        """Send one message to every viewer that shows its topic; never waits."""
+        """Send one message to every viewer that shows its topic, without waiting."""
         self._channels[topic].log(cdr, log_time=stamp_ns)
 
     def set_time(self, stamp_ns: int) -> None:
-        """Tell every viewer the simulated time; going back makes them start afresh."""
+        """Send the simulated time to every viewer; going back makes them start afresh."""
         self._server.broadcast_time(stamp_ns)
 
     def stop(self) -> None:
@@ -71,11 +73,11 @@ class LiveServer:
         self._server.stop()
 
     def on_subscribe(self, client: Any, channel: Any) -> None:
-        """Take from the server that a viewer shows a topic."""
+        """Handle a viewer's subscription to a topic."""
         self._on_view(channel.topic)
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
-        """Take that it does no more; the server wants this method beside the other."""
+        """Handle a viewer's end of a subscription; the server requires this method."""
 
 
 def _foxglove() -> Any:

@@ -1,1 +1,1 @@
-"""The graph's nodes as processes, or all in one: started, watched, and none left behind."""
+"""Processes of the graph's nodes, one each or all in one: start, supervise and stop them."""

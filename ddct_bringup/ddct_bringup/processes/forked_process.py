@@ -1,4 +1,4 @@
-"""A process that the warm parent has forked and that has become our child."""
+"""Process forked by the warm parent, a child of this process."""
 
 import os
 import select
@@ -7,21 +7,21 @@ import subprocess
 
 
 class ForkedProcess:
-    """A child of ours, to be used like a `subprocess.Popen`."""
+    """Child process with the methods of `subprocess.Popen` that the supervisor uses."""
 
     def __init__(self, pid: int, name: str) -> None:
-        """Take the child with this id; `name` stands in a complaint that it takes too long."""
+        """Wrap the child with this process id; `name` is its name in a TimeoutExpired."""
         self.pid = pid
         self.returncode: int | None = None
-        """Its exit code, -n after signal n; None until `poll` or `wait` has seen its end."""
+        """Exit code, -n after signal n; None until `poll` or `wait` has returned it."""
         self._name = name
 
     def poll(self) -> int | None:
-        """Return its exit code, None while it runs."""
+        """Return the exit code, None while the process runs."""
         return self._take(os.WNOHANG)
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return its exit code once it has ended; raise TimeoutExpired after a time in s."""
+        """Wait for the end and return the exit code; raise TimeoutExpired after `timeout` in s."""
         if timeout is not None and self.poll() is None:
             descriptor = os.pidfd_open(self.pid)
             try:
@@ -35,13 +35,13 @@ class ForkedProcess:
         return code
 
     def send_signal(self, number: signal.Signals) -> None:
-        """Send it a signal unless it has ended."""
-        # Nobody else gets its number before we have waited for it.
+        """Send a signal to the process unless it has ended."""
+        # Its process id is not reused before this process has waited for it.
         if self.poll() is None:
             os.kill(self.pid, number)
 
     def kill(self) -> None:
-        """Kill it."""
+        """Kill the process."""
         self.send_signal(signal.SIGKILL)
 
     def _take(self, options: int) -> int | None:

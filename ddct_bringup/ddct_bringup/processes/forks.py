@@ -1,9 +1,9 @@
 """
-The program of the warm parent: imports what nodes need, then forks a process at each request.
+Program of the warm parent: imports what nodes need, then forks processes on request.
 
 It makes no ROS context and no participant, and its only threads are those of `tracing_locks.py`,
-so that a fork is as good as a new process. What it forks becomes a child of the supervisor, which
-is its own parent: see `_fork_all`.
+so that a fork is as good as a new process. Its forks become children of the supervisor, which is
+its own parent: see `_fork_all`.
 """
 
 import atexit
@@ -27,19 +27,19 @@ from ddct_bringup.processes.tracing_locks import TracingLocks
 from ddct_plant.program.supervision import PULSE_FD, end_with_parent
 
 MOST_DESCRIPTORS = 250
-"""That one request may bring; the kernel takes 253."""
+"""Largest number of descriptors in one request; the kernel's limit is 253."""
 GO = b'g'
-"""What the supervisor writes once it knows of a process: then that process begins its work."""
+"""Byte that the supervisor writes once it has registered a process, which then starts to work."""
 _ARGUMENTS_START = 48 - 1 - 2
 _ARGUMENTS_END = 49 - 1 - 2
-"""Places in /proc/self/stat behind the name, by man 5 proc."""
+"""Index of arg_end behind the process name in /proc/self/stat, by man 5 proc."""
 
 
 def main() -> int:
     """Serve the supervisor over the socket whose descriptor is the first argument."""
     channel = socket.socket(fileno=int(sys.argv[1]))
-    # What is imported stays: to look for garbage in it takes a fifth of the time, and in a fork
-    # would write to every page that it shares with us.
+    # Imported objects stay: garbage collection takes a fifth of the import time, and in a
+    # fork it would write to every shared page.
     gc.disable()
     preload()
     gc.freeze()
@@ -55,7 +55,7 @@ def main() -> int:
 
 
 def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks) -> None:
-    """Fork what the request in the first descriptor asks for; send the process ids as a line."""
+    """Fork the processes of the request in the first descriptor; send their ids as one line."""
     request = json.loads(os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0))
     reader, writer = os.pipe()
     between = locks.fork()
@@ -73,10 +73,10 @@ def _fork_all(
     request: dict[str, Any], descriptors: list[int], writer: int, locks: TracingLocks
 ) -> NoReturn:
     """
-    Fork all processes of a request, write their ids into a pipe, and end.
+    Fork all processes of a request, write their ids into a pipe, and exit.
 
-    With that end they are orphans, and the kernel gives them to the next living ancestor that
-    takes orphans: the supervisor, not us.
+    The exit makes them orphans, and the kernel gives orphans to the next living ancestor that is a
+    subreaper: the supervisor, not the warm parent.
     """
     pids = []
     try:
@@ -96,11 +96,11 @@ def _fork_all(
 def _become(
     job: dict[str, Any], index: int, request: dict[str, Any], descriptors: list[int]
 ) -> NoReturn:
-    """Be the process of a job from now on, as if Python had been started for it."""
+    """Run a job in this fork, as if Python had been started for it."""
     code = 1
     try:
         os.setsid()
-        # Without it the supervisor or the warm parent is gone, or does not want us any more.
+        # Without this byte the supervisor or the warm parent has ended, or has cancelled the job.
         if os.read(descriptors[1], 1) == GO:
             if not job['outlives']:
                 end_with_parent()
@@ -114,7 +114,7 @@ def _become(
 def _take_over(
     job: dict[str, Any], environment: dict[str, str], index: int, descriptors: list[int]
 ) -> None:
-    """Take standard streams, environment and command line from the job."""
+    """Set standard streams, environment and command line of this process to those of the job."""
     stdin, output, pulse = descriptors[2 + 3 * index :][:3]
     for source, target in ((stdin, 0), (output, 1), (output, 2)):
         os.dup2(source, target)
@@ -131,7 +131,7 @@ def _take_over(
 
 
 def exit_code(work: Callable[[], int | None]) -> int:
-    """Do a program's work and return its exit code, as Python does it for a main module."""
+    """Run a program's main function and return its exit code, as Python does for a main module."""
     try:
         return work() or 0
     except SystemExit as end:
@@ -150,7 +150,7 @@ def _end(code: int) -> NoReturn:
     """
     End this process as Python would, but leave its memory to the kernel.
 
-    To take the interpreter and the middleware's libraries apart costs more than a node's start.
+    Freeing the interpreter and the middleware's libraries takes longer than a node's start.
     """
     try:
         threading._shutdown()  # type: ignore[attr-defined]
@@ -163,7 +163,7 @@ def _end(code: int) -> NoReturn:
 
 
 def _show_as(command: list[str]) -> None:
-    """Let `ps` show this command line in place of the warm parent's, as far as there is room."""
+    """Replace the warm parent's command line in `ps` by this one, as far as there is room."""
     stat = Path('/proc/self/stat').read_text(encoding='ascii', errors='replace')
     fields = stat.rpartition(')')[2].split()
     start, end = int(fields[_ARGUMENTS_START]), int(fields[_ARGUMENTS_END])
@@ -174,7 +174,7 @@ def _show_as(command: list[str]) -> None:
 
 
 def _seed_anew() -> None:
-    """Seed numpy's global generator anew; Python does it for its own after each fork."""
+    """Seed numpy's global generator again; Python does so for its own after each fork."""
     if 'numpy.random' in sys.modules:
         sys.modules['numpy.random'].seed()
 

@@ -1,4 +1,4 @@
-"""The nodes of the graph: where their programs are and which extra parameters they take."""
+"""Nodes of the graph: their modules, start order and timeout."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class NodeSpec:
-    """One node of the graph."""
+    """Node of the graph: its name and module."""
 
     name: str
     module: str
-    """Whose `main` runs it."""
+    """Module whose `main` runs the node."""
 
     @property
     def class_name(self) -> str:
-        """The node's class in that module."""
+        """Name of the node's class in that module."""
         return f'{self.name.capitalize()}Node'
 
 
@@ -28,9 +28,9 @@ GRAPH_NODES: Sequence[NodeSpec] = (
     NodeSpec('controller', 'ddct_controllers.controller_node'),
     NodeSpec('driveline', 'ddct_plant.nodes.driveline_node'),
 )
-"""In starting order; `driveline` owns time and ends the run."""
+"""Nodes in start order; `driveline` owns time and ends the run."""
 
 NODE_NAMES = tuple(node.name for node in GRAPH_NODES)
 
 ANSWER_TIMEOUT_S = 20.0
-"""Wall time that a node of a supervised graph may take to answer."""
+"""Wall time within which a node of a supervised graph must answer, s."""

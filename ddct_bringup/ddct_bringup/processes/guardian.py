@@ -1,9 +1,9 @@
 """
-A process that outlives a killed supervisor and ends the nodes which that leaves.
+Process that survives a killed supervisor and ends the nodes left behind.
 
-The kernel sends such nodes SIGTERM (`end_with_parent`), but a stopped one does not take it and a
-hung one does not heed it. The guardian wakes them, so that a recorder can finish its bag, and
-kills what is still there `PATIENCE_S` later.
+The kernel sends such nodes SIGTERM (`end_with_parent`), but a stopped node does not receive it and
+a hung one does not react. The guardian sends SIGCONT, so that a recorder can finish its bag, and
+kills nodes that still run `PATIENCE_S` later.
 """
 
 import contextlib
@@ -19,15 +19,15 @@ from ddct_bringup.processes.shared_memory import remove_segments, segments_of
 from ddct_bringup.processes.warm_parent import WarmParent
 
 PATIENCE_S = 10.0
-"""How long nodes have to end by themselves once their supervisor is gone."""
+"""Wall time for nodes to end by themselves after the end of their supervisor, s."""
 _KILLED_S = 2.0
 
 
 class Guardian:
-    """The guardian of this process's nodes, as a process of its own."""
+    """Guardian of this process's nodes, in a process of its own."""
 
     def __init__(self, parent: WarmParent, stopped: Callable[[], bool]) -> None:
-        """Start it; raise what `WarmParent.start` raises."""
+        """Start the guardian; raise the errors of `WarmParent.start`."""
         reader, writer = os.pipe2(os.O_CLOEXEC)
         try:
             (self.process,) = parent.start(
@@ -41,27 +41,27 @@ class Guardian:
         self._nodes = writer
 
     def watch(self, pid: int) -> None:
-        """Tell it of one more node, a child of ours that has not been waited for."""
-        with contextlib.suppress(BrokenPipeError):  # somebody has killed it
+        """Add the id of a node: a child process that has not been waited for."""
+        with contextlib.suppress(BrokenPipeError):  # the guardian was killed
             os.write(self._nodes, f'{pid}\n'.encode())
 
     def dismiss(self) -> None:
-        """End it, after the last node has ended."""
+        """End the guardian, after the last node has ended."""
         os.close(self._nodes)
         self.process.wait()
 
 
 def main() -> None:
-    """Guard the processes that standard input names."""
+    """Guard the processes whose ids come on standard input."""
     guard(sys.stdin)
 
 
 def guard(pids: Iterable[str]) -> None:
-    """Take process ids until there are no more: then the supervisor is gone. End the nodes."""
+    """Read process ids until the stream ends with the supervisor; then end those nodes."""
     nodes: dict[int, int] = {}
     for pid in map(int, pids):
         with contextlib.suppress(OSError):
-            # From now on the number cannot come to mean another process.
+            # The descriptor identifies the process even if its id is used again.
             nodes[os.pidfd_open(pid)] = pid
     segments = {node: segments_of(pid) for node, pid in nodes.items()}
     for node in nodes:
@@ -80,6 +80,6 @@ def _send(node: int, number: signal.Signals) -> None:
 
 
 def _ends(node: int, within_s: float) -> bool:
-    """Wait until the process of a descriptor has ended, or for a time in s; say whether it has."""
+    """Wait at most `within_s` for the end of a descriptor's process; return whether it ended."""
     ended, _, _ = select.select([node], [], [], max(within_s, 0.0))
     return bool(ended)

@@ -1,4 +1,4 @@
-"""What the warm parent is asked for: processes to be forked, with what they get."""
+"""Requests to the warm parent: processes to fork, and their descriptors."""
 
 import json
 import os
@@ -9,27 +9,27 @@ from dataclasses import dataclass
 from typing import Any
 
 REQUEST_BYTE = b'r'
-"""All that goes through the channel itself: the request is in the first file beside it."""
+"""Byte sent through the channel for a request, whose text is in the first file beside it."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """A process to be forked, and the descriptors that it gets."""
+    """Process to be forked: its module, arguments and descriptors."""
 
     module: str
-    """Whose `main` it runs."""
+    """Module whose `main` the process runs."""
     arguments: Sequence[str] = ()
     stdin: int | None = None
-    """None for nothing to read."""
+    """Descriptor of standard input; None for an empty one."""
     output: int | None = None
-    """Standard output and error; None to drop them."""
+    """Descriptor of standard output and error; None to drop both."""
     pulse: int | None = None
-    """Where a node shows that it runs."""
+    """Descriptor to which a running node writes its pulse; None for other programs."""
     outlives: bool = False
-    """Whether it goes on when we are killed."""
+    """Whether the process continues when the supervisor is killed."""
 
     def description(self) -> dict[str, Any]:
-        """Return what is no descriptor of it."""
+        """Return the fields that are not descriptors, for the text of a request."""
         return {
             'module': self.module,
             'arguments': list(self.arguments),
@@ -40,9 +40,9 @@ class Job:
 
 def send_request(channel: socket.socket, jobs: Sequence[Job], go: int) -> None:
     """
-    Send jobs, our process id and our environment as it is now; OSError where nobody reads.
+    Send jobs with this process's id and current environment; OSError without a reader.
 
-    The descriptors are those of the text, of the pipe `go` that the processes wait at, and three
+    The descriptors are those of the text, of the pipe `go` at which the processes wait, and three
     for each job.
     """
     request = {
@@ -61,7 +61,7 @@ def send_request(channel: socket.socket, jobs: Sequence[Job], go: int) -> None:
 
 @contextmanager
 def _memory(content: bytes) -> Iterator[int]:
-    """Give the descriptor of a file in memory with this content."""
+    """Yield the descriptor of a file in memory with this content."""
     with os.fdopen(os.memfd_create('request'), 'wb') as file:
         file.write(content)
         file.flush()
@@ -70,7 +70,7 @@ def _memory(content: bytes) -> Iterator[int]:
 
 @contextmanager
 def _nothing() -> Iterator[int]:
-    """Give a descriptor of the null device."""
+    """Yield a descriptor of the null device."""
     descriptor = os.open(os.devnull, os.O_RDWR)
     try:
         yield descriptor

@@ -1,4 +1,4 @@
-"""The live view of one run: program `live` as a process of its own."""
+"""Live view of one run: program `live` in a process of its own."""
 
 import signal
 import subprocess
@@ -14,34 +14,34 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 
 DEFAULT_PORT = 8765
-"""Where Foxglove looks for a server unless it is told another port."""
-VIEWER_CAME = 'a viewer shows'
-"""How `live` begins the line that says so."""
-HEARS_ALL = 'every topic of a tick has come'
-"""What `live` says when it has heard each node of the graph."""
+"""Default port of Foxglove's WebSocket connection."""
+VIEWER_SUBSCRIBED = 'a viewer shows'
+"""Start of the line that `live` prints when a viewer subscribes to a topic."""
+ALL_TOPICS_RECEIVED = 'every topic of a tick has come'
+"""Line that `live` prints when it has received every topic of a tick."""
 
-_HEAR_S = 10.0
-"""How long a run waits, with its nodes at t_0, until `live` hears them; then it goes on."""
+_RECEIVE_S = 10.0
+"""Longest wait, s, of a run with its nodes at t_0 until `live` receives them; then it goes on."""
 _STOP_S = 10.0
 
 
 class LiveView(Child):
-    """A running `live`; what it prints tells how far it is."""
+    """Running program `live`; its printed lines show its progress."""
 
     def wait_for_viewer(self) -> None:
-        """Wait, however long, until a viewer shows a topic; raise DdctError when none can."""
-        while 'ws://' not in self.words():
+        """Wait without a limit until a viewer shows a topic; raise DdctError when `live` ends."""
+        while 'ws://' not in self.output_text():
             self._wait()
-        url = self.words().split('ws://')[1].split()[0]
+        url = self.output_text().split('ws://')[1].split()[0]
         text = f'open ws://{url} in Foxglove: the run begins when a panel shows a topic'
         print(text, file=sys.stderr, flush=True)
-        while VIEWER_CAME not in self.words():
+        while VIEWER_SUBSCRIBED not in self.output_text():
             self._wait()
 
-    def wait_until_heard(self, stopped: Callable[[], bool]) -> None:
-        """Wait a while for each topic of t_0 to arrive; raise KeyboardInterrupt if `stopped()`."""
-        deadline = time.monotonic() + _HEAR_S
-        while HEARS_ALL not in self.words() and time.monotonic() < deadline:
+    def wait_until_receiving(self, stopped: Callable[[], bool]) -> None:
+        """Wait a limited time for every topic of t_0; raise KeyboardInterrupt if `stopped()`."""
+        deadline = time.monotonic() + _RECEIVE_S
+        while ALL_TOPICS_RECEIVED not in self.output_text() and time.monotonic() < deadline:
             if stopped():
                 raise KeyboardInterrupt
             self._wait()
@@ -58,7 +58,7 @@ class LiveView(Child):
 
     def _wait(self) -> None:
         if not self.running:
-            words = self.last_words() or 'it ended without a word'
+            words = self.last_line() or 'it ended without a word'
             raise DdctError(words.removeprefix('ddct live: '))
         time.sleep(POLL_S)
 

@@ -1,4 +1,4 @@
-"""A program as our child process, and a node as one: what it prints, whether it still runs."""
+"""Child process of a program, and that of a node: its output and its pulse."""
 
 import contextlib
 import os
@@ -12,132 +12,136 @@ from ddct_bringup.processes.shared_memory import remove_segments, segments_of
 from ddct_plant.program.supervision import EXIT_MARK
 
 START_S = 60.0
-"""How long a node may take to start before it counts as hung."""
+"""Wall time after which a node without a pulse since its start counts as hung, s."""
 LEAVE_S = 2.0
-"""How long a node whose work is over may take to leave the graph before it is ended."""
+"""Wall time for a node to end after it has announced its exit code, s; then it is killed."""
 MOST_ELAPSED_S = 1.0
-"""Time between two looks counts up to this: when we were stopped, nobody's silence shows."""
+"""Largest time between two checks that counts, s: a stopped supervisor misses no pulse."""
 _ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
-"""What we send."""
+"""Signals that the supervisor sends to end a node."""
 _PIPE_BYTES = 1 << 16
-"""All that a pipe holds (Linux), so that a farewell is read whole."""
+"""Capacity of a pipe in bytes (Linux), so that an announced exit code is read completely."""
 
 
 class Child:
-    """A program of ours, which does not outlive us, and what it prints; `WarmParent` starts it."""
+    """
+    Child process of a program, and its output.
+
+    `WarmParent` starts it; it does not outlive this process.
+    """
 
     process: ForkedProcess
 
     def __init__(self, module: str, *arguments: str, pulse: int | None = None) -> None:
-        """Prepare to run `main` of a module with these arguments."""
-        # In memory: a full disk must not swallow the reason of a failure.
+        """Prepare a job that runs `main` of a module with these arguments."""
+        # In memory: the reason of a failure must survive a full disk.
         self._printed = os.memfd_create(module)
         self.job = Job(module, arguments, output=self._printed, pulse=pulse)
 
     @property
     def running(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the process has not ended."""
         return self.process.poll() is None
 
     def printed(self) -> bytes:
-        """Return what it has printed so far."""
-        # Not by seek and read: the process writes at the file position that we share with it.
+        """Return the output of the process so far, standard output and error."""
+        # Not by seek and read: both processes share the file position at which the child writes.
         return os.pread(self._printed, os.fstat(self._printed).st_size, 0)
 
-    def words(self) -> str:
-        """Return the same as text."""
+    def output_text(self) -> str:
+        """Return the output of the process so far, as text."""
         return self.printed().decode(errors='replace')
 
-    def last_words(self) -> str:
-        """Return the last line of it, empty for none."""
-        lines = self.words().strip().splitlines()
+    def last_line(self) -> str:
+        """Return the last line of the output, empty for none."""
+        lines = self.output_text().strip().splitlines()
         return lines[-1].strip() if lines else ''
 
     def close(self) -> None:
-        """Forget what it has printed."""
+        """Close the output of the process."""
         os.close(self._printed)
 
 
 class NodeProcess(Child):
-    """A running node."""
+    """Child process of a node, with its pulse and shared memory."""
 
     def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
-        """Give it its parameters; `tidy` writes what it prints into `log`."""
+        """Prepare the node with its parameter file; `tidy` writes its output into `log`."""
         self.name = spec.name
         self.log = log
         self.hung = False
-        """Whether it had to be killed because it did not stop when asked."""
+        """Whether the node was killed because it did not end after the other signals."""
         self._limit_s = START_S
-        self._silent_s = 0.0
-        self._farewell: int | None = None
+        self._without_pulse_s = 0.0
+        self._announced_code: int | None = None
         self._segments: set[str] = set()
         self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         parameters = ('--ros-args', '--params-file', str(parameter_file))
         super().__init__(spec.module, *parameters, pulse=pulse)
-        self._its_pulse: int | None = pulse
+        self._pulse_writer: int | None = pulse
 
     @property
     def code(self) -> int | None:
-        """Its exit code, None before it has ended; of one that hung while leaving what it said."""
+        """Exit code, None before the end; the announced one of a node that hung while leaving."""
         code = self.process.poll()
         by_us = code is not None and -code in _ENDED_BY
-        return self._farewell if by_us and self._farewell is not None else code
+        return self._announced_code if by_us and self._announced_code is not None else code
 
-    def look(self, elapsed_s: float) -> None:
+    def check(self, elapsed_s: float) -> None:
         """
-        Note its pulse and its shared memory, `elapsed_s` after the last look.
+        Read the pulse and update the shared-memory segments, `elapsed_s` after the last check.
 
-        End it if its work is over and it has hung since then.
+        Kill a node that has announced its exit code and has not ended within `LEAVE_S`.
         """
         self._segments |= segments_of(self.process.pid)
-        self._silent_s += min(elapsed_s, MOST_ELAPSED_S)
+        self._without_pulse_s += min(elapsed_s, MOST_ELAPSED_S)
         with contextlib.suppress(BlockingIOError):
-            if said := os.read(self._pulse, _PIPE_BYTES):
-                self._silent_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
-                _, last, code = said.partition(EXIT_MARK)
-                self._farewell = int(code) if last else None
-        if self._farewell is not None and self._silent_s > LEAVE_S:
+            if pulse := os.read(self._pulse, _PIPE_BYTES):
+                self._without_pulse_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
+                _, last, code = pulse.partition(EXIT_MARK)
+                self._announced_code = int(code) if last else None
+        if self._announced_code is not None and self._without_pulse_s > LEAVE_S:
             self.process.kill()
 
-    def silence(self) -> str:
-        """Say in one line that it shows no sign of life for too long, '' while it does."""
-        if self._silent_s <= self._limit_s:
+    def hang_summary(self) -> str:
+        """Return one line that the pulse has been missing for too long; empty while it has not."""
+        if self._without_pulse_s <= self._limit_s:
             return ''
         return f'node {self.name} has shown no sign of life for {self._limit_s:g} s'
 
     def send(self, number: signal.Signals) -> None:
-        """Ask a node that has not ended to stop, waking it if need be; SIGKILL says it hung."""
+        """Send a signal, and SIGCONT, to a node that has not ended; SIGKILL marks it as hung."""
         if self.running:
-            self.look(0.0)
+            self.check(0.0)
             self.hung = number == signal.SIGKILL
             self.process.send_signal(number)
             self.process.send_signal(signal.SIGCONT)
 
     def tidy(self) -> None:
-        """Keep the log of a node that has ended, and remove what it could not remove itself."""
+        """Write the log of an ended node, and remove the shared memory that a killed one left."""
         with contextlib.suppress(OSError):
             self.log.write_bytes(self.printed())
         if self.process.returncode is not None and self.process.returncode < 0:
             remove_segments(self._segments)
 
     def close(self) -> None:
-        """Forget what it has printed, and its pulse."""
+        """Close the output and the pulse of the node."""
         super().close()
         os.close(self._pulse)
-        self.close_its_pulse()
+        self.close_pulse_writer()
 
-    def close_its_pulse(self) -> None:
-        """Close the end of the pipe that the node has by now."""
-        if self._its_pulse is not None:
-            os.close(self._its_pulse)
-            self._its_pulse = None
+    def close_pulse_writer(self) -> None:
+        """Close this process's copy of the pulse's write end, which the node has inherited."""
+        if self._pulse_writer is not None:
+            os.close(self._pulse_writer)
+            self._pulse_writer = None
 
-    def obituary(self) -> str:
-        """Say in one line how the node ended."""
+    def exit_summary(self) -> str:
+        """Return one line on how the node ended."""
         code = self.code
         if self.hung or code is None:
             return f'node {self.name} did not stop when asked and was killed'
         if code < 0:
             return f'node {self.name} was killed by {signal.Signals(-code).name}'
-        words = self.last_words().removeprefix(f'{self.name}: ')
+        words = self.last_line().removeprefix(f'{self.name}: ')
         return f'node {self.name} ended with code {code}{f": {words}" if words else ""}'

@@ -1,4 +1,4 @@
-"""Start the graph's nodes as processes, watch them, and leave none behind."""
+"""Start the graph's nodes as processes, supervise them, and stop them all."""
 
 import signal
 import time
@@ -12,14 +12,14 @@ from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_plant.base.errors import DdctError
 
 STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
-"""Signals to stop a node with, and how long to wait after each, in s; a busy machine is slow."""
+"""Signals that stop a node, and the wait after each, s, long enough for a busy machine."""
 POLL_S = 0.01
-LOOK_S = 0.5
-"""How often the nodes' pulse and shared memory are looked at."""
+CHECK_PERIOD_S = 0.5
+"""Period of the checks of the nodes' pulse and shared memory, s."""
 
 
 class NodeProcesses:
-    """The processes of one graph; as a context manager it always stops them."""
+    """Processes of one graph; as a context manager it always stops them."""
 
     def __init__(
         self,
@@ -29,9 +29,10 @@ class NodeProcesses:
         stopped: Callable[[], bool] = lambda: False,
     ) -> None:
         """
-        Leave `<logs>/<node>.log` at the end; nodes take their parameters from the file.
+        Store the settings; `<logs>/<node>.log` is written at the end.
 
-        `parent` forks them. Waiting raises KeyboardInterrupt when `stopped()`.
+        `parent` forks the nodes, which read their parameters from `parameter_file`. Waiting raises
+        KeyboardInterrupt when `stopped()`.
         """
         self._logs = logs
         self._parameter_file = parameter_file
@@ -51,7 +52,7 @@ class NodeProcesses:
         self._guardian.dismiss()
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
-        """Start one process per node; raise what `WarmParent.start` raises."""
+        """Start one process per node; raise the errors of `WarmParent.start`."""
         nodes = [
             NodeProcess(spec, self._parameter_file, self._logs / f'{spec.name}.log')
             for spec in specs
@@ -66,41 +67,41 @@ class NodeProcesses:
             raise
         for node, process in zip(nodes, forked, strict=True):
             node.process = process
-            node.close_its_pulse()
+            node.close_pulse_writer()
         self._nodes += nodes
 
     def wait_for(self, name: str) -> None:
         """
-        Wait until node `name` has done its work.
+        Wait until node `name` has ended with code 0.
 
         Raise DdctError when any node fails or hangs.
         """
-        looked_at = time.monotonic()
+        checked_at = time.monotonic()
         while True:
             ended = [node for node in self._nodes if not node.running]
             if any(node.name != name or node.code != 0 for node in ended):
-                # To blame is one that was killed or failed, before one that noticed.
-                culprit = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
-                raise DdctError(f'{culprit.obituary()}; its log is {culprit.log}')
+                # The cause is a node that was killed or failed; others may have ended after it.
+                cause = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
+                raise DdctError(f'{cause.exit_summary()}; its log is {cause.log}')
             if ended:
                 return
             if self._stopped():
                 raise KeyboardInterrupt
             now = time.monotonic()
-            if now - looked_at >= LOOK_S:
-                self._look(now - looked_at)
-                looked_at = now
+            if now - checked_at >= CHECK_PERIOD_S:
+                self._check(now - checked_at)
+                checked_at = now
             time.sleep(POLL_S)
 
-    def _look(self, elapsed_s: float) -> None:
+    def _check(self, elapsed_s: float) -> None:
         for node in self._nodes:
-            node.look(elapsed_s)
+            node.check(elapsed_s)
         for node in self._nodes:
-            if silence := node.silence():
-                raise DdctError(f'{silence}; its log is {node.log}')
+            if summary := node.hang_summary():
+                raise DdctError(f'{summary}; its log is {node.log}')
 
     def stop(self, chosen: Callable[[str], bool]) -> None:
-        """Stop the chosen nodes, first by SIGINT, then harder; one that was stopped goes on."""
+        """Stop the chosen nodes, by SIGINT, then by stronger signals; paused ones are resumed."""
         nodes = [node for node in self._nodes if chosen(node.name)]
         for number, patience_s in STOP_LADDER:
             for node in nodes:
@@ -109,10 +110,10 @@ class NodeProcesses:
             while time.monotonic() < deadline and any(node.running for node in nodes):
                 time.sleep(POLL_S)
                 for node in nodes:
-                    node.look(POLL_S)
+                    node.check(POLL_S)
 
     def require_clean_end(self) -> None:
         """Raise DdctError unless every node has ended with code 0."""
         for node in self._nodes:
             if node.code != 0:
-                raise DdctError(f'{node.obituary()}; its log is {node.log}')
+                raise DdctError(f'{node.exit_summary()}; its log is {node.log}')

@@ -1,4 +1,4 @@
-"""What the warm parent imports before it forks nodes: all that takes time and keeps no state."""
+"""Imports of the warm parent before it forks nodes: slow modules that keep no state."""
 
 import contextlib
 import importlib
@@ -15,7 +15,7 @@ _LATER = (
     'scipy.optimize',
     'type_description_interfaces.msg',
 )
-"""What nodes of ours import when they need it."""
+"""Modules that this project's nodes import only when they need them."""
 _SERVICES = (
     'DescribeParameters',
     'GetParameters',
@@ -24,17 +24,17 @@ _SERVICES = (
     'SetParameters',
     'SetParametersAtomically',
 )
-"""What each node offers for its parameters."""
+"""Parameter services that each node offers."""
 
 
 def preload() -> None:
     """
     Import the nodes, the middleware's libraries and the messages.
 
-    No third party's controller is imported: it lives in the process of its node alone.
+    No third party's controller is imported: only the process of its node loads it.
     """
     for module in (*(node.module for node in GRAPH_NODES), *_LATER):
-        # A node says itself what it misses.
+        # The node itself reports a missing package.
         with contextlib.suppress(ImportError):
             importlib.import_module(module)
     with contextlib.suppress(ImportError):

@@ -1,4 +1,4 @@
-"""The middleware's shared memory of killed nodes (Fast DDS on Linux); needs no ROS."""
+"""Shared memory that killed nodes leave (Fast DDS on Linux); needs no ROS."""
 
 import contextlib
 import fcntl
@@ -10,15 +10,15 @@ from pathlib import Path
 SHARED_MEMORY = Path('/dev/shm')
 _LOCK = '_el'
 _LOCK_FILE = re.compile(f'fastrtps_.+{_LOCK}')
-"""A live owner of segment `fastrtps_X` holds a lock on the file `fastrtps_X_el`."""
+"""Pattern of the file `fastrtps_X_el`, which a live owner of segment `fastrtps_X` locks."""
 
 
 def segments_of(pid: int) -> set[str]:
-    """Return the segments that a running process has locked, empty for one that has ended."""
+    """Return the segments that a running process has locked, none for one that has ended."""
     segments = set()
-    with contextlib.suppress(OSError):  # it ends while we look
+    with contextlib.suppress(OSError):  # the process may end during the scan
         for link in Path(f'/proc/{pid}/fd').iterdir():
-            with contextlib.suppress(OSError):  # it closes this one while we look
+            with contextlib.suppress(OSError):  # the process may close this file during the scan
                 file = link.readlink()
                 if file.parent == SHARED_MEMORY and _LOCK_FILE.fullmatch(file.name):
                     segments.add(file.name.removesuffix(_LOCK))
@@ -26,7 +26,7 @@ def segments_of(pid: int) -> set[str]:
 
 
 def remove_segments(segments: Iterable[str]) -> None:
-    """Remove those of the segments that no live process owns, perhaps under a name used again."""
+    """Remove the given segments that no live process owns; a new process may use a name again."""
     for segment in segments:
         lock = SHARED_MEMORY / f'{segment}{_LOCK}'
         try:
@@ -37,7 +37,7 @@ def remove_segments(segments: Iterable[str]) -> None:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             for file in (segment, f'sem.{segment}_mutex', lock.name):
                 (SHARED_MEMORY / file).unlink(missing_ok=True)
-        except OSError:  # locked by a live owner, or not ours
+        except OSError:  # locked by a live owner, or of another user
             continue
         finally:
             os.close(descriptor)

@@ -1,4 +1,4 @@
-"""All nodes of the graph in this process, on one executor."""
+"""Run all nodes of the graph in this process, on one executor."""
 
 import importlib
 from collections.abc import Callable, Mapping
@@ -18,9 +18,9 @@ def run_single_process(
     parameters: Mapping[str, Mapping[str, Any]], stopped: Callable[[], bool]
 ) -> None:
     """
-    Run the same node classes as the separate processes until the driveline has done its work.
+    Run the node classes of the separate processes until the driveline has ended the run.
 
-    `parameters` is by node name, those of '*' for all. Raise DdctError when a node fails and
+    `parameters` are by node name, those of '*' for all. Raise DdctError when a node fails and
     KeyboardInterrupt when `stopped()` becomes true.
     """
     context = Context()
@@ -58,16 +58,16 @@ def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool])
         # The last one, driveline, owns time: without it the others have nothing more to do.
         nodes[-1].finish()
         failed = [node for node in nodes if failure(node)]
-        # The recorder comes first in the list and must hear what the others flush.
+        # The recorder comes first in the list and must receive what the others publish at the end.
         for node in reversed(nodes):
             if failed:
                 node.close()
             else:
                 finish_node(executor, node)
     finally:
-        # Otherwise it keeps the nodes, and what they latched, in the domain of the next run.
+        # Otherwise the nodes and their latched messages stay in the domain of the next run.
         executor.shutdown()
-    # What failed first made others fail when they were closed.
+    # The first failure made other nodes fail when they were closed.
     for node in [*failed, *nodes]:
         error = failure(node)
         if error is not None:

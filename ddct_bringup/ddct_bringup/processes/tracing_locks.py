@@ -1,9 +1,9 @@
 """
-Forks with LTTng's tracing library loaded, as ROS 2 loads it.
+Fork with LTTng's tracing library loaded, as ROS 2 loads it.
 
-The library starts two threads when it is loaded, which wait for somebody who traces. Its fork
-handlers bring them to a place where they keep no lock, and start them anew in the fork, which can
-then be traced too. The library calls them itself only where `liblttng-ust-fork.so` is preloaded.
+The library starts two threads when it is loaded, which wait for a tracer. Its fork handlers bring
+them to a place where they keep no lock, and start them again in the fork, which can then be traced
+too. The library calls the handlers itself only where `liblttng-ust-fork.so` is preloaded.
 """
 
 import ctypes
@@ -13,16 +13,16 @@ from pathlib import Path
 
 _HANDLERS = ('before_fork', 'after_fork_parent', 'after_fork_child')
 _PREFIXES = ('lttng_ust_', 'ust_')
-"""Of their names: of LTTng 2.13, and of versions before."""
+"""Prefixes of the handlers' names: of LTTng 2.13, and of earlier versions."""
 _SIGNALS_BYTES = 128
-"""Of a sigset_t (Linux)."""
+"""Size of a sigset_t in bytes (Linux)."""
 
 
 class TracingLocks:
-    """The fork handlers of the tracing library, where a process has loaded it."""
+    """Fork handlers of the tracing library, where a process has loaded it."""
 
     def __init__(self) -> None:
-        """Look for them."""
+        """Find the handlers in the loaded libraries."""
         maps = Path('/proc/self/maps').read_text(encoding='utf-8', errors='replace')
         words = {word for line in maps.splitlines() for word in line.split()[5:6]}
         self._handlers: list[ctypes._NamedFuncPointer] = []
@@ -34,7 +34,7 @@ class TracingLocks:
                     return
 
     def fork(self) -> int:
-        """Fork this process; return 0 in the new one, and here its id."""
+        """Fork this process; return 0 in the child, and the child's process id in the parent."""
         signals = ctypes.create_string_buffer(_SIGNALS_BYTES)
         if self._handlers:
             before, in_parent, in_child = self._handlers

@@ -1,8 +1,8 @@
 """
-The warm parent: a process that has imported what nodes need, and forks them when we ask.
+Warm parent: a process that has imported what nodes need, and forks them on request.
 
-Importing takes a node far longer than everything else before its first tick. What the warm parent
-forks is a child of ours, like a process that we start ourselves.
+Importing takes a node far longer than everything else before its first tick. Forks of the warm
+parent become children of this process, like processes that it starts itself.
 """
 
 import contextlib
@@ -24,25 +24,25 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.program.supervision import adopting_orphans, end_with_parent
 
 START_S = 60.0
-"""How long it may take to import everything and to fork, on a busy machine."""
+"""Timeout for importing everything and forking, s, long enough for a busy machine."""
 _SLICE_S = 0.05
-"""How often we look whether we are to stop meanwhile."""
+"""Period of the checks of `stopped` during a wait for the warm parent, s."""
 _END_S = 5.0
-"""How long it may take to end once it has closed its side of the channel."""
+"""Timeout for the end of the warm parent after its channel is closed, s."""
 _ROOM = ' ' * 400
-"""An argument that does nothing: a fork writes its own command line over it."""
+"""Unused argument: room for the command lines that forks write over the warm parent's."""
 
 
 class WarmParent:
-    """A running warm parent; it ends with us, or with `close`."""
+    """Running warm parent; it ends with this process, or with `close`."""
 
     def __init__(self) -> None:
-        """Start it; it imports while we do something else."""
+        """Start the warm parent; it imports while this process continues."""
         self._launch()
 
     def _launch(self) -> None:
         self._channel, theirs = socket.socketpair()
-        # In memory: a full disk must not swallow the reason of a failure.
+        # In memory: the reason of a failure must survive a full disk.
         self._printed = os.fdopen(os.memfd_create('warm_parent'), 'rb')
         self.process = subprocess.Popen(
             # -P: a file of the current folder must not hide a module of the same name.
@@ -68,7 +68,7 @@ class WarmParent:
         self.close()
 
     def close(self) -> None:
-        """End it; what it has forked goes on."""
+        """End the warm parent; its forks continue."""
         self.process.kill()
         self.process.wait()
         self._channel.close()
@@ -81,10 +81,11 @@ class WarmParent:
         stopped: Callable[[], bool] = lambda: False,
     ) -> list[ForkedProcess]:
         """
-        Fork a process for each job, with our environment as it is now.
+        Fork a process for each job, with the current environment of this process.
 
-        `watch(pid)` is called for each before any of them begins. Raise DdctError when the warm
-        parent fails, and KeyboardInterrupt when `stopped()` becomes true before it has answered.
+        `watch(pid)` is called for each process before any of them starts to work. Raise DdctError
+        when the warm parent fails, and KeyboardInterrupt when `stopped()` becomes true before its
+        answer.
         """
         if self.process.poll() is not None:  # killed since the last start
             self.close()
@@ -100,7 +101,7 @@ class WarmParent:
                 os.close(reader)
             forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids, jobs, strict=False)]
             if len(forked) < len(jobs):
-                raise DdctError(f'no process for {jobs[len(forked)].module}: {self._last_words()}')
+                raise DdctError(f'no process for {jobs[len(forked)].module}: {self._last_line()}')
             for process in forked:
                 watch(process.pid)
             go.write(GO * len(forked))
@@ -122,26 +123,26 @@ class WarmParent:
                         continue
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     self.process.wait(_END_S)
-                raise DdctError(f'nodes cannot be started: {self._last_words()}')
+                raise DdctError(f'nodes cannot be started: {self._last_line()}')
         return line
 
-    def _last_words(self) -> str:
+    def _last_line(self) -> str:
         code = self.process.poll()
         if code == -signal.SIGKILL:
             return 'the warm parent, which forks them, was killed'
-        # Not by seek and read: it writes at the file position that we share with it.
+        # Not by seek and read: both processes share the file position at which it writes.
         printed = self._printed.fileno()
         text = os.pread(printed, os.fstat(printed).st_size, 0).decode(errors='replace')
         return (text.strip().splitlines() or [f'the warm parent ended with code {code}'])[-1]
 
 
 _ahead: list[WarmParent] = []
-"""At most one, which nobody has taken yet."""
+"""Warm parents started ahead, at most one; `warm_parent` takes it out."""
 
 
 @contextmanager
 def started_ahead() -> Iterator[None]:
-    """Let a warm parent import while its program is still imported; at the end it is gone."""
+    """Start a warm parent while its program is still imported; close it at the end."""
     with WarmParent() as parent:
         _ahead.append(parent)
         try:
@@ -151,5 +152,5 @@ def started_ahead() -> Iterator[None]:
 
 
 def warm_parent() -> WarmParent:
-    """Return the one that was started ahead, or start one."""
+    """Return the warm parent that was started ahead, or start one."""
     return _ahead.pop() if _ahead else WarmParent()

@@ -1,1 +1,1 @@
-"""The programs of this package, one a module."""
+"""Programs of this package, one per module."""

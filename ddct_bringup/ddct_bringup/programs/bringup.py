@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.processes.warm_parent import WarmParent
-from ddct_bringup.run.execution import parent_for, run_with_progress, tell_of_logs
+from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
@@ -50,7 +50,7 @@ def _bringup(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
-    # It imports while the run is planned.
+    # The warm parent imports while the run is planned.
     with parent_for(options.layout) as parent:
         limits = load_limits(options.limits)
         settings = settings_of(options, [controller_label(options.controller)])
@@ -78,22 +78,22 @@ def _run(
     recording = read_bag(folder.path)
     entry = score_recording(recording, plan.name, limits)
     if not entry['valid']:
-        _tell(recording, folder.path)
+        _print_notes(recording, folder.path)
         raise DdctError(f'{folder.path}: not valid: {entry["reason"]}')
     folder.commit()
     print(folder.final, flush=True)
     if changes := entry['scenario_changes']:
         print(f'{PROGRAM}: {scenario_title(entry["scenario"], changes)}', file=sys.stderr)
-    _tell(recording, folder.final)
+    _print_notes(recording, folder.final)
     for note in slow_notes(entry):
         print(f'{PROGRAM}: {note}', file=sys.stderr)
     verdict = entry['verdict']
     print(f'{PROGRAM}: state {verdict["state"]}, limits {verdict["limits"]}', file=sys.stderr)
 
 
-def _tell(recording: Recording, folder: Path) -> None:
-    """Say on standard error what a real-time run was like, and which logs hold warnings."""
-    tell_of_logs(PROGRAM, [folder])
+def _print_notes(recording: Recording, folder: Path) -> None:
+    """Print the logs with warnings and the summary of a real-time run on standard error."""
+    print_logs_with_warnings(PROGRAM, [folder])
     if not recording.facts.lockstep:
         print(f'{PROGRAM}: {realtime_summary(recording)}', file=sys.stderr)
 

@@ -16,7 +16,7 @@ from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct campaign'
 _COMMANDS = ('replay', 'show')
-"""What else can be done with a campaign's folder."""
+"""Subcommands for the folder of a campaign."""
 
 _EPILOG = """\
 examples:

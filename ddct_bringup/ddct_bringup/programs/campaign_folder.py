@@ -1,4 +1,4 @@
-"""What else `campaign` does with the folder of a campaign: `replay` a row, `show` all."""
+"""Subcommands of `campaign` for a campaign's folder: `replay` one row, `show` all results."""
 
 import argparse
 import sys
@@ -25,7 +25,7 @@ from ddct_bringup.campaign_report.distributions import require_picture, write_di
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.tables import print_summary
-from ddct_bringup.campaign_report.words import RULES
+from ddct_bringup.campaign_report.texts import RULES
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
@@ -119,7 +119,7 @@ def _replay(options: argparse.Namespace) -> int:
 
 
 def _made_again(plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits: Limits) -> Entry:
-    """Carry out the run of a row and return its scores; a valid one gets its final name."""
+    """Execute the run of a row and return its scores; commit the folder of a valid run."""
     try:
         run_with_progress(plan, folder.path)
     except DdctError as error:
@@ -156,7 +156,7 @@ def _show(options: argparse.Namespace) -> int:
 
 
 def _csv(folder: Path) -> str:
-    """Return every row of a campaign, the control characters of its words made visible."""
+    """Return every row of a campaign as CSV, with control characters in its texts escaped."""
     table = read_table(folder, Manifest.read(folder))
     for place, field in enumerate(table.schema):
         if pa.types.is_string(field.type):

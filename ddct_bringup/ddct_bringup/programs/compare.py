@@ -9,9 +9,8 @@ from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.runs import ReportRun, in_order, read_run
-from ddct_bringup.run.beside_bag import note_failure
 from ddct_bringup.run.description import custom_data
-from ddct_bringup.run.execution import parent_for, run_with_progress, tell_of_logs
+from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import (
     ALL,
     add_controllers_option,
@@ -21,8 +20,9 @@ from ddct_bringup.run.options import (
     print_computed_from,
     settings_of,
 )
-from ddct_bringup.run.output_folder import StagedFolder, held, mark_folder
+from ddct_bringup.run.output_folder import StagedFolder, locked_folders, mark_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import Entry, scores_document
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
@@ -64,7 +64,7 @@ def _compare(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bags')
     require_chart_library()
     require_place('--json', options.json)
-    # It imports while the runs are planned, and serves them all.
+    # The warm parent imports while the runs are planned, and serves them all.
     with parent_for(options.layout) as parent:
         limits = load_limits(options.limits)
         names = controllers_of(options.controllers)
@@ -73,7 +73,7 @@ def _compare(argv: list[str]) -> int:
             names = working_controllers(settings, partial(complain, PROGRAM))
         plans = [RunPlan(settings, name, options.layout) for name in names]
         with (
-            held(options.out),
+            locked_folders(options.out),
             StagedFolder(options.out, overwrite=options.overwrite) as folder,
         ):
             failed = _run_all(plans, folder, settings, options, limits, parent)
@@ -91,9 +91,9 @@ def _run_all(
     parent: WarmParent | None,
 ) -> list[str]:
     """
-    Carry out all runs, put what they left under its final name, and return which are not valid.
+    Execute all runs, commit their folder, and return the names of those that are not valid.
 
-    Raise DdctError when none is valid: DIR stays what it was.
+    Raise DdctError when none is valid: DIR stays as it was.
     """
     evidence = frequency_evidence([plan.controller for plan in plans], settings)
     runs = [
@@ -105,12 +105,12 @@ def _run_all(
     _report(entries, plans, settings, options, limits)
     failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
     if len(failed) == len(plans):
-        tell_of_logs(PROGRAM, [folder.path / plan.name for plan in plans])
+        print_logs_with_warnings(PROGRAM, [folder.path / plan.name for plan in plans])
         raise DdctError(f'no run is valid ({", ".join(failed)}): {folder.left}')
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
     folder.commit()
-    tell_of_logs(PROGRAM, [folder.final / plan.name for plan in plans])
+    print_logs_with_warnings(PROGRAM, [folder.final / plan.name for plan in plans])
     print(
         f'{PROGRAM}: bags, {SCORES_FILE}, {FREQUENCY_FILE} and {REPORT_FILE} are in '
         f'{folder.final}',
@@ -123,10 +123,10 @@ def _run(
     plan: RunPlan, out: Path, label: str, limits: Limits, parent: WarmParent | None
 ) -> ReportRun:
     """
-    Carry out, read and score one run; of one that fails, note in its folder why.
+    Execute, read and score one run; write the reason of a failed one into its folder.
 
-    Raise DdctError when that folder cannot be written, as on a full disk: no other run would fare
-    better.
+    Raise DdctError when that folder cannot be written, as on a full disk: other runs would fail
+    too.
     """
     bag = out / plan.name
     mark_folder(bag)

@@ -18,13 +18,13 @@ from ddct_plant.program.command_line import ProgramParser, run_program
 
 PROGRAM = 'ddct'
 GROUP = 'ddct.programs'
-"""The entry points of the programs: the packages' setup.py holds them."""
+"""Group of the programs' entry points, which the packages' setup.py declare."""
 _FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')
-"""What a node imports first of ROS."""
+"""Modules that a node imports first of ROS."""
 _RUNS_GRAPHS = ('bringup', 'compare')
-"""Their warm parent starts before they do, as its imports take about as long as theirs."""
+"""Programs whose warm parent starts ahead of them, as both take about as long to import."""
 _WITHOUT_NODES = {'-h', '--help', '--headless', '--list', '--single-process', '--version'}
-"""Options with which they start no node."""
+"""Options with which those programs start no node."""
 
 _EXAMPLES = """\
 examples:
@@ -40,7 +40,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def programs() -> dict[str, EntryPoint]:
-    """Return the programs by name; where a name is there twice, the first on Python's path."""
+    """Return the programs by name; of two with the same name the first on Python's path."""
     return {point.name: point for point in reversed(tuple(entry_points(group=GROUP)))}
 
 
@@ -57,7 +57,7 @@ def _ddct(argv: list[str]) -> int:
         parser.add_argument('program', metavar='PROGRAM', help='one of those above')
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
-    # Matrices are small: further threads only wait for one another, and nodes inherit this.
+    # Matrices are small: more threads only wait for one another. Nodes inherit this setting.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     ahead = argv[0] in _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv)
     with started_ahead() if ahead else nullcontext():
@@ -66,7 +66,7 @@ def _ddct(argv: list[str]) -> int:
 
 
 def _load(point: EntryPoint) -> Callable[[], int]:
-    """Import a program; raise DdctError where something that it needs is not installed."""
+    """Import a program; raise DdctError where a package that it needs is not installed."""
     try:
         return point.load()
     except ImportError as error:
@@ -90,7 +90,7 @@ def _package(point: EntryPoint) -> str:
 
 
 def _task(point: EntryPoint) -> str:
-    """Return what the first line of the program's module says, read without importing it."""
+    """Return the task in the first line of the program's module, without importing it."""
     try:
         spec = find_spec(point.module)
         source = Path(spec.origin).read_text(encoding='utf-8') if spec and spec.origin else ''

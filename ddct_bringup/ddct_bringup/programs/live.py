@@ -37,10 +37,10 @@ def _live(argv: list[str]) -> int:
     options = _parser().parse_args(remove_ros_args(argv))
     if not 0 <= options.port <= _LAST_PORT:
         raise ParameterError(f'--port is {options.port}: give a number from 0 to {_LAST_PORT}')
-    # On a busy machine the nodes of the loop come first; what waits here is buffered.
+    # On a busy machine the nodes of the loop have priority; messages for this one are buffered.
     os.nice(_NICENESS)
-    say = partial(print, f'{PROGRAM}:', flush=True)
-    factory = partial(LiveNode, options.host, options.port, say)
+    print_line = partial(print, f'{PROGRAM}:', flush=True)
+    factory = partial(LiveNode, options.host, options.port, print_line)
     return run_node(PROGRAM, factory, [PROGRAM, *argv])
 
 

@@ -17,7 +17,7 @@ from ddct_bringup.report.runs import (
     read_run,
     require_one_scenario,
 )
-from ddct_bringup.run.output_folder import held, is_ours
+from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
@@ -29,7 +29,7 @@ from ddct_plant.program.progress import with_progress
 PROGRAM = 'ddct report'
 REPORT_FILE = 'report.html'
 _HEAD_BYTES = 1000
-"""The marker of a page stands within these."""
+"""Number of leading bytes of a page that contain its marker."""
 
 _EPILOG = """\
 examples:
@@ -55,7 +55,7 @@ def _report(argv: list[str]) -> int:
     _require_writable(options.out)
     limits = load_limits(options.limits)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
-    with held(*filter(is_ours, places)):
+    with locked_folders(*filter(is_ours, places)):
         bags = bags_in(options.runs)
         columns = load_columns(options.columns) if options.columns else None
         runs = in_order(
@@ -75,7 +75,7 @@ def require_chart_library() -> None:
 
 
 def _require_writable(out: str) -> None:
-    """Raise DdctError where the page cannot go, or would replace what is no page of ours."""
+    """Raise DdctError where the page cannot be written, or would replace a foreign file."""
     if out == STDOUT:
         return
     require_place('--out', out)
@@ -91,11 +91,11 @@ def _require_writable(out: str) -> None:
 
 def write_report(runs: Sequence[ReportRun], out: str, limits: Limits) -> None:
     """
-    Write the page over the runs, in their order, which these limits judged.
+    Write the page of runs, in their order, judged by these limits.
 
-    `require_chart_library` must hold. A bag that could not be read is on the page with its reason.
-    Raise DdctError when none can be read, when they are of several scenarios, and when the page
-    cannot be written.
+    Call `require_chart_library` first. A bag that could not be read is on the page with its
+    reason. Raise DdctError when none can be read, when they are of several scenarios, and when the
+    page cannot be written.
     """
     # Some seconds to import, and absent where require_chart_library raises.
     from ddct_bringup.report.page import report_page

@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.repair import repair_bag
-from ddct_bringup.run.output_folder import held, is_ours
+from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.scoring import (
@@ -21,7 +21,7 @@ from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
-from ddct_bringup.verdict.metric_figures import VDV_WEIGHTING
+from ddct_bringup.verdict.metric_definitions import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_json, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns
@@ -60,7 +60,7 @@ def _score(argv: list[str]) -> int:
     require_one_for_stdout(options.json, options.csv)
     limits = load_limits(options.limits)
     bags = bags_in(options.bags)
-    with held(*_run_folders(options, [bag for bag, _ in bags])):
+    with locked_folders(*_run_folders(options, [bag for bag, _ in bags])):
         runs = _scored(bags, options, limits)
         if options.json:
             write_json(options.json, scores_document(runs, limits))
@@ -72,7 +72,7 @@ def _score(argv: list[str]) -> int:
 
 
 def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
-    """Return the folders of runs that these options write into."""
+    """Return the folders of runs into which these options write."""
     files = (options.json, options.csv)
     folders = [Path(file).parent for file in files if file not in (None, STDOUT)]
     folders += [each for each in _signal_folders(options).values() if each is not None]
@@ -112,7 +112,7 @@ def _read(bag: Path, options: argparse.Namespace, columns: ColumnMap | None) -> 
 
 
 def _signal_folders(options: argparse.Namespace) -> dict[str, Path | None]:
-    """Return by the ending of their files the folders that signals go into."""
+    """Return the folders for files of signals, by file extension."""
     return {'csv': options.signals_csv, 'mat': options.signals_mat}
 
 

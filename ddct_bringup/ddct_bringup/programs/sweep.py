@@ -27,7 +27,7 @@ from ddct_bringup.sweep.sweep import (
     sweep_table,
 )
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
-from ddct_bringup.verdict.metric_figures import METRICS, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.base.options import require_known
@@ -99,7 +99,7 @@ def _sweep(argv: list[str]) -> int:
 
 
 def _planned(options: argparse.Namespace) -> Sweep:
-    """Return the sweep that the options describe; say on standard error what moves with it."""
+    """Return the sweep that the options describe; print its adjusted values on standard error."""
     names = controllers_of(options.controllers)
     base = base_of(options, [controller_label(name) for name in names])
     axes = [axis_of(text) for text in options.over]

@@ -1,1 +1,1 @@
-"""The recorder: the node that takes the topics off the wire into a bag."""
+"""Recorder: the node that writes the topics of the graph into a bag."""

@@ -1,4 +1,4 @@
-"""Node `recorder`: writes every tick off the wire into a bag and acknowledges it."""
+"""Node `recorder`: writes every tick into a bag and acknowledges it."""
 
 import time
 from dataclasses import replace
@@ -13,10 +13,10 @@ from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
-from ddct_bringup.record.heard_nodes import HeardNodes
+from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
@@ -39,24 +39,24 @@ from ddct_plant.graph.topics import (
 )
 from ddct_plant.ticks.stamp_limit import StampLimit
 
-ASKS_AGAIN = JOINT_STATES
-"""A message of this topic that comes again after the acknowledgement says that it was lost."""
+REPEATED_UNTIL_ACK = JOINT_STATES
+"""Topic that is repeated until the acknowledgement arrives; a repetition means one was lost."""
 PATIENCE_S = 5.0
-"""How long to wait for the other nodes before saying for whom."""
+"""Wall time without a node's `run_info` before a warning names it, s."""
 
 
 class RecorderNode(GraphNode):
     """
-    Write a rosbag2 bag and answer each whole tick with `recorder/ack`.
+    Write a rosbag2 bag and acknowledge each complete tick on `recorder/ack`.
 
-    The bag is opened once every node has said its settings on `run_info` and t_0 is whole. In
-    lock-step it holds only what is deterministic; wall-clock figures go to `timing.json`.
+    The bag is opened once every node has published its `run_info` and t_0 is complete. In
+    lock-step the bag is deterministic; wall-clock times go to `timing.json`.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p out:=runs/mine',)
 
     def __init__(self, **kwargs: Any) -> None:
-        """Subscribe to everything that is recorded."""
+        """Declare the parameters and subscribe to every recorded topic."""
         super().__init__('recorder', **kwargs)
         self._folder = Path(
             declare(self, 'out', Option('recording', 'folder of the bag, created if absent'))
@@ -75,7 +75,7 @@ class RecorderNode(GraphNode):
             'nodes',
             Option(NODE_NAMES, 'nodes whose run_info the bag must hold', kind=str, many=True),
         )
-        self._nodes = HeardNodes(self.settings, self._two_input, nodes)
+        self._nodes = RunInfoCollector(self.settings, self._two_input, nodes)
         self._run = RunKind(
             self.settings.lockstep, self._two_input, self.settings.clutch, self.settings.sensed
         )
@@ -86,7 +86,7 @@ class RecorderNode(GraphNode):
             self._same_message,
             wait_for_all=self.settings.lockstep,
         )
-        self._held: list[tuple[int, Tick]] = []
+        self._unwritten: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._bag: BagWriter | None = None
         if not self.settings.lockstep:
@@ -100,13 +100,14 @@ class RecorderNode(GraphNode):
         self._second_node: DdctError | None = None
         self._subscribe_all()
         self.publish_run_info()
-        self._patience = self.every(PATIENCE_S, self._say_who_is_silent)
+        self._patience = self.every(PATIENCE_S, self._warn_of_missing_nodes)
 
     def close(self) -> None:
         """
         Finish the bag and write `timing.json`.
 
-        End with a DdctError when nothing was recorded, or two nodes where one belongs.
+        End the node with a DdctError when nothing was recorded, or a second node published
+        a topic.
         """
         try:
             self._write_ticks(self._buffer.drain())
@@ -157,19 +158,19 @@ class RecorderNode(GraphNode):
             return
         if ready:
             self._write_ticks(ready)
-        elif topic is ASKS_AGAIN and stamp == self._acknowledged:
+        elif topic is REPEATED_UNTIL_ACK and stamp == self._acknowledged:
             self._acknowledge(stamp)
 
     def _on_run_info(self, cdr: bytes) -> None:
         node, pairs = RUN_INFO.read(_message(RUN_INFO, cdr))
         try:
-            self._nodes.hear(node, pairs)
+            self._nodes.receive(node, pairs)
         except DdctError as error:
             self._on_second_node(error)
         self._write_ticks([])
 
     def _on_second_node(self, error: DdctError) -> None:
-        """Raise the error; once a real-time run is under way keep it until the clutch is open."""
+        """Raise the error; once a real-time run has begun, keep it until the clutch is open."""
         if self.settings.lockstep or self._bag is None:
             raise error
         if self._second_node is None:
@@ -184,7 +185,7 @@ class RecorderNode(GraphNode):
 
     def _on_diagnostics(self, cdr: bytes) -> None:
         message = _message(DIAGNOSTICS, cdr)
-        if message.status and self._realtime.hear(*DIAGNOSTICS.read(message)):
+        if message.status and self._realtime.receive(*DIAGNOSTICS.read(message)):
             self._record_unordered(DIAGNOSTICS, cdr)
 
     def _record_unordered(self, topic: Topic, cdr: bytes) -> None:
@@ -196,18 +197,18 @@ class RecorderNode(GraphNode):
             self._bag.write(topic.name, stamp_of_cdr(cdr), cdr)
 
     def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
-        self._held += ticks
-        if not self._held or (self._bag is None and not self._open_bag()):
+        self._unwritten += ticks
+        if not self._unwritten or (self._bag is None and not self._open_bag()):
             return
-        for step, tick in self._held:
+        for step, tick in self._unwritten:
             self._write_tick(stamp_of_step(step), tick)
             self._timing.steps = step
         self._timing.wall_time_s = time.monotonic() - self._first_tick_at
-        self._held = []
+        self._unwritten = []
 
     def _write_tick(self, stamp: int, tick: Tick) -> None:
         assert self._bag is not None
-        # The tick is safe here now: the graph goes on while it is being written.
+        # The tick is in memory now: the graph continues while it is being written.
         tick[RECORDER_ACK.name] = self._acknowledge(stamp)
         for topic in self._tick_topics:
             if topic in tick:
@@ -221,12 +222,12 @@ class RecorderNode(GraphNode):
         return ack
 
     def _open_bag(self) -> bool:
-        if self._nodes.silent():
+        if self._nodes.missing():
             return False
         facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
         self._bag = new_bag(self._folder, self._bag_name, self._topics, facts)
-        for node, pairs in self._nodes.said().items():
-            # Made anew: a node that is not ours may stamp it with the time of its wall clock.
+        for node, pairs in self._nodes.received().items():
+            # A new message: a third party's node may stamp its own with wall-clock time.
             message = RUN_INFO.message(START_NS, pairs.items(), name=node)
             self._bag.write(RUN_INFO.name, START_NS, serialize_message(message))
         for topic, stamp, cdr in self._unordered:
@@ -240,9 +241,9 @@ class RecorderNode(GraphNode):
         return normaliser.normalise(first) == normaliser.normalise(second)
 
     def _waiting_for(self) -> str:
-        if silent := self._nodes.silent():
+        if missing := self._nodes.missing():
             return (
-                f'no run_info came from {", ".join(silent)}: start them, or leave them out of '
+                f'no run_info came from {", ".join(missing)}: start them, or leave them out of '
                 '--ros-args -p nodes:=[...]'
             )
         return (
@@ -250,9 +251,9 @@ class RecorderNode(GraphNode):
             '--ros-args -p require_recorder:=true'
         )
 
-    def _say_who_is_silent(self) -> None:
+    def _warn_of_missing_nodes(self) -> None:
         self._patience.cancel()
-        if self._nodes.silent():
+        if self._nodes.missing():
             self.get_logger().warning(self._waiting_for())
 
 

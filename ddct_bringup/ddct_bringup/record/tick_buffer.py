@@ -1,4 +1,4 @@
-"""Hold the messages of each tick until the tick is whole; knows nothing of ROS."""
+"""Buffer the messages of each tick until the tick is complete; independent of ROS."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -7,13 +7,13 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, step_of_stamp
 
 GIVE_UP_AFTER_STEPS = 10
-"""In real time a tick is written with what it has once one this much later has begun."""
+"""Number of steps after which, in real time, an incomplete tick is written as it is."""
 
 LAG_LIMIT_STEPS = 100
-"""In lock-step a tick that is still not whole this much later has lost a message for good."""
+"""Number of steps after which, in lock-step, an incomplete tick has lost a message for good."""
 
 Tick = dict[str, bytes]
-"""Serialised messages of one stamp by topic."""
+"""Serialised messages of one stamp, by topic."""
 
 
 class TwoMessagesError(DdctError):
@@ -23,26 +23,26 @@ class TwoMessagesError(DdctError):
 @dataclass
 class TickBuffer:
     """
-    Gather serialised messages by stamp and give whole ticks back in order.
+    Collect serialised messages by stamp and return complete ticks in order.
 
-    Repeated messages are dropped; two different ones for one topic and stamp mean that two nodes
-    publish it, which is an error.
+    Repeated messages are dropped; two different ones for one topic and stamp mean that two
+    nodes publish it, which is an error.
     """
 
     topics: Sequence[str]
-    """What a whole tick has."""
+    """Topics of a complete tick."""
     same: Callable[[str, bytes, bytes], bool]
-    """Whether two serialised messages of a topic are equal."""
+    """Function that returns whether two serialised messages of a topic are equal."""
     wait_for_all: bool = True
-    """Lock-step: never give a tick back that is not whole."""
+    """Whether only complete ticks are returned, as in lock-step."""
     dropped: int = 0
-    """Messages that came too late, real time only."""
+    """Number of messages that arrived too late; real time only."""
     _next_step: int = 0
     _pending: dict[int, Tick] = field(default_factory=dict)
     _last: Tick = field(default_factory=dict)
 
     def offer(self, topic: str, stamp_ns: int, cdr: bytes) -> list[tuple[int, Tick]]:
-        """Take one message and return the (step, tick) pairs that can now be written, in order."""
+        """Add one message; return the (step, tick) pairs that can now be written, in order."""
         try:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
@@ -65,7 +65,7 @@ class TickBuffer:
         return self._ready(step - GIVE_UP_AFTER_STEPS)
 
     def drain(self) -> list[tuple[int, Tick]]:
-        """Return what is left when recording ends; only real time keeps ticks with holes."""
+        """Return the remaining ticks when recording ends; only real time keeps incomplete ones."""
         if self.wait_for_all or not self._pending:
             return []
         return self._ready(max(self._pending))
@@ -85,7 +85,7 @@ class TickBuffer:
         return ready
 
     def _skip_to(self, step: int, give_up_step: int) -> bool:
-        """Give up the steps before `step`, of which nothing came; say whether all of them."""
+        """Drop steps without a message, at most up to `step`; return whether all are dropped."""
         if not self.wait_for_all:
             self._next_step = max(self._next_step, min(step, give_up_step + 1))
         return self._next_step == step

@@ -1,1 +1,1 @@
-"""The page that `report` writes: what is on it, and how it looks."""
+"""The page that `report` writes: its content and its layout."""

@@ -1,4 +1,4 @@
-"""The time charts of the page: one per signal, all runs in each, one time axis for all."""
+"""Time charts of the page: one per signal with all runs, on one time axis."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,19 +21,19 @@ from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
-from ddct_bringup.report.quantities import Quantity, quantities_of
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300
 _LANE_PX, _LANES_FRAME_PX = 28, 70
 _MARK_SPACING = 0.12
-"""Between the marks of a line, as a share of the run."""
+"""Distance between the marks of a line, as a share of the run."""
 FAINT = 0.6
-"""Opacity of a limit beside the line that it bounds."""
+"""Opacity of a limit next to the line that it bounds."""
 NEUTRAL = '#808080'
-"""Readable on a light and on a dark page."""
+"""Colour that is readable on a light and on a dark page."""
 
 
 @dataclass(frozen=True)
@@ -47,20 +47,20 @@ class ChartRun:
     trajectory: Trajectory
     facts: RunFacts
     shown: bool
-    """Whether its lines are on when the page opens."""
+    """Whether the lines are visible when the page opens."""
     thesis_engagement_time_s: float | None = None
-    """t_a of Table 5.1, where the run may be set beside it."""
+    """Engagement time t_a of Table 5.1 in s, where the run is comparable."""
 
 
 def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the Bokeh document as JSON, and per chart the id of it in there."""
+    """Return the Bokeh document as JSON, and the id of each chart in it."""
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
     drawn = _drawn(runs)
     sources = [_source(run.trajectory, of) for run, of in zip(runs, drawn, strict=True)]
     document = Document()
     roots = {}
-    for quantity in charted_quantities(runs):
+    for quantity in charted_signals(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs[0].facts)
         for run, source, of in zip(runs, sources, drawn, strict=True):
             if quantity in of:
@@ -80,24 +80,24 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, 
     return dict(document.to_json(deferred=False)), roots
 
 
-def charted_quantities(runs: Sequence[ChartRun]) -> list[Quantity]:
-    """Return the quantities that at least one run has, in the order of the page."""
+def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
+    """Return the signals that at least one run has, in the order of the page."""
     return list(dict.fromkeys(each for of in _drawn(runs) for each in of))
 
 
 def has_reference(runs: Sequence[ChartRun]) -> bool:
-    """Say whether any run has a slip reference, which only some logs have."""
+    """Return whether any run has a slip reference; only some logs have one."""
     return any(np.isfinite(run.trajectory.slip_reference[:, 0]).any() for run in runs)
 
 
-def _drawn(runs: Sequence[ChartRun]) -> list[tuple[Quantity, ...]]:
-    """Return for each run what is drawn of it: beside a log also what a log has."""
+def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
+    """Return the drawn signals of each run; next to a log also those of a log."""
     with_log = any(run.facts.mode == MEASURED for run in runs)
-    return [quantities_of(run.trajectory, with_log=with_log) for run in runs]
+    return [chart_signals_of(run.trajectory, with_log=with_log) for run in runs]
 
 
-def _source(trajectory: Trajectory, quantities: Sequence[Quantity]) -> ColumnDataSource:
-    """Return what the charts show; single precision draws the same and halves the page."""
+def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> ColumnDataSource:
+    """Return the data of the charts; single precision draws the same and halves the page."""
     columns = {'t': trajectory.time_s}
     for quantity in quantities:
         columns[quantity.key] = quantity.values(trajectory)
@@ -151,7 +151,7 @@ def _mark_window(chart: figure, facts: RunFacts) -> None:
     )
 
 
-def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
+def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource) -> None:
     line = chart.line(
         't',
         quantity.key,
@@ -176,8 +176,10 @@ def _line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSo
         _switch(limit, [run], alpha=FAINT)
 
 
-def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnDataSource) -> None:
-    """Draw the marks of a line that has some, each run's at its own times."""
+def _mark_line(
+    chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource
+) -> None:
+    """Draw the marks of a line that has some, at separate times for each run."""
     steps = len(run.trajectory.time_s)
     spacing = max(1, round(_MARK_SPACING * steps))
     first = round(0.37 * run.index % 1.0 * spacing)
@@ -198,7 +200,7 @@ def _mark_line(chart: figure, quantity: Quantity, run: ChartRun, source: ColumnD
 def _draw_references(
     chart: figure, runs: Sequence[ChartRun], sources: Sequence[ColumnDataSource]
 ) -> None:
-    """Draw each distinct slip reference once; it shows while one of its runs does."""
+    """Draw each distinct slip reference once; it is visible while one of its runs is."""
     groups: dict[bytes, list[int]] = {}
     for position, source in enumerate(sources):
         if not has_reference([runs[position]]):
@@ -218,7 +220,7 @@ def _draw_references(
 
 
 def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Mark where Table 5.1 has w_d reach zero."""
+    """Mark the times at which w_d reaches zero by Table 5.1."""
     for run in runs:
         if run.thesis_engagement_time_s is not None:
             mark = chart.scatter(
@@ -234,7 +236,7 @@ def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
 
 
 def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Shade the phases of each run in a lane of its own, with its locks and releases on it."""
+    """Shade the phases of each run in a separate lane, with its locks and releases."""
     chart.height = _LANES_FRAME_PX + _LANE_PX * len(runs)
     chart.y_range = Range1d(start=len(runs) - 0.5, end=-0.5)
     chart.yaxis.ticker = list(range(len(runs)))

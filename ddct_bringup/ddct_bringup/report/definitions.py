@@ -1,24 +1,24 @@
-"""What the words, symbols, signs and dashes of the page mean, so that it needs no other page."""
+"""Definitions of the terms, symbols, signs and dashes of the page."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.report.quantities import Quantity as ChartedQuantity
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, METRICS, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.program.table import Quantity
 
 
 @dataclass(frozen=True)
 class Definition:
-    """One entry; a reader finds it by the text of the table or chart."""
+    """One definition; a reader finds it by the text of the table or chart."""
 
     term: str
     meaning: str
     unit: str = ''
-    """As it is printed, empty for a word or a pure number."""
+    """Unit as printed, empty for a term or a pure number."""
 
 
 _READING = (
@@ -103,12 +103,12 @@ _ORIGIN = (
 
 
 def definitions(
-    quantities: Iterable[ChartedQuantity], *, thesis: bool
+    quantities: Iterable[ChartSignal], *, thesis: bool
 ) -> dict[str, tuple[Definition, ...]]:
     """
-    Return the entries of a page that draws these quantities, by subject.
+    Return the definitions for a page that draws these signals, by subject.
 
-    `thesis` tells whether runs stand beside Table 5.1.
+    `thesis` is whether runs are compared with Table 5.1.
     """
     reading = _READING + (_THESIS if thesis else ())
     signals = tuple(
@@ -130,7 +130,7 @@ _METRIC_SYMBOLS = {metric.meaning: metric.symbol for metric in METRICS.values()}
 
 
 def _criteria() -> tuple[Definition, ...]:
-    """Return the criteria; one that is a metric too refers to it."""
+    """Return the definitions of the criteria; one that is a metric too refers to it."""
     return tuple(
         Definition(
             each.symbol, f'the metric {_METRIC_SYMBOLS[each.meaning]}.', unit_text(each.unit)
@@ -141,7 +141,7 @@ def _criteria() -> tuple[Definition, ...]:
     )
 
 
-def _defined(figure: Quantity) -> Definition:
-    meaning = figure.meaning.removeprefix(f'{figure.symbol}, ')
-    missing = f' No value: {figure.undefined}.' if figure.undefined else ''
-    return Definition(figure.symbol, f'{meaning}.{missing}', unit_text(figure.unit))
+def _defined(quantity: Quantity) -> Definition:
+    meaning = quantity.meaning.removeprefix(f'{quantity.symbol}, ')
+    missing = f' No value: {quantity.undefined}.' if quantity.undefined else ''
+    return Definition(quantity.symbol, f'{meaning}.{missing}', unit_text(quantity.unit))

@@ -1,7 +1,7 @@
 """
 Frequency-domain evidence of the runs, and its table.
 
-It is what `compare` left beside the bags, or computed now.
+It is read from the file that `compare` writes next to the bags, or computed.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,7 +18,7 @@ from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.models.actuator import ActuatorParameters
 
 FREQUENCY_FILE = 'frequency.json'
-"""What `compare` leaves beside the scores."""
+"""Name of the file that `compare` writes next to the scores."""
 COMPUTED = 'computed for this page'
 OF_A_LOG = 'measured in a car, and a log does not tell the loop that was closed there'
 NOT_LINEAR = 'not linear, so without a frequency response'
@@ -31,13 +31,13 @@ class LoopEvidence:
     controller: str
     wear_gain: float
     entry: Evidence | None
-    """Of `frequency_evidence`; None where there is none."""
+    """Entry of `frequency_evidence`; None where there is none."""
     remark: str = ''
-    """Why there is none, or `COMPUTED`."""
+    """Reason why there is no entry, or `COMPUTED`."""
 
     @property
     def point(self) -> Evidence | None:
-        """The figures of the loop at this wear gain."""
+        """Values of the loop at this wear gain."""
         points = (self.entry or {}).get('wear') or ()
         return next((point for point in points if point['wear_gain'] == self.wear_gain), None)
 
@@ -46,7 +46,7 @@ def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
     """
     Return the evidence of every controller and wear gain of the readable runs, each once.
 
-    A log has none, as it does not tell its loop.
+    A log has none, as its closed loop is not known.
     """
     found: dict[tuple[str, float], LoopEvidence | None] = {}
     missing: dict[float, dict[str, ReportRun]] = {}
@@ -71,7 +71,7 @@ def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
 
 
 def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence | None:
-    """Return what the file beside the bag's folder holds of exactly this loop, if it does."""
+    """Return the evidence of exactly this loop from the file next to the bag's folder, if any."""
     assert run.recording is not None
     content = _content(run.recording.path.parent.parent / FREQUENCY_FILE)
     conditions, entries = content.get('conditions'), content.get('controllers')
@@ -85,7 +85,7 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
 
 
 def _has_actuator_of(run: ReportRun, conditions: Evidence) -> bool:
-    """Say whether a file was computed with the run's actuator; older ones have the printed one."""
+    """Return whether a file has the run's actuator; older ones have the printed one."""
     if run.settings is None:
         return True
     older = actuator_conditions(ActuatorParameters())
@@ -94,7 +94,7 @@ def _has_actuator_of(run: ReportRun, conditions: Evidence) -> bool:
 
 
 def _is_whole(entry: Any, wear_gain: float) -> bool:
-    """Say whether an entry that stood in a file holds everything that the page shows of it."""
+    """Return whether an entry of a file has all values that the page shows."""
     try:
         if entry['linear'] is not True:
             return entry['linear'] is False and not entry['wear']
@@ -113,7 +113,7 @@ def _is_whole(entry: Any, wear_gain: float) -> bool:
 
 
 def _content(file: Path) -> dict[str, Any]:
-    """Return the JSON object of a file, empty where it is absent or something else."""
+    """Return the JSON object in a file, empty where it is absent or not an object."""
     try:
         content = parse_json(read_text_file(file))
     except (OSError, DdctError):
@@ -130,7 +130,7 @@ def _computed(runs: Mapping[str, ReportRun], wear_gain: float) -> list[LoopEvide
     try:
         entries = frequency_evidence(list(runs), settings)['controllers']
     except DdctError as error:
-        if len(runs) > 1:  # one at a time, so that only the one at fault goes without
+        if len(runs) > 1:  # one at a time, so that only the faulty one has none
             return [each for name in runs for each in _computed({name: runs[name]}, wear_gain)]
         return [LoopEvidence(name, wear_gain, None, str(error)) for name in runs]
     return [
@@ -146,11 +146,11 @@ class LoopRow:
     loop: LoopEvidence
     stable: bool
     cells: tuple[tuple[float | None, str], ...]
-    """(value, text) for each of `LOOP_FIGURES`."""
+    """Cells (value, text) for each of `LOOP_FIGURES`."""
     stable_wear: str
-    """Between which wear gains the loop is stable."""
+    """Range of wear gains in which the loop is stable."""
     corner_peak: str
-    """Highest M_s over all corners."""
+    """Largest M_s over all corners."""
     corners_unstable: str
 
 
@@ -164,7 +164,7 @@ def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
 
 
 def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
-    """Return the controllers that have none, by the reason."""
+    """Return the controllers without evidence, by reason."""
     reasons: dict[str, list[str]] = {}
     for each in evidence:
         if each.point is None:

@@ -1,4 +1,4 @@
-"""Put the page together: one HTML file that needs nothing else."""
+"""Build the page: one HTML file without external resources."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -15,7 +15,7 @@ from ddct_bringup.report.charts import (
     NEUTRAL,
     ChartRun,
     chart_document,
-    charted_quantities,
+    charted_signals,
     has_reference,
 )
 from ddct_bringup.report.definitions import definitions
@@ -35,7 +35,7 @@ from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
@@ -50,14 +50,17 @@ from ddct_plant.scenario.differences import scenario_title
 _ROOM = 'ddct_bringup.report'
 _SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
 SHOWN_AT_FIRST = 12
-"""Of more runs than this only those of Table 5.1, or the first ones, are on at first."""
+"""
+Largest number of runs of which all are visible at first; of more only those of Table 5.1, or the
+first ones.
+"""
 
 
 def report_page(
     runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence], limits: Limits
 ) -> str:
     """
-    Return the HTML of a report over runs of one scenario, at least one of them readable.
+    Return the HTML of a report on runs of one scenario, at least one of them readable.
 
     `limits` are those that judged them.
     """
@@ -65,7 +68,7 @@ def report_page(
     thesis_rows = [run['thesis'] for run in shown]
     charted = [_chart_run(run) for run in shown if run['charted']]
     document, roots = chart_document(charted)
-    quantities = charted_quantities(charted)
+    quantities = charted_signals(charted)
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
@@ -115,7 +118,7 @@ def report_page(
 
 
 def _simulated_first(runs: Sequence[ReportRun]) -> list[Recording]:
-    """Return the recordings, those of logs last: they know less of the scenario."""
+    """Return the recordings, those of logs last: they have fewer facts of the scenario."""
     read = [run.recording for run in runs if run.recording is not None]
     return sorted(read, key=lambda each: each.measured)
 
@@ -123,7 +126,7 @@ def _simulated_first(runs: Sequence[ReportRun]) -> list[Recording]:
 def _other_times(
     shown: Sequence[Mapping[str, Any]], facts: RunFacts
 ) -> list[tuple[str, RunFacts]]:
-    """Return the labels and facts of runs whose control start or score window is another."""
+    """Return the labels and facts of runs with another control start or score window."""
     of_runs = [(run['label'], run['recording'].facts) for run in shown if run['charted']]
     times = (facts.control_start_s, facts.score_window_s)
     return [
@@ -134,21 +137,21 @@ def _other_times(
 
 
 def _scenario_title(runs: Sequence[ReportRun]) -> str:
-    """Return the scenario of all runs and what is changed in it, as the readable ones tell."""
+    """Return the common scenario of the readable runs with its changes."""
     entries = [run.entry for run in runs if run.recording is not None]
     changes = (entry['scenario_changes'] for entry in entries if entry['scenario_changes'])
     return scenario_title(entries[0]['scenario'], next(changes, ()))
 
 
 def _sensors(runs: Sequence[ReportRun]) -> str | None:
-    """Return what the scenario gives of its sensors; None where control was told the truth."""
+    """Return the sensor keys of the scenario as text; None where control uses the true signals."""
     told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
     sensors = next(told, None)
     return None if sensors is None else sensors.text
 
 
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
-    """Return what the template needs of each run."""
+    """Return the data of each run for the template."""
     entries = [run.entry for run in runs]
     looks = looks_of(entry['controller'] or entry['bag'] for entry in entries)
     of_each = zip(
@@ -198,6 +201,6 @@ def _shown_at_first(runs: Sequence[ReportRun]) -> list[bool]:
 
 @cache
 def _library() -> Markup:
-    """Return BokehJS as the installed package brings it along."""
-    # Without any line shown it would warn that a chart has no range.
+    """Return BokehJS from the installed package."""
+    # At a lower log level it warns about charts without a visible line.
     return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))

@@ -1,4 +1,4 @@
-"""What a page is put together with: templates, styles and scripts, and typeset text."""
+"""Parts of a page: templates, styles and scripts, and typeset text."""
 
 import json
 import re
@@ -12,14 +12,14 @@ from markupsafe import Markup, escape
 from ddct_plant.program.table import PURE
 
 MARKER = '<meta name="generator" content="ddct_bringup report">'
-"""Tells a page that this program wrote, and may replace, from other files."""
+"""Tag that identifies a page written by this program, which it may replace."""
 _SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
 _RAISED = str.maketrans('0123456789.', '⁰¹²³⁴⁵⁶⁷⁸⁹·')
 
 
 @cache
 def page_template(room: str, name: str) -> Template:
-    """Return a template that lies beside the modules of a room, as `ddct_bringup.report`."""
+    """Return a template in the folder of a room such as `ddct_bringup.report`."""
     environment = Environment(
         loader=FunctionLoader(lambda part: str(page_part(room, part))),
         autoescape=True,
@@ -32,23 +32,23 @@ def page_template(room: str, name: str) -> Template:
 
 
 def page_part(room: str, name: str) -> Markup:
-    """Return a style or script of a room, as it stands."""
+    """Return a style or script of a room, unchanged."""
     return Markup((files(room) / name).read_text(encoding='utf-8'))
 
 
 def json_data(content: Any) -> Markup:
-    """Return JSON that may stand in a script element."""
+    """Return JSON that is safe in a script element."""
     text = json.dumps(content, separators=(',', ':'), allow_nan=False)
     return Markup(text.replace('<', '\\u003c'))
 
 
 def symbols(text: str) -> Markup:
-    """Return text with w_sr and its like as letters with an index, and a deviation as σ."""
+    """Return text with symbols such as w_sr typeset with an index, and a deviation as σ."""
     return Markup(_SYMBOL.sub(r'\1<sub>\2</sub>', str(escape(text.replace('std ', 'σ ')))))
 
 
 def unit_text(unit: str) -> str:
-    """Return a unit as it is printed, empty for a pure number."""
+    """Return a unit as printed, empty for a pure number."""
     if unit == PURE:
         return ''
     raised = re.sub(r'\^([\d.]+)', lambda match: match[1].translate(_RAISED), unit)
@@ -56,11 +56,11 @@ def unit_text(unit: str) -> str:
 
 
 def number_text(value: float | None, form: str) -> str:
-    """Return a number in a format, or a dash for what does not exist or has no limit."""
+    """Return a number in a format, or a dash for a missing value or limit."""
     return '–' if value is None else format(value, form)
 
 
 def value_text(value: float | None) -> str:
-    """Return four digits, and of values up to a million every digit before the point."""
+    """Return a number with four digits, or with every digit before the point up to a million."""
     large = value is not None and 1e4 <= abs(value) < 1e6
     return number_text(value, '.0f' if large else '.4g')

@@ -1,8 +1,8 @@
 """
-The Pareto view: two criteria against each other, and the runs that no other run beats in both.
+Pareto view: two criteria as axes, and the runs that are not dominated in both.
 
-Less of a criterion's magnitude is better, as its limit is a highest magnitude. Only engaged runs
-compete: one that stalls at once has a small friction energy, and is no better for that.
+A smaller magnitude of a criterion is better, as its limit is a largest magnitude. Only engaged
+runs are compared: a run that stalls at once has a small friction energy, but is not better.
 """
 
 import math
@@ -16,7 +16,7 @@ from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.state import ENGAGED
 
 DEFAULT_PAIR = ('friction_energy', 'peak_jerk')
-"""Across and up: what the facing pays, and what the passenger feels. Every whole run has both."""
+"""Criteria shown first: wear of the facing across, comfort up. Every complete run has both."""
 _MARGIN = 0.06
 _TICKS = 5
 
@@ -26,34 +26,34 @@ class ParetoCriterion:
     """One criterion as an axis; runs by their position in the report."""
 
     title: str
-    """With the unit."""
+    """Name of the criterion with its unit."""
     values: Mapping[int, str]
-    """As printed; of the runs that have a value."""
+    """Printed values by run, for runs that have a value."""
     places: Mapping[int, float]
-    """Along the axis, 0 to 1."""
+    """Positions along the axis by run, 0 to 1."""
     ticks: Sequence[tuple[str, float]]
-    """Text and place."""
+    """Text and position of each tick."""
 
 
 @dataclass(frozen=True)
 class ParetoView:
-    """Everything that the view can show."""
+    """Data of the view: criteria and fronts."""
 
     criteria: Mapping[str, ParetoCriterion]
-    """By name; those of which two runs or more have a value."""
+    """Criteria by name, for which two runs or more have a value."""
     fronts: Mapping[str, Sequence[int]]
-    """The runs that no other beats, by `pair_key`; a criterion goes with itself too."""
+    """Non-dominated runs by `pair_key`; a criterion is paired with itself too."""
     default: tuple[str, str]
     """Names of the criteria shown first, across and up."""
 
 
 def pair_key(first: str, second: str) -> str:
-    """Return what a front is found by, whichever criterion comes first."""
+    """Return the key of a front, independent of the order of the criteria."""
     return ' '.join(sorted((first, second)))
 
 
 def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
-    """Return the view over the runs, None where no two criteria have values of two runs."""
+    """Return the view of the runs, None where no two criteria have values of two runs."""
     magnitudes = _magnitudes(runs)
     if len(magnitudes) < 2:
         return None
@@ -82,9 +82,9 @@ def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
 
 def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
     """
-    Return the runs than which no other is better in one coordinate and as good in the other.
+    Return the runs for which no other is better in one coordinate and as good in the other.
 
-    Less is better. Runs of equal points stay together.
+    Smaller is better. Runs with equal points are all kept or all dropped.
     """
     return [
         run
@@ -96,7 +96,7 @@ def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
 
 
 def _magnitudes(runs: Sequence[ReportRun]) -> dict[str, dict[int, float]]:
-    """Return by criterion the magnitudes of the valid runs, where two or more have one."""
+    """Return the magnitudes of the valid runs by criterion, where two or more runs have one."""
     found: dict[str, dict[int, float]] = {criterion.key: {} for criterion in CRITERIA}
     for index, run in enumerate(runs):
         if not run.entry['valid']:
@@ -124,7 +124,7 @@ def _axis(criterion: Criterion, values: Mapping[int, float]) -> ParetoCriterion:
 
 
 def _round_numbers(first: float, last: float) -> list[float]:
-    """Return the multiples of 1, 2 or 5 times a power of ten between two numbers, some five."""
+    """Return about five multiples of 1, 2 or 5 times a power of ten between two numbers."""
     raw = (last - first) / _TICKS
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= raw)

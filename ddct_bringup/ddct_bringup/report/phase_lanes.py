@@ -1,4 +1,4 @@
-"""Phases of a clutch that sticks: spans of time to shade, and the instants of lock and release."""
+"""Phases of a stick-slip clutch in charts: shaded time spans, and instants of lock and release."""
 
 from collections.abc import Iterator
 
@@ -7,28 +7,29 @@ from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
+from ddct_bringup.verdict.zero_slip import LOCKED, SLIPPING
 from ddct_plant.models.driveline import LOCK, RELEASE
 
 LANES = 'phases'
-"""Name of the chart."""
+"""Name of the chart of the phases."""
 OPACITY = {'open': 0.0, 'slipping': 0.3, 'locked': 0.85}
-"""By phase, in the order of its numbers."""
+"""Opacity by phase, in the order of the phase numbers."""
 EVENT_MARKERS = {LOCK: 'triangle', RELEASE: 'inverted_triangle'}
 _PHASES = tuple(OPACITY)
 _HALF_HEIGHT = 0.36
 _AFTER = {LOCK: LOCKED, RELEASE: SLIPPING}
-"""The phase after an event. A reversal changes none: the clutch may be open."""
+"""Phase after an event. A reversal changes no phase: the clutch may be open."""
 
 Span = tuple[float, float, str]
-"""Scenario times in s at which a phase begins and ends, and its name."""
+"""Start and end of a phase in scenario time, s, and its name."""
 
 
 def phase_spans(run: Trajectory) -> list[Span]:
     """
     Return the spans of a run with phases, without gaps from its start to its end.
 
-    Lock and release stand at their instants, an opening or closing at the tick that shows it.
+    Locks and releases are at their exact instants, an opening or closing at the first tick with
+    it.
     """
     time_s = run.time_s.tolist()
     changes = [(time_s[0], run.clutch_phase[0])]
@@ -45,7 +46,7 @@ def phase_spans(run: Trajectory) -> list[Span]:
 
 
 def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> GlyphRenderer:
-    """Draw the spans as boxes around the height `lane`, the firmer the closer the plates."""
+    """Draw the spans as boxes around the height `lane`, more opaque for closer plates."""
     begins, ends, phases = zip(*phase_spans(run), strict=True)
     source = ColumnDataSource(
         {

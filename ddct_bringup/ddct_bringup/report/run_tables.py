@@ -1,4 +1,4 @@
-"""What the page tells of each run beside its scores: its origin, and its update times."""
+"""Tables of each run besides its scores: its origin, and its update times."""
 
 import math
 from dataclasses import dataclass
@@ -6,19 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import UNKNOWN
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import PERIOD_S
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
 _REPEATED = ('version', 'scenario', 'scenario_digest', 'computed_from', *_CONDITIONS[1:])
-"""What every node says and the page has elsewhere."""
+"""Facts that every node publishes and that the page shows elsewhere."""
 _FIRST_US, _LAST_US = 1.0, 1e5
 
 
 @dataclass(frozen=True)
 class RunOrigin:
-    """Of one run its conditions, and what each node said of itself."""
+    """Conditions of a run, and the facts that each node published about itself."""
 
     conditions: tuple[tuple[str, str], ...]
     nodes: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]
@@ -53,15 +53,15 @@ def run_origin(run: ReportRun) -> RunOrigin:
 
 @dataclass(frozen=True)
 class UpdateTimes:
-    """What `timing.json` tells of one run."""
+    """Statistics of `timing.json` of one run."""
 
     median_us: float
     p99_us: float
     largest_us: float
     timing: RunTiming
-    """What else it holds."""
+    """Complete content of the file."""
     over_period: int
-    """Updates that took longer than the period."""
+    """Number of updates that took longer than the period."""
 
 
 def update_times(run: ReportRun) -> UpdateTimes | None:
@@ -75,10 +75,10 @@ def update_times(run: ReportRun) -> UpdateTimes | None:
 
 
 def time_place(time_us: float) -> float:
-    """Return the place of a wall time along the logarithmic scale of the table, 0 to 1."""
+    """Return the position of a wall time along the logarithmic scale of the table, 0 to 1."""
     place = math.log10(max(time_us, _FIRST_US) / _FIRST_US) / math.log10(_LAST_US / _FIRST_US)
     return min(place, 1.0)
 
 
 TICKS = {'1 µs': 1.0, '10 µs': 1e1, '100 µs': 1e2, '1 ms': 1e3, '10 ms': 1e4}
-"""Marks on the scale, text and time in us; the last is the period."""
+"""Ticks of the scale, text and time in us; the last is the period."""

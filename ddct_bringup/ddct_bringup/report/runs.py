@@ -1,7 +1,7 @@
 """
-The runs that a report shows, read from their bags; a bag that cannot be read stays in.
+Runs of a report, read from their bags; a bag that cannot be read is included.
 
-They are named by the controller, and by what else they differ in.
+Their labels are the controller, and the conditions in which they differ.
 """
 
 from collections import Counter
@@ -13,7 +13,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import MEASURED
-from ddct_bringup.run.beside_bag import RunTiming, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scoring import (
     Entry,
@@ -34,21 +34,21 @@ _CONDITIONS: dict[str, Callable[[Entry], str]] = {
     'mode': lambda entry: str(entry['mode']),
     'seed': lambda entry: f'seed {entry["seed"]}',
 }
-"""Facts of a run that its label names when the runs differ in them."""
+"""Conditions of a run that its label contains when the runs differ in them."""
 
 
 @dataclass(frozen=True)
 class ReportRun:
-    """One bag and what is known of it."""
+    """One bag and its content."""
 
     entry: Entry
-    """As in `scores.json`."""
+    """Entry of the run, as in `scores.json`."""
     recording: Recording | None = None
-    """None where the bag cannot be read."""
+    """Recording; None where the bag cannot be read."""
     timing: RunTiming | None = None
-    """None without a `timing.json` beside the bag."""
+    """Timing; None without a `timing.json` next to the bag."""
     settings: RunSettings | None = None
-    """As `Recording.settings`."""
+    """Settings of the run, as `Recording.settings`."""
 
     @property
     def measured(self) -> bool:
@@ -58,9 +58,10 @@ class ReportRun:
     @cached_property
     def digest(self) -> str | None:
         """
-        What tells two scenarios of one name apart, None where the bag does not tell.
+        Digest that distinguishes scenarios of one name, None where the bag has no settings.
 
-        It is taken anew: the bag's own digest changes when a version adds a scenario key.
+        It is computed from the settings: the bag's own digest changes when a version adds a
+        scenario key.
         """
         if self.settings:
             return scenario_digest(self.settings.scenario)
@@ -82,7 +83,7 @@ def read_run(
 
 
 def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
-    """Return the runs in the order in which the registry lists their controllers, logs last."""
+    """Return the runs in the order of their controllers in the registry, logs last."""
     places = {name: place for place, name in enumerate(controller_names())}
     return sorted(
         runs, key=lambda run: (run.measured, places.get(run.entry['controller'], len(places)))
@@ -91,9 +92,9 @@ def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
 
 def require_one_scenario(runs: Sequence[ReportRun]) -> None:
     """
-    Raise DdctError that names the scenarios when the readable runs are not all of one.
+    Raise DdctError with the scenarios when the readable runs have different ones.
 
-    Simulated runs are of one when its values are. Of a log nothing but its name is known.
+    Simulated runs have one scenario when its values are equal. For a log only the name is known.
     """
     bags: dict[str, list[str]] = {}
     names = {run.entry['scenario'] for run in runs if run.recording is not None}
@@ -115,7 +116,7 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
     """
     Return one label per run: its controller, and the conditions in which the runs differ.
 
-    Where that is not enough the bag is named too. A bag that tells no controller goes by its name.
+    Where that is not unique the bag is added. A bag without a controller has its own name.
     """
     differing = varied_conditions(entries)
     labels = [_label(entry, differing) for entry in entries]
@@ -128,7 +129,7 @@ def run_labels(entries: Sequence[Entry]) -> list[str]:
 
 
 def varied_conditions(entries: Sequence[Entry]) -> list[str]:
-    """Return the keys of the conditions in which simulated runs differ; labels name them."""
+    """Return the keys of the conditions in which simulated runs differ; labels contain them."""
     known = _simulated(entries)
     return [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
 
@@ -143,7 +144,7 @@ def common_conditions(entries: Sequence[Entry]) -> list[str]:
 
 
 def _simulated(entries: Sequence[Entry]) -> list[Entry]:
-    """Return the entries that tell conditions: those of bags that could be read."""
+    """Return the entries with conditions: those of simulated runs whose bags could be read."""
     return [each for each in entries if each['controller'] is not None and not _is_log(each)]
 
 
@@ -160,7 +161,7 @@ def _label(entry: Entry, differing: Sequence[str]) -> str:
 
 
 def _numbered(labels: Sequence[str]) -> list[str]:
-    """Return the labels, the second and later of the same text with a number."""
+    """Return the labels, with a number on the second and later ones of equal text."""
     seen: Counter[str] = Counter()
     result = []
     for label in labels:

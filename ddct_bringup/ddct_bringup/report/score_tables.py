@@ -1,4 +1,4 @@
-"""The tables of scores on the page: Table 5.1 beside ours, every metric, and the verdicts."""
+"""Tables of scores on the page: comparison with Table 5.1, every metric, and the verdicts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,14 +19,15 @@ OF_NO_LOG = {
     'releases_after_lock': _NO_PHASES,
     'peak_temperature': 'a log has no temperature of the facing',
     'deadline_misses': 'a log has no steps of the controller',
+    'friction_work_over_least': 'a log has no inertias of the car',
 }
-"""By criterion why no log of a car has a value."""
+"""Reasons why no log of a car has a value, by criterion."""
 NOT_JUDGED = 'the run failed or cannot be read'
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A metric of one run, with the thesis's figure where it has one."""
+    """Metric of one run, with the value of the thesis where there is one."""
 
     value: float | None
     text: str
@@ -35,17 +36,17 @@ class Cell:
     thesis: float | None = None
     thesis_text: str = ''
     thesis_share: float = 0.0
-    """Where the thesis's figure is along the bar."""
+    """Position of the thesis's value along the bar, 0 to 1."""
     difference: str = ''
-    """Ours against the thesis's, signed."""
+    """Computed value minus the thesis's, signed."""
     spread: str = ''
-    """Range over the admissible scenarios, of a predicted figure."""
+    """Range over the admissible scenarios, for a predicted value."""
     verdict: str = ''
-    """Hit or miss, of a predicted figure of a valid run."""
+    """Hit or miss, for a predicted value of a valid run."""
 
 
 def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
-    """Return for each run the row of Table 5.1 beside which it may be set."""
+    """Return for each run the row of Table 5.1 that it is comparable with."""
     return [
         thesis_row(run.entry['controller'])
         if run.settings is not None and is_thesis_run(run.settings)
@@ -57,10 +58,12 @@ def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
 def metric_cells(
     column: Quantity, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
-    """Return one cell per run; bars share the scale of the largest figure, ours or printed."""
+    """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
-    printed = [row if row is not None and column.key in row.figures() else None for row in rows]
-    figures = [row.figures()[column.key] for row in printed if row is not None]
+    printed = [
+        row if row is not None and column.key in row.printed_values() else None for row in rows
+    ]
+    figures = [row.printed_values()[column.key] for row in printed if row is not None]
     largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
     return [
         _cell(column, value, row, largest or 1.0, valid=run.entry['valid'])
@@ -80,7 +83,7 @@ def _cell(
     share = 0.0 if value is None else abs(value) / largest
     if row is None:
         return Cell(value, text, share)
-    thesis = row.figures()[column.key]
+    thesis = row.printed_values()[column.key]
     predicted = row.use == PREDICTED
     return Cell(
         value,
@@ -97,31 +100,31 @@ def _cell(
 
 @dataclass(frozen=True)
 class VerdictCell:
-    """A criterion of one run."""
+    """Criterion of one run."""
 
     value: float | None
     text: str
     state: str
-    """`within`, `beyond` or `no_limit`."""
+    """State of the criterion: `within`, `beyond` or `no_limit`."""
     why_dash: str
-    """Why there is no value, empty where there is one."""
+    """Reason why there is no value, empty where there is one."""
 
 
 @dataclass(frozen=True)
 class VerdictRow:
-    """A criterion over all runs, or the traction."""
+    """One criterion, or the traction, for all runs."""
 
     criterion: Quantity
     limit: str
-    """Empty where no limit applies."""
+    """Limit as text, empty where none applies."""
     source: str
     convention: bool
-    """Whether the limit is agreed on rather than published."""
+    """Whether the limit is a convention rather than published."""
     cells: tuple[VerdictCell, ...]
 
     @property
     def reasons(self) -> str:
-        """Why runs that were judged have no value, empty where all have one."""
+        """Reasons why judged runs have no value, empty where all have one."""
         found = dict.fromkeys(cell.why_dash for cell in self.cells)
         return '; '.join(each for each in found if each not in ('', NOT_JUDGED))
 
@@ -138,7 +141,7 @@ _TRACTION = Quantity(
 
 
 def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
-    """Return a row per criterion, then the traction; a run not judged has a value in none."""
+    """Return a row per criterion, then the traction; a run not judged has no values."""
     judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
     reasons = [
         {**(OF_NO_LOG if run.measured else {}), **run.entry.get(NOT_COMPUTED, {})} for run in runs
@@ -158,7 +161,7 @@ def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
 def _verdict_row(
     criterion: Quantity, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
 ) -> VerdictRow:
-    # All runs of a page are of one scenario, so one limit applies to all.
+    # All runs of a page have one scenario, so one limit applies to all.
     limited = next((each for each in found if each and each['limit'] is not None), None)
     return VerdictRow(
         criterion=criterion,

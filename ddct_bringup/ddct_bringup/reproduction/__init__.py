@@ -1,1 +1,1 @@
-"""The thesis reproduced: its numbers, figures, studies and calibration."""
+"""Reproduction of the thesis: its numbers, figures, studies and calibration."""

@@ -1,4 +1,4 @@
-"""Headless runs and what is computed of them; those of the thesis's scenario are made once."""
+"""Headless runs and their scores; runs of the thesis's scenario are cached."""
 
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -11,7 +11,7 @@ from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.scoring import score_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.verdict import Verdict
 from ddct_controllers.interface import Command, Controller, Measurement
@@ -25,16 +25,16 @@ THESIS_SETTINGS = RunSettings(THESIS_SCENARIO)
 
 @dataclass(frozen=True, eq=False)
 class HeadlessRun:
-    """One run; what it scores is computed when it is first asked for."""
+    """One run; its scores are computed on first access."""
 
     settings: RunSettings
     controller: str | Controller
-    """Name in the registry, or the object that ran."""
+    """Name in the registry, or the controller object."""
     trajectory: Trajectory
 
     @cached_property
     def metrics(self) -> Metrics:
-        """What the run scores in its scenario's score window."""
+        """Metrics of the run in its scenario's score window."""
         scenario = self.settings.scenario
         return compute_metrics(
             self.trajectory,
@@ -43,25 +43,25 @@ class HeadlessRun:
         )
 
     @property
-    def figures(self) -> dict[str, Any]:
-        """The three figures that Table 5.1 has of a run, by name; None for an undefined one."""
-        return {name: getattr(self.metrics, name) for name in FIGURES}
+    def table_values(self) -> dict[str, Any]:
+        """Values of the three metrics of Table 5.1 by name; None for an undefined one."""
+        return {name: getattr(self.metrics, name) for name in TABLE_METRICS}
 
     @cached_property
     def verdict(self) -> Verdict:
-        """What the packaged limits say of it."""
+        """Verdict of the run by the packaged limits."""
         name = str(self.controller)
         recording = in_memory(self.settings, name, self.trajectory)
         return score_run(recording, name, packaged_limits(), timing=None)['verdict']
 
     @property
     def slip_rpm(self) -> np.ndarray:
-        """w_d, (N+1,)."""
+        """Slip speed w_d in rpm, (N+1,)."""
         return rpm_from_rad_s(self.trajectory.slip_speed)
 
     @property
     def start(self) -> int:
-        """The step at which control starts."""
+        """Step at which control starts."""
         return self.settings.scenario.control_start_step
 
 
@@ -82,7 +82,7 @@ class StaticControllerAlone(Controller):
     """The static controller (Figure 1.17) alone: C_fOL on the clutch, the driver's demand."""
 
     def reset(self) -> None:
-        """There is nothing to forget."""
+        """Do nothing: there is no state."""
 
     def update(self, measurement: Measurement) -> Command:
         """Return no torque."""

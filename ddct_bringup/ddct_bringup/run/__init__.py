@@ -1,1 +1,1 @@
-"""One run: its plan, the graph or the headless loop that carries it out, and its folder."""
+"""One run: its plan, the graph or headless loop that executes it, and its output folder."""

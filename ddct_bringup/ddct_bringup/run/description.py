@@ -1,4 +1,4 @@
-"""What a run says of itself in its bag, the same from every process layout; our commit too."""
+"""Description of a run in its bag, equal for every process layout, with the source commit."""
 
 import os
 import subprocess
@@ -17,14 +17,14 @@ from ddct_plant.ticks.tick_owner import driveline_info
 
 UNKNOWN = 'unknown'
 DIRTY = '-dirty'
-"""Follows the commit when a package differs from it, by a changed, new or deleted file."""
+"""Suffix of the commit when a package differs from it by a changed, new or deleted file."""
 
 _PACKAGES = 'ddct_*'
 _TIMEOUT_S = 10.0
 
 
 def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
-    """Return what scoring needs to know of a run of so many steps."""
+    """Return the facts that scoring needs of a run of this many steps."""
     scenario = settings.scenario
     return RunFacts(
         controller=controller,
@@ -41,7 +41,7 @@ def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
 
 
 def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
-    """Return the bag's custom data: the facts of the run, its whole scenario and our version."""
+    """Return the bag's custom data: the facts of the run, its whole scenario and the version."""
     scenario = settings.scenario
     return {
         **facts_of(settings, controller, steps).to_custom_data(),
@@ -55,7 +55,7 @@ def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str,
 def run_info_of(
     settings: RunSettings, name: str, controller: Controller, steps: int
 ) -> RunInfoOfNodes:
-    """Return what the nodes of a graph with these settings say on `run_info`."""
+    """Return the `run_info` that the nodes of a graph with these settings publish."""
     extra: dict[str, dict[str, str]] = {
         'engine': engine_info(controller.commands_engine),
         'load': {},
@@ -71,10 +71,10 @@ def run_info_of(
 
 def source_commit(file: Path = Path(__file__)) -> str:
     """
-    Return the git commit that holds `file`, a module like this one, with `DIRTY` where due.
+    Return the git commit that contains `file`, a source module, with `DIRTY` where it applies.
 
-    'unknown' outside a checkout: of a copy that lies in somebody else's repository git would name
-    that one's commit. It takes two calls of git, about 10 ms.
+    Return 'unknown' outside a checkout: for a copy inside another repository git would return
+    the commit of that repository. The function calls git twice, about 10 ms.
     """
     path = file.resolve()
     try:
@@ -86,13 +86,13 @@ def source_commit(file: Path = Path(__file__)) -> str:
 
 
 def short_commit(commit: str) -> str:
-    """Return a commit as `source_commit` names it in few letters, its mark included."""
+    """Return a commit of `source_commit` shortened to a few letters, with its suffix."""
     name, mark, _ = commit.partition(DIRTY)
     return name[:10] + mark
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    # In a hook of git these variables name another repository.
+    # Inside a git hook these variables name another repository.
     environment = {
         name: value
         for name, value in os.environ.items()

@@ -1,4 +1,4 @@
-"""Carry out one planned run in its layout and leave its bag in a folder."""
+"""Execute one planned run in its layout and write its bag into a folder."""
 
 import re
 import sys
@@ -17,10 +17,10 @@ from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.processes.live_process import LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
 from ddct_bringup.processes.warm_parent import WarmParent, warm_parent
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
@@ -29,12 +29,18 @@ from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 
 WORK_FOLDER = 'work'
-"""Scenario, parameters and logs of a run; of a run that ends well only logs with warnings stay."""
+"""
+Name of the folder for scenario, parameters and logs; a good run keeps only logs with warnings.
+"""
 _WARNING = re.compile(rb'^\[(WARN|ERROR|FATAL)\]', re.MULTILINE)
 
 
 def parent_for(layout: str) -> AbstractContextManager[WarmParent | None]:
-    """Start the warm parent that runs of this layout need, if they do: one for several runs."""
+    """
+    Return a context manager with the warm parent for runs of this layout, or with None.
+
+    One warm parent serves several runs; headless and single-process runs need none.
+    """
     return warm_parent() if layout == 'processes' else nullcontext()
 
 
@@ -46,20 +52,21 @@ def run_with_progress(
     parent: WarmParent | None = None,
 ) -> None:
     """
-    Carry out `plan` into `folder`, saying what runs, if its loop is stable, and how fast it went.
+    Execute `plan` into `folder`; print its progress, the stability of its loop and its speed.
 
-    `parent` forks the nodes of separate processes; without it the run starts one of its own.
+    `parent` forks the nodes of separate processes; without it the run starts a warm parent
+    itself.
 
     Raise DdctError when the run does not end well, KeyboardInterrupt after SIGINT or SIGTERM.
     """
-    _tell_of_the_loop(plan)
+    _print_loop_summary(plan)
     scenario = plan.settings.scenario
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.monotonic()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
         execute(plan, folder, lambda: bool(stops), live, parent)
     if stops:
-        # It came when the run had ended already: whatever would follow is not wanted.
+        # The signal came after the end of the run: whatever would follow is cancelled.
         raise KeyboardInterrupt
     elapsed = time.monotonic() - started
     print(f'{what} in {elapsed:.1f} s ({plan.layout})', file=sys.stderr, flush=True)
@@ -73,16 +80,19 @@ def execute(
     parent: WarmParent | None = None,
 ) -> None:
     """
-    Run `plan` and write its bag and `timing.json` into the existing `folder`.
+    Execute `plan` and write its bag and `timing.json` into the existing `folder`.
 
-    A run of separate processes begins once `live` hears them. `parent` forks them; without it the
-    run starts one of its own.
+    A run of separate processes begins once `live` receives their topics. `parent` forks them;
+    without it the run starts a warm parent itself.
+
     Raise DdctError with the reason when the run does not end well, KeyboardInterrupt when
     `stopped()` becomes true; what was recorded until then stays in the folder.
     """
     if plan.layout == 'headless':
-        told, timing = simulate(plan)
-        write_trajectory(told.trajectory, folder, plan.name, told.custom_data, told.run_info)
+        recording, timing = simulate(plan)
+        write_trajectory(
+            recording.trajectory, folder, plan.name, recording.custom_data, recording.run_info
+        )
         timing.write(folder)
         return
     work = folder / WORK_FOLDER
@@ -102,8 +112,8 @@ def execute(
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
 
 
-def _tell_of_the_loop(plan: RunPlan) -> None:
-    """Say on standard error what a controller's file holds: its reader may have meant another."""
+def _print_loop_summary(plan: RunPlan) -> None:
+    """Print the loop analysis of a controller from a file on standard error."""
     if not isinstance(plan.controller, str) or not is_controller_file(plan.controller):
         return
     # Only here: scipy's searches take long to import.
@@ -114,18 +124,18 @@ def _tell_of_the_loop(plan: RunPlan) -> None:
 
 
 def kept_logs(folder: Path) -> list[Path]:
-    """Return the logs with warnings that a run has left in its bag's folder."""
+    """Return the paths of the logs with warnings in the folder of a run's bag."""
     return sorted((folder / WORK_FOLDER).glob('*.log'))
 
 
-def tell_of_logs(program: str, folders: Iterable[Path]) -> None:
-    """Say on standard error which logs of the runs in these folders hold warnings, if any do."""
+def print_logs_with_warnings(program: str, folders: Iterable[Path]) -> None:
+    """Print the paths of the logs with warnings of these run folders on standard error, if any."""
     if logs := [str(log) for folder in folders for log in kept_logs(folder)]:
         print(f'{program}: warnings are in {", ".join(logs)}', file=sys.stderr)
 
 
 def _keep_warnings(work: Path) -> None:
-    """Remove all but the logs in which a node warns of something, and the folder if none does."""
+    """Remove all files but logs with a node's warning, and the folder if none is left."""
     for path in work.iterdir():
         if path.suffix != '.log' or not _WARNING.search(path.read_bytes()):
             path.unlink()
@@ -145,13 +155,13 @@ def _execute_processes(
     with NodeProcesses(work, parameter_file, parent, stopped) as processes:
         processes.start([node for node in GRAPH_NODES if node.name != 'recorder' or not live])
         if live:
-            # Without its recorder the graph stays at t_0 and sends it again and again.
-            live.wait_until_heard(stopped)
+            # Without its recorder the graph stays at t_0 and publishes that tick repeatedly.
+            live.wait_until_receiving(stopped)
             processes.start([node for node in GRAPH_NODES if node.name == 'recorder'])
         try:
             processes.wait_for('driveline')
         finally:
-            # The recorder goes last: it must hear what the others flush when they stop.
+            # The recorder stops last: it must receive what the others publish when they stop.
             processes.stop(lambda name: name != 'recorder')
             processes.stop(lambda name: name == 'recorder')
         processes.require_clean_end()
@@ -159,9 +169,9 @@ def _execute_processes(
 
 def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
     """
-    Carry out a headless `plan` in memory; return what its bag would tell, and its timing.
+    Execute a headless `plan` in memory; return its recording and its timing.
 
-    The path of the recording is that of no file, and its counts of messages are empty.
+    No file exists at the recording's path, and its message counts are empty.
     """
     controller = make_controller(plan.controller, plan.settings)
     timing = RunTiming()
@@ -175,7 +185,7 @@ def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
 
 
 def in_memory(settings: RunSettings, controller: str, trajectory: Trajectory) -> Recording:
-    """Return the recording of a headless run with what scoring needs, and nothing for a bag."""
+    """Return the recording of a headless run with the facts that scoring needs, without a bag."""
     return Recording(
         path=Path(),
         trajectory=trajectory,

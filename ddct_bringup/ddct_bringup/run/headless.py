@@ -11,7 +11,7 @@ import time
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import Chosen, make_controller
@@ -21,7 +21,7 @@ from ddct_reference.factory import make_reference
 
 
 class ClosedLoop:
-    """Plant, reference and controller, wired as the graph."""
+    """Closed loop of plant, reference and controller, connected as in the graph."""
 
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
@@ -29,10 +29,10 @@ class ClosedLoop:
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
         self.update_time_us = 0.0
-        """Wall time that the controller took for the last reply."""
+        """Wall time of the controller's last update, us."""
 
     def reply(self, step: int) -> dict[str, Any]:
-        """Return every signal of step k by its name in `Trajectory`; advances all but time."""
+        """Return every signal of step k by its name in `Trajectory`; advance all but the plant."""
         observation = self.plant.observe(step)
         slip_speed, shaft_speed = (
             observation.measured.slip_speed,
@@ -60,8 +60,9 @@ def run_headless(
     """
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
-    `controller` is what `make_controller` takes, or an object. Raise ParameterError for what
-    cannot be built, DdctError when a controller commands a value that is not finite.
+    `controller` is a value that `make_controller` accepts, or an object. Raise ParameterError
+    for a loop that cannot be built, DdctError when a controller commands a value that is not
+    finite.
     """
     if not isinstance(controller, Controller):
         controller = make_controller(controller, settings)
@@ -69,7 +70,11 @@ def run_headless(
 
 
 def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> Trajectory:
-    """Simulate a loop that is at t_0 up to t_`steps`; as `run_headless` otherwise."""
+    """
+    Simulate a loop from t_0 to t_`steps`, return every signal and fill `timing` if given.
+
+    Raise DdctError when the controller commands a value that is not finite.
+    """
     timing = RunTiming() if timing is None else timing
     started = time.perf_counter()
     rows = [loop.reply(0)]

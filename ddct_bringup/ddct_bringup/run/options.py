@@ -1,4 +1,4 @@
-"""Command-line options that the programs that run controllers share."""
+"""Command-line options shared by the programs that run controllers."""
 
 import argparse
 import sys
@@ -23,7 +23,7 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 ALL = 'all'
-"""Stands for every controller."""
+"""Value of --controllers that selects every controller."""
 _FROM_FILES = 'as their files have them, whatever driveline the scenario has: {}'
 _FROM_CLASSES = (
     'not known whether another driveline in the scenario changes their gains: {} (write into the '
@@ -34,7 +34,7 @@ _NOT_LOADED = 'cannot be loaded, as the options of controllers say: {}'
 
 
 def add_settings_options(parser: argparse.ArgumentParser) -> None:
-    """Add what describes a run to a program's options."""
+    """Add the options that describe a run to a program's parser."""
     add_scenario_options(parser)
     for name, described in options_of(RunSettings).items():
         add_option(parser, name, described)
@@ -45,14 +45,14 @@ def add_settings_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_run_options(parser: argparse.ArgumentParser) -> None:
-    """Add what describes a run, and how it is carried out, to a program's options."""
+    """Add the options that describe a run and its process layout to a program's parser."""
     add_settings_options(parser)
     add_layout_options(parser)
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
 
 
 def add_layout_options(parser: argparse.ArgumentParser) -> None:
-    """Add whether a run takes place in a graph, as `layout`."""
+    """Add the options of the process layout to a program's parser, as `layout`."""
     layout = parser.add_mutually_exclusive_group()
     layout.add_argument(
         '--single-process',
@@ -68,7 +68,7 @@ def add_layout_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_controllers_option(parser: argparse.ArgumentParser) -> None:
-    """Add --controllers to a program's options; `controllers_of` takes it."""
+    """Add --controllers to a program's parser; `controllers_of` parses its value."""
     parser.add_argument(
         '--controllers',
         default=ALL,
@@ -78,7 +78,11 @@ def add_controllers_option(parser: argparse.ArgumentParser) -> None:
 
 
 def controllers_of(text: str) -> list[str]:
-    """Return the controllers that --controllers names; raise ParameterError for none or two."""
+    """
+    Return the controllers in the value of --controllers.
+
+    Raise ParameterError for none, and for one that is given twice.
+    """
     if text == ALL:
         return controller_names()
     names = [name.strip() for name in text.split(',') if name.strip()]
@@ -93,9 +97,9 @@ def controllers_of(text: str) -> list[str]:
 
 def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:
     """
-    Return the validated settings of a run, or of runs, with the controllers called `labels`.
+    Return the validated settings of one run, or of runs, with the controllers called `labels`.
 
-    Raise ParameterError that names what cannot be used.
+    Raise ParameterError that names the invalid value.
     """
     overrides = list(options.overrides)
     if options.duration is not None:
@@ -107,7 +111,11 @@ def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettin
 def run_settings(
     scenario: Scenario, labels: Sequence[str], settings: Mapping[str, Any]
 ) -> RunSettings:
-    """Return the validated settings of a run in a scenario; as `settings_of` otherwise."""
+    """
+    Return the validated settings of a run of controllers called `labels` in a scenario.
+
+    Raise ParameterError that names the invalid value.
+    """
     require_known_controllers(scenario, labels)
     return RunSettings(scenario, **settings)
 
@@ -130,32 +138,32 @@ def print_choices() -> None:
 
 
 def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
-    """Print what controllers are computed from, files by their own names, a line for all alike."""
+    """Print the source of each controller's values, one line for all with the same source."""
     found: dict[str, list[str]] = {}
     for name in names:
         try:
             spec = controller_spec(name)
             found.setdefault(_origin(spec), []).append(spec.name)
-        except DdctError:  # a third party's that cannot be loaded
+        except DdctError:  # a third party's controller that cannot be loaded
             found.setdefault(_NOT_LOADED, []).append(str(name))
     for origin, labels in found.items():
         print(origin.format(printable(', '.join(labels))), file=stream)
 
 
 def _origin(spec: ControllerSpec[Controller]) -> str:
-    """Return a line about a controller, with a place for names."""
+    """Return the line on a controller's source, with a placeholder for names."""
     if spec.computed_from != UNSTATED:
         return f'computed from {spec.computed_from}: {{}}'
     return _FROM_FILES if spec.written_in else _FROM_CLASSES
 
 
 def controller_options_table() -> Table:
-    """Return what controllers declare, a row for all that declare the same."""
+    """Return the table of controllers' options, a row for all that declare the same option."""
     takers: dict[tuple[str, ...], list[str]] = {}
     for name in controller_names():
         try:
             options = controller_spec(name).options or {}
-        except DdctError as error:  # a third party's that cannot be loaded
+        except DdctError as error:  # a third party's controller that cannot be loaded
             options = {'-': Option(None, str(error))}
         for row in option_rows(options):
             takers.setdefault(row[:-1], []).append(name)

@@ -1,4 +1,4 @@
-"""Output folders: held by one program, never half a result, never others' files overwritten."""
+"""Output folders: locked by one program, complete or absent, never over files of others."""
 
 import errno
 import fcntl
@@ -13,26 +13,29 @@ from typing import Self
 from ddct_plant.base.errors import DdctError
 
 MARKER = '.ddct-output'
-"""Marks a folder as written by these programs, so that `--overwrite` may replace it."""
+"""Name of the file that marks a folder of these programs, which `--overwrite` may replace."""
 PARTIAL = '.partial'
-"""Ends the name of a folder that is not complete yet."""
+"""Suffix of the name of a folder that is not complete yet."""
 SUFFIX = '.ddct-lock'
-"""The lock of DIR is the file .DIR.ddct-lock beside it, which is there only while it is held."""
+"""
+Suffix of the lock file of DIR, .DIR.ddct-lock beside it, which exists only while DIR is locked.
+"""
 _MARKER_TEXT = 'Written by ddct_bringup; --overwrite may replace this folder.\n'
 _NO_PLACE = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
 class StagedFolder:
     """
-    A folder that appears under its final name only when it is complete.
+    Folder that appears under its final name only when it is complete.
 
-    Work goes to `<final>.partial` beside it. `commit` puts it in place of an earlier result, which
-    stays untouched until then; after a failure the partial folder is left for inspection, and
-    `with` adds its name to an interruption. Whoever uses it holds the final folder (`held`).
+    Files go to `<final>.partial` beside it. `commit` puts it in place of an earlier result,
+    which stays untouched until then; after a failure the partial folder is left for
+    inspection, and `with` adds its name to an interruption. Its users lock the final folder
+    (`locked_folders`).
     """
 
     def __init__(self, final: Path, *, overwrite: bool) -> None:
-        """Create the partial folder; raise DdctError where something is in the way."""
+        """Create the partial folder; raise DdctError where other files are in the way."""
         self.final = final
         self.path = final.with_name(f'{final.name}{PARTIAL}')
         self._overwrite = overwrite
@@ -52,13 +55,13 @@ class StagedFolder:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        """Raise KeyboardInterrupt anew, with what there is and where, after an interruption."""
+        """Raise KeyboardInterrupt anew after an interruption, with the state of the folders."""
         if kind is not None and issubclass(kind, KeyboardInterrupt):
             raise KeyboardInterrupt(f'interrupted: {self.left}')
 
     @property
     def left(self) -> str:
-        """Say for a message what a run that was not committed has left, and where."""
+        """Text for a message: the files that a run without commit has left, and their folder."""
         return f'{self.final} is untouched, what was recorded is in {self.path}'
 
     def commit(self) -> None:
@@ -85,7 +88,7 @@ class StagedFolder:
 
 
 def require_ours_or_empty(folder: Path) -> None:
-    """Raise DdctError when `folder` holds anything that these programs did not write."""
+    """Raise DdctError when `folder` contains files that these programs did not write."""
     if folder.is_symlink():
         raise DdctError(f'{folder} is a symbolic link: give the folder itself, or another --out')
     if folder.exists() and not folder.is_dir():
@@ -97,13 +100,13 @@ def require_ours_or_empty(folder: Path) -> None:
 
 
 def is_empty(folder: Path) -> bool:
-    """Say whether the folder is absent or has nothing in it."""
+    """Return whether the folder is absent or empty."""
     with _refused(folder, 'read'):
         return not folder.exists() or not any(folder.iterdir())
 
 
 def mark_folder(folder: Path) -> None:
-    """Create `folder` as ours when it is absent or empty; raise DdctError otherwise."""
+    """Create `folder` with the marker when it is absent or empty; raise DdctError otherwise."""
     require_ours_or_empty(folder)
     with _refused(folder, 'written'):
         folder.mkdir(parents=True, exist_ok=True)
@@ -112,7 +115,7 @@ def mark_folder(folder: Path) -> None:
 
 @contextmanager
 def _refused(folder: Path, what: str) -> Iterator[None]:
-    """Raise DdctError for what the operating system refuses to do with a folder."""
+    """Raise DdctError where the operating system refuses to read or write a folder."""
     try:
         yield
     except OSError as error:
@@ -120,14 +123,15 @@ def _refused(folder: Path, what: str) -> Iterator[None]:
 
 
 @contextmanager
-def held(*folders: Path, shared: bool = False) -> Iterator[None]:
+def locked_folders(*folders: Path, shared: bool = False) -> Iterator[None]:
     """
-    Hold `folders`, and what is in them, while this program writes there.
+    Lock `folders`, and everything in them, while this program writes there.
 
-    `shared` lets others hold them that way too, to write into folders of their own below. The
-    folders of ours around them are held so in any case. A folder and its partial one are the same.
-    The locks are the operating system's: they end with the process, however it ends.
-    Raise DdctError that names the folder and the process that holds it.
+    With `shared`, other programs can lock them as shared too, to write into folders of their
+    own below. Marked folders around them are locked as shared in any case. A folder and its
+    partial one have the same lock. The locks are the operating system's: they end with the
+    process, however it ends. Raise DdctError that names the folder and the process that has
+    locked it.
     """
     own = {_final(folder) for folder in folders}
     around = {parent for folder in own for parent in folder.parents if is_ours(parent)} - own
@@ -139,15 +143,15 @@ def held(*folders: Path, shared: bool = False) -> Iterator[None]:
 
 @contextmanager
 def run_folder(out: Path, name: str, *, overwrite: bool) -> Iterator[StagedFolder]:
-    """Hold the folder `name` in `out`, which is made if absent, and yield it staged."""
-    with held(out, shared=True):
+    """Lock the folder `name` in `out`, which is created if absent, and yield it staged."""
+    with locked_folders(out, shared=True):
         mark_folder(out)
-        with held(out / name), StagedFolder(out / name, overwrite=overwrite) as folder:
+        with locked_folders(out / name), StagedFolder(out / name, overwrite=overwrite) as folder:
             yield folder
 
 
 def is_ours(folder: Path) -> bool:
-    """Say whether these programs wrote the folder."""
+    """Return whether these programs wrote the folder."""
     with suppress(OSError):
         return (folder / MARKER).is_file()
     return False
@@ -162,28 +166,28 @@ def _final(folder: Path) -> Path:
 def _lock(folder: Path, shared: bool) -> Iterator[None]:
     file = folder.parent / f'.{folder.name}{SUFFIX}'
     try:
-        descriptor = _locked(file, shared)
+        descriptor = _open_locked(file, shared)
     except BlockingIOError:
         raise DdctError(
-            f'{folder}: {_holder(file)} is writing there: wait for its end or give another folder'
+            f'{folder}: {_owner(file)} is writing there: wait for its end or give another folder'
         ) from None
     except OSError as error:
         if error.errno not in _NO_PLACE:
             raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
-        yield  # nobody can make or replace the folder either
+        yield  # no other program can create or replace the folder either
         return
     try:
         yield
     finally:
         with suppress(OSError):
-            # Of those who share a lock the last one removes it.
+            # The last process with a shared lock removes the file.
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             file.unlink()
         os.close(descriptor)
 
 
-def _locked(file: Path, shared: bool) -> int:
-    """Return the open lock file; raise BlockingIOError when another holds it."""
+def _open_locked(file: Path, shared: bool) -> int:
+    """Open and lock a lock file; return its descriptor; BlockingIOError when another has it."""
     file.parent.mkdir(parents=True, exist_ok=True)
     kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
     while True:
@@ -191,19 +195,19 @@ def _locked(file: Path, shared: bool) -> int:
         try:
             fcntl.flock(descriptor, kind | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(descriptor), file.stat()):
-                with suppress(OSError):  # a full disk; the number is only for the message
+                with suppress(OSError):  # a full disk; the process id is only for the message
                     os.write(descriptor, f'{os.getpid()}\n'.encode())
                 return descriptor
         except FileNotFoundError:
-            pass  # removed by whoever held it, between our two steps
+            pass  # removed by its owner between the two steps above
         except OSError:
             os.close(descriptor)
             raise
         os.close(descriptor)
 
 
-def _holder(file: Path) -> str:
-    """Return the name of the living processes that have written their number into the file."""
+def _owner(file: Path) -> str:
+    """Return the text "process ID" of the living processes whose ids are in the lock file."""
     with suppress(OSError, ValueError):
         numbers = dict.fromkeys(int(line) for line in file.read_text().split())
         alive = [str(number) for number in numbers if Path('/proc', str(number)).exists()]

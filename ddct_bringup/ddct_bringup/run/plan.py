@@ -1,4 +1,4 @@
-"""One run as a program is asked for it: what, how and where."""
+"""Plan of one run: settings, controller, process layout and node parameters."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,16 +16,16 @@ from ddct_plant.scenario.settings import RunSettings
 
 @dataclass(frozen=True)
 class RunPlan:
-    """A run that is known to be buildable."""
+    """Plan of one run; building it checks that the run can be built."""
 
     settings: RunSettings
     controller: Chosen
-    """In a graph a name of the registry or the path of a controller file."""
+    """Controller to run; in a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
-    """'processes', one per node; 'single-process'; or 'headless', without any ROS graph."""
+    """Process layout: 'processes', one per node; 'single-process'; or 'headless', without ROS."""
 
     def __post_init__(self) -> None:
-        """Refuse now what would fail in the graph; raise DdctError."""
+        """Raise DdctError for a plan that would fail in the graph."""
         make_architecture(self.settings, make_controller(self.controller, self.settings))
         if self.layout == 'headless':
             require_headless(self.settings)
@@ -40,7 +40,7 @@ class RunPlan:
 
     @property
     def name(self) -> str:
-        """What the controller is called in bags and tables; names the bag's folder."""
+        """Name of the controller in bags and tables, and of the bag's folder."""
         return controller_label(self.controller)
 
     @property
@@ -50,7 +50,7 @@ class RunPlan:
 
     def node_parameters(self, folder: Path, work: Path) -> dict[str, dict[str, Any]]:
         """
-        Return the ROS parameters by node for a bag in `folder`; those of '*' are for every node.
+        Return the ROS parameters by node name for a bag in `folder`; '*' is every node.
 
         The scenario, changes included, is written into the folder `work` for the nodes to read.
         """
@@ -86,7 +86,7 @@ class RunPlan:
 
 
 def require_headless(settings: RunSettings) -> None:
-    """Raise ParameterError where a run needs the graph."""
+    """Raise ParameterError where a run needs the graph, as in real time."""
     if not settings.lockstep:
         raise ParameterError(
             'mode realtime needs the graph, which --headless does without: drop one of them'

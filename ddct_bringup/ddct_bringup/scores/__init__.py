@@ -1,1 +1,1 @@
-"""What is computed from a recording, and the tables that show it."""
+"""Scores computed from a recording, and the tables that show them."""

@@ -3,15 +3,15 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from ddct_bringup.run.beside_bag import NOTE_FILE
+from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_plant.base.errors import DdctError
 
 
 def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
     """
-    Return (bag, the folder that was searched or None) for every bag at the paths, each once.
+    Return (bag, searched folder or None) for every bag at the paths, each once.
 
-    Raise DdctError for a path without any.
+    Raise DdctError for a path without a bag.
     """
     found: dict[Path, tuple[Path, Path | None]] = {}
     for path in paths:
@@ -21,7 +21,7 @@ def bags_in(paths: Iterable[Path]) -> list[tuple[Path, Path | None]]:
 
 
 def bag_name(path: Path, relative_to: Path | None) -> str:
-    """Return the path as scores name it, with forward slashes."""
+    """Return the name of a bag in scores: its path with forward slashes."""
     if relative_to is not None and path.is_relative_to(relative_to):
         return path.relative_to(relative_to).as_posix()
     return path.as_posix()
@@ -29,10 +29,11 @@ def bag_name(path: Path, relative_to: Path | None) -> str:
 
 def find_bags(path: Path) -> list[Path]:
     """
-    Return the bags in a folder and below it, or the one that `path` is, in alphabetical order.
+    Return the bags in a folder and below it, or the bag at `path`, in alphabetical order.
 
-    A folder with one .mcap file is a bag; of several, each file is one. The folder of a failed run
-    counts without any. Hidden files and folders do not. Raise DdctError without any bag.
+    A folder with one .mcap file is a bag; of several files in a folder each is one. The folder of
+    a failed run counts even without a file. Hidden files and folders do not count. Raise DdctError
+    without any bag.
     """
     if not path.is_dir():
         if not path.exists():

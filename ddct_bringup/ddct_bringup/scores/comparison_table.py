@@ -1,4 +1,4 @@
-"""The table that `compare` prints: our scores beside Table 5.1 of the thesis."""
+"""The table that `compare` prints: computed scores next to Table 5.1 of the thesis."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,7 +23,7 @@ from ddct_bringup.thesis.table_5_1 import (
     is_thesis_run,
     thesis_row,
 )
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_plant.program.table import Column, Quantity
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
@@ -43,8 +43,8 @@ def print_comparison(
     """
     Print one row per run.
 
-    The thesis's figures, and the ranges of what the scenario predicts, are shown for the thesis's
-    own conditions only.
+    The values of the thesis, and the ranges of the predictions, are shown only for the conditions
+    of the thesis.
     """
     columns = [CONTROLLER, ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD]
     compared = is_thesis_run(settings)
@@ -53,8 +53,8 @@ def print_comparison(
             CONTROLLER,
             *(
                 column
-                for ours, figure in zip(columns[1:], TABLE_5_1, strict=True)
-                for column in (_with_range(ours, figure.key), _thesis(figure))
+                for ours, quantity in zip(columns[1:], TABLE_5_1, strict=True)
+                for column in (_with_range(ours, quantity.key), _thesis(quantity))
             ),
             Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
         ]
@@ -72,24 +72,24 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
 
 
 def _with_range(column: RunColumn, name: str) -> RunColumn:
-    """Return a metric's column with the range of what is predicted beneath."""
+    """Return the column of a metric with the predicted range in a second line."""
     return replace(column, below=lambda run: predicted_range(run['controller'], name))
 
 
-def _thesis(figure: Quantity) -> RunColumn:
-    """Return the column of the print, with the verdict beneath where it is predicted."""
+def _thesis(quantity: Quantity) -> RunColumn:
+    """Return the column of the printed value, with hit or miss below where it is predicted."""
 
     def value(run: Entry) -> float | None:
         row = thesis_row(run['controller'])
-        return row.figures()[figure.key] if row else None
+        return row.printed_values()[quantity.key] if row else None
 
     def below(run: Entry) -> str:
         row = thesis_row(run['controller'])
         if row is None or row.use != PREDICTED or not run['valid']:
             return ''
-        return row.verdict(figure.key, run['metrics'][figure.key])
+        return row.verdict(quantity.key, run['metrics'][quantity.key])
 
-    return Column(f'thesis\n{figure.unit}', '.2f', value, below=below)
+    return Column(f'thesis\n{quantity.unit}', '.2f', value, below=below)
 
 
 def _use(run: Entry) -> str | None:

@@ -22,21 +22,21 @@ from ddct_plant.graph.topics import (
 )
 
 _OF_JOINTS = ((JOINT_STATES, JOINTS), (SENSED_JOINT_STATES, SENSED_JOINTS))
-"""Topics with a value for each joint."""
+"""Topics with one value per joint, and the joints of each."""
 
 
 def scores_csv(runs: Sequence[Entry]) -> str:
-    """Return one row per run, its metrics and its verdict beside its facts."""
+    """Return the scores as CSV, one row per run: facts, metrics and verdict."""
     return rows_csv([score_row(run) for run in runs])
 
 
 def rows_csv(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of the same columns, at least one, under the names of the columns."""
+    """Return rows of equal columns, at least one, as CSV below the names of the columns."""
     return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 
 def score_row(run: Entry) -> dict[str, Any]:
-    """Return what a table says of a run, by column."""
+    """Return the facts, metrics and verdict of a run by column."""
     verdict = {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
     row = {**run, **run['metrics'], **verdict}
     nested = ('metrics', 'verdict', NOT_COMPUTED)
@@ -44,18 +44,18 @@ def score_row(run: Entry) -> dict[str, Any]:
 
 
 def signals_csv(recording: Recording) -> str:
-    """Return one row per tick, with the columns of `signal_columns`."""
+    """Return the signals as CSV, one row per tick, with the columns of `signal_columns`."""
     columns = signal_columns(recording.trajectory)
-    # Python's floats print with the digits that give them back to the last bit.
+    # Python prints a float with enough digits to recover every bit.
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return csv_text(columns, rows)
 
 
 def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     """
-    Return every signal that is a number, (N+1,), by its name with the unit in it; time first.
+    Return every numeric signal, (N+1,), by its name with the unit; time first.
 
-    Of previews and torques within the period it is the value at the tick.
+    For previews and for torques within a period it is the value at the tick.
     """
     columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
     of_joints = [signal for topic, _ in _OF_JOINTS for signal in topic.signals]
@@ -81,6 +81,6 @@ def _joint_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
 
 
 def _place(signal: Signal) -> int:
-    """Return where a column stands: the slip and its reference first, beside each other."""
+    """Return the sort index of a column: the slip and its reference come first."""
     first = (*SLIP.signals, *SLIP_REFERENCE.signals)
     return first.index(signal) if signal in first else len(first)

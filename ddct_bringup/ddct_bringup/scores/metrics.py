@@ -1,4 +1,4 @@
-"""Figures of merit of one run, each undefined (None) rather than a stand-in number."""
+"""Metrics of one run; a metric that is undefined is None, never a placeholder number."""
 
 import math
 from typing import NamedTuple
@@ -7,10 +7,10 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.criteria import finite
-from ddct_bringup.verdict.meeting import first_lock, first_meeting
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
+from ddct_bringup.verdict.zero_slip import first_lock, first_zero_slip
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -24,44 +24,62 @@ class Metrics(NamedTuple):
     """
 
     engagement_time_s: float | None
-    """t_a (thesis Section 5.1): from control start to the first sign change of w_d, interpolated
-    linearly between samples; None without one, or when w_d is zero at control start. Of a clutch
-    that sticks to the instant of the first lock, or of passing through zero."""
+    """
+    Engagement time t_a in s (thesis Section 5.1): from control start to the first sign change of
+    w_d, interpolated linearly between samples. None without one, or when w_d is zero at control
+    start. For a stick-slip clutch, to the exact instant of the first lock or passage through zero.
+    """
     torsion_speed_std_rpm: float | None
-    """Standard deviation (ddof 0) of w_sr over the score window."""
+    """Standard deviation (ddof 0) of w_sr in rpm over the score window."""
     acceleration_std_m_s2: float | None
-    """Standard deviation (ddof 0) of A_x over the score window."""
+    """Standard deviation (ddof 0) of A_x in m/s^2 over the score window."""
     slip_rmse_rpm: float | None
-    """Root of the mean square of reference less slip over the score window."""
+    """Root mean square of reference minus slip in rpm over the score window."""
     slip_final_rpm: float | None
-    """Last sample of w_d, with its sign."""
+    """Last sample of w_d in rpm, with its sign."""
     peak_jerk_m_s3: float | None
-    """Largest magnitude of the jerk from control start to the end of the run; A_x low-passed at
-    20 Hz without delay. None too when the run ends before the score window does."""
+    """
+    Largest magnitude of the jerk in m/s^3 from control start to the end of the run, with A_x
+    low-passed at 20 Hz without delay. None also when the run ends before the score window.
+    """
     vdv_m_s1_75: float | None
-    """Vibration dose value over the score window, weighting `metric_figures.VDV_WEIGHTING`."""
+    """
+    Vibration dose value in m/s^1.75 over the score window, with the weighting `VDV_WEIGHTING`.
+    """
     weighted_acceleration_m_s2: float | None
-    """Root of the mean square of A_x over the score window, weighted as the dose."""
+    """Root mean square of A_x in m/s^2 over the score window, with the weighting of the dose."""
     friction_energy_j: float | None
-    """Friction work of the clutch over the whole run: exact where the run reports it, otherwise
-    the integral of |C_f w_d| by trapezoids."""
+    """
+    Friction work of the clutch in J over the whole run: exact where the run records it, otherwise
+    the integral of |C_f w_d| by the trapezoidal rule.
+    """
     lockup_slip_acceleration_rad_s2: float | None
-    """Slope of w_d where it first changes its sign, between the samples around it. Of a clutch
-    that sticks the exact one just before the first lock after control start."""
+    """
+    Slope of w_d in rad/s^2 at its first sign change, between the samples around it. For a
+    stick-slip clutch the exact slope just before the first lock after control start.
+    """
     torque_total_variation_n_m: float | None
-    """Sum of the magnitudes of all changes of the clutch torque request over the whole run."""
+    """
+    Sum of the magnitudes of all changes of the clutch torque request in N m over the whole run.
+    """
     steps: int
-    """Periods integrated."""
+    """Number of periods in the run."""
     update_time_median_us: float | None
-    """Median time of a controller update; this and what follows is None without timing.json."""
+    """
+    Median time of a controller update in us; this and all following metrics are None without
+    timing.json.
+    """
     update_time_p99_us: float | None
-    """99th percentile of the same."""
+    """99th percentile of the time of a controller update in us."""
     missed_steps: int | None
-    """Steps that went on without a reply, in real time."""
+    """Number of steps without a reply of the controller, in real time."""
     resends: int | None
-    """Ticks that the owner of time sent again, in lock-step."""
+    """Number of ticks that the owner of time published again, in lock-step."""
     worst_lateness_us: float | None
-    """How much too late the driveline took a step at most, in real time; None in lock-step."""
+    """
+    Largest delay of a step of the driveline after its due time in us, in real time; None in
+    lock-step.
+    """
 
 
 _OF_WINDOW = (
@@ -97,7 +115,7 @@ def metric_values(
     trajectory: Trajectory, start: int, window: tuple[int, ...]
 ) -> dict[str, np.ndarray]:
     """
-    Return every metric of the trajectory itself by name, (...), not finite where undefined.
+    Return the metrics of the trajectory by name, (...), not finite where undefined.
 
     Signals may be stacks, (..., N+1), of runs of one length. Control starts at step `start`;
     `window` is the first and the last scored step.
@@ -106,7 +124,7 @@ def metric_values(
     with np.errstate(all='ignore'):  # what is not finite becomes None
         engagement_time, lockup_slope = _first_sign_change(slip, start)
         if trajectory.phase_events is not None:
-            engagement_time = _first_meeting_time(trajectory, start, engagement_time)
+            engagement_time = _zero_slip_time(trajectory, start, engagement_time)
             lockup_slope = _slip_acceleration_at_lock(trajectory, start)
         return {
             'engagement_time_s': engagement_time,
@@ -122,13 +140,13 @@ def metric_values(
 
 
 def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the time in s from step `start` to where the slip changes its sign, and its slope."""
+    """Return the time in s from `start` to the first sign change of the slip, and its slope."""
     if start >= slip.shape[-1]:
         never = np.full(slip.shape[:-1], math.nan)
         return never, never
     changed = slip[..., start:] * np.sign(slip[..., start : start + 1]) <= 0.0
     after = start + np.argmax(changed, axis=-1)
-    # Without a change the first one seems to be at `start`, as it is where the slip is zero there.
+    # Without a sign change argmax returns `start`, as it does where the slip is zero at `start`.
     found = after > start
     last, before = (_at(slip, np.maximum(after - back, 0)) for back in range(2))
     step = before - last
@@ -136,14 +154,14 @@ def _first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.nda
     return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
 
 
-def _first_meeting_time(trajectory: Trajectory, start: int, crossing_s: np.ndarray) -> np.ndarray:
+def _zero_slip_time(trajectory: Trajectory, start: int, crossing_s: np.ndarray) -> np.ndarray:
     """
-    Return the time in s from step `start` to the first lock or reversal, NaN without.
+    Return the time in s from step `start` to the first lock or reversal, NaN without one.
 
-    `crossing_s` is that of the first change of sign of the samples. Bags recorded before reversals
-    were events may have one without an event; then it stands.
+    `crossing_s` is the time of the first sign change of the samples. It is returned where a bag
+    from before reversals were events has a sign change without an event.
     """
-    found = first_meeting(trajectory, start)
+    found = first_zero_slip(trajectory, start)
     if found is None:
         return crossing_s
     step, event = found
@@ -152,7 +170,7 @@ def _first_meeting_time(trajectory: Trajectory, start: int, crossing_s: np.ndarr
 
 
 def _slip_acceleration_at_lock(trajectory: Trajectory, start: int) -> np.ndarray:
-    """Return that of the first lock after step `start` in rad/s^2, NaN where it is not known."""
+    """Return dw_d/dt in rad/s^2 at the first lock after step `start`, NaN where unknown."""
     lock = first_lock(trajectory, start)
     return np.array(math.nan if lock is None else lock.slip_acceleration, dtype=float)
 
@@ -173,7 +191,7 @@ def _peak_jerk(trajectory: Trajectory, start: int, last_scored: int) -> np.ndarr
     """
     Return the largest magnitude of the jerk from step `start` on, NaN for a run that ends early.
 
-    The filter begins with the run, not at `start`. A run that ends before `last_scored` may have
+    The filter starts with the run, not at `start`. A run that ends before `last_scored` may have
     ended before its lock.
     """
     found = np.abs(jerk(trajectory.vehicle_accel)[..., start:])
@@ -188,7 +206,7 @@ def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, 
         runs = trajectory.slip_speed.shape[:-1]
         return dict.fromkeys(_OF_WINDOW, np.full(runs, math.nan))
     window = slice(first, last + 1)
-    # Filters see no sample beyond the window, so that a longer run scores the same.
+    # The filters get no sample after the window, so a longer run has the same metrics.
     acceleration = trajectory.vehicle_accel[..., : last + 1]
     weighted = weighted_acceleration(acceleration)[..., window]
     error = (trajectory.slip_reference[..., 0] - trajectory.slip_speed)[..., window]

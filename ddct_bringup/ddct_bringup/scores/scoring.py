@@ -10,7 +10,7 @@ from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming, failed_run, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
@@ -36,13 +36,14 @@ Entry = dict[str, Any]
 
 SCHEMA_VERSION = 3
 """
-Of `scores.json`; 1 had no verdict and did not say its version.
+Schema version of `scores.json`.
 
-In 2 a failed run had other words on limits, and there was no `convention` and no `traction`.
+Version 1 had no verdict and no version number. In version 2 the verdict of a failed run had other
+values, and there was no `convention` and no `traction`.
 """
 
 NOT_COMPUTED = 'not_computed'
-"""Key of `scores.json`, of a log of another tool alone: reasons by figure."""
+"""Key of `scores.json` for the log of another tool: reasons by metric or criterion."""
 NEEDS: Mapping[str, tuple[str, ...]] = {
     TORSION: ('torsion_speed_std_rpm', 'judder', 'shuffle_amplitude', 'shuffle_decay'),
     'vehicle_accel': (
@@ -61,7 +62,7 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
     'torque_request': ('torque_total_variation_n_m', 'request_variation'),
     'driveshaft_torque': ('torque_dip',),
 }
-"""Metrics and criteria by the quantity of the log without which they do not exist."""
+"""Required quantities of a log, by metric or criterion."""
 
 METRIC_NAMES = Metrics._fields
 _COUNT = re.compile('[0-9]{1,9}')
@@ -78,9 +79,9 @@ _FACT_NAMES = (
 
 def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
     """
-    Score and judge a recording, with its `timing.json` if there is one; `bag` names it.
+    Score and judge a recording, with its `timing.json` if there is one; `bag` is its name.
 
-    What a failed run recorded has no score. Raise DdctError for timing that cannot be used.
+    The recording of a failed run has no score. Raise DdctError for timing that cannot be used.
     """
     if recording.measured:
         return score_run(recording, bag, limits, None)
@@ -90,7 +91,7 @@ def score_recording(recording: Recording, bag: str, limits: Limits) -> Entry:
 
 
 def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming | None) -> Entry:
-    """Score and judge a recording without looking beside its bag."""
+    """Score and judge a recording without reading files next to its bag."""
     facts = recording.facts
     computed = compute_metrics(
         recording.trajectory,
@@ -120,9 +121,9 @@ def score_run(recording: Recording, bag: str, limits: Limits, timing: RunTiming 
 
 def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None = None) -> Entry:
     """
-    Return the entry of a bag that could not be read: invalid, with the facts it still tells.
+    Return the entry of a bag that cannot be read: invalid, with the facts that are readable.
 
-    Of a run that failed the entry says why it did, whether it left a bag or not.
+    For a failed run the entry has the reason, with or without a bag.
     """
     name = bag_name(path, relative_to)
     if failure := failed_run(path if path.is_dir() else path.parent):
@@ -135,7 +136,7 @@ def unreadable_entry(path: Path, error: DdctError, *, relative_to: Path | None =
 
 
 def entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
-    """Return the entry of a run that failed: invalid, with the facts that are known of it."""
+    """Return the entry of a failed run: invalid, with the facts that are available."""
     return {
         'bag': bag,
         **{name: getattr(facts, name, None) for name in _FACT_NAMES},
@@ -153,7 +154,7 @@ def entry_without_score(bag: str, facts: RunFacts | None, reason: str) -> Entry:
 def not_computed(
     recording: Recording, metrics: Mapping[str, Any], verdict: Mapping[str, Any]
 ) -> dict[str, str]:
-    """Return why metrics and criteria that are null are so, where the log lacks a quantity."""
+    """Return the reasons for metrics and criteria that are null for lack of a log quantity."""
     values = {each['name']: each['value'] for each in verdict['criteria']} | dict(metrics)
     return {
         name: recording.absent[quantity]
@@ -165,7 +166,7 @@ def not_computed(
 
 def fallbacks_in(trajectory: Trajectory) -> int | None:
     """
-    Return at how many steps the controller had no solution of its program and said so.
+    Return the number of steps at which the controller reported no solution of its program.
 
     None for a controller whose status does not count them.
     """
@@ -196,5 +197,5 @@ def _verdict(
 
 
 def scores_document(runs: Sequence[Entry], limits: Limits) -> dict[str, Any]:
-    """Return the content of `scores.json` of runs that these limits judged."""
+    """Return the content of `scores.json` for runs that were judged by these limits."""
     return {'schema_version': SCHEMA_VERSION, 'limits': limits.origin, 'runs': list(runs)}

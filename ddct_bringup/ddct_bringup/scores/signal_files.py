@@ -1,4 +1,4 @@
-"""Every signal of a run as a file for other tools: CSV, or MAT for MATLAB, Octave and scipy."""
+"""Write every signal of a run to a file for other tools: CSV, or MAT for MATLAB and Octave."""
 
 import io
 from collections.abc import Callable, Mapping, Sequence
@@ -18,9 +18,9 @@ _MAT_TEXT_BYTES = 116
 
 def signals_mat(recording: Recording) -> bytes:
     """
-    Return the columns of `signals_csv` as a MAT file of version 5: (N+1, 1) each, by its name.
+    Return the columns of `signals_csv` as a MAT file of version 5: (N+1, 1) each, by name.
 
-    It says no date, so the same run gives the same bytes.
+    The file contains no date, so the same run gives the same bytes.
     """
     buffer = io.BytesIO()
     savemat(buffer, signal_columns(recording.trajectory), format='5', oned_as='column')
@@ -31,15 +31,15 @@ SIGNAL_FILES: Mapping[str, Callable[[Recording], bytes]] = {
     'csv': lambda recording: signals_csv(recording).encode(),
     'mat': signals_mat,
 }
-"""What writes the signals, by the ending of the file."""
+"""Functions that encode the signals of a recording, by file extension."""
 
 
 def signal_file_stems(bags: Sequence[tuple[Path, Path | None]]) -> dict[Path, str]:
     """
-    Return by bag the name of its file without the ending; `bags` are those of `bags_in`.
+    Return the file name of each bag without its extension; `bags` is a result of `bags_in`.
 
-    It is that of the scores, and of bags that share one, the whole path. Raise DdctError that
-    names two bags whose paths give one name too.
+    It is the name in the scores; where bags share one, it is made of the whole path. Raise
+    DdctError with two bags whose paths give the same name too.
     """
     short = [_stem(bag_name(bag, folder)) for bag, folder in bags]
     shared = {each for each in short if short.count(each) > 1}
@@ -62,7 +62,7 @@ def _stem(name: str) -> str:
 
 
 def write_signals(folder: Path, file: str, recording: Recording) -> None:
-    """Write a run's signals into a file, by its ending, of a folder that is made if need be."""
+    """Write a run's signals to a file in a folder, made if need be, in its extension's format."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

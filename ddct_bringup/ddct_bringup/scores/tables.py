@@ -1,4 +1,4 @@
-"""Tables of scored runs for the terminal; plain text where the output is no terminal."""
+"""Tables of scored runs for the terminal; plain text where the output is not a terminal."""
 
 from collections.abc import Sequence
 from typing import TextIO
@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.text import Text
 
 from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
-from ddct_bringup.verdict.metric_figures import METRICS, NO_TIMING, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, TRACTION
 from ddct_plant.base.errors import printable
@@ -16,7 +16,7 @@ from ddct_plant.program.table import UNDEFINED, Column, Quantity, drawn_by_rich,
 from ddct_plant.scenario.differences import scenario_title
 
 _PIPED_WIDTH = 200
-"""Columns of a table that goes to a file or pipe, where nothing needs to fit a screen."""
+"""Width in characters of a table written to a file or pipe."""
 
 
 RunColumn = Column[Entry]
@@ -24,17 +24,17 @@ RunColumn = Column[Entry]
 
 
 def fact(name: str, heading: str, form: str = '', *, number: bool = False) -> RunColumn:
-    """Return the column of a run's fact, such as its controller."""
+    """Return the column of a fact of a run, such as its controller."""
     return Column(heading, form, lambda run: run[name], number=number)
 
 
-def metric(figure: Quantity, heading: str = '') -> RunColumn:
-    """Return the column of a metric, under its symbol and unit where there is no heading."""
+def metric(quantity: Quantity, heading: str = '') -> RunColumn:
+    """Return the column of a metric; the heading defaults to its symbol and unit."""
     return Column(
-        heading or f'{figure.symbol}\n{figure.unit}',
-        figure.form,
-        lambda run: run['metrics'][figure.key],
-        undefined=figure.undefined,
+        heading or f'{quantity.symbol}\n{quantity.unit}',
+        quantity.form,
+        lambda run: run['metrics'][quantity.key],
+        undefined=quantity.undefined,
     )
 
 
@@ -55,14 +55,16 @@ COLUMNS = (
     PEAK_JERK,
     VALID,
 )
-"""What every table of runs shows, after the columns that tell the runs apart."""
+"""Columns of every table of runs, after those that identify the run."""
 
 STATE: RunColumn = Column('state', '', lambda run: run['verdict']['state'], number=False)
 VERDICT_COLUMNS: tuple[RunColumn, ...] = (
     STATE,
     Column('limits', '', lambda run: run['verdict']['limits'], number=False),
 )
-"""Before the last column where the terminal is wide enough; otherwise in lines below."""
+"""
+Columns of the verdict, before the last column of a wide terminal; else in lines below the table.
+"""
 REALTIME_COLUMNS: tuple[RunColumn, ...] = (
     metric(METRICS['missed_steps'], 'missed\nsteps'),
     Column(
@@ -79,11 +81,11 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
         undefined='it ran in lock-step',
     ),
 )
-"""What a table also shows when one of its runs was in real time."""
+"""Additional columns of a table with at least one real-time run."""
 
 
 def table_console(stream: TextIO) -> Console:
-    """Return where tables of runs are printed: as wide as the terminal, or as any of them."""
+    """Return the console for tables of runs: as wide as the terminal, unlimited elsewhere."""
     width = None if stream.isatty() else _PIPED_WIDTH
     return Console(file=stream, width=width, highlight=False)
 
@@ -92,10 +94,11 @@ def print_runs(
     runs: Sequence[Entry], columns: Sequence[RunColumn], stream: TextIO, title: str | None = None
 ) -> None:
     """
-    Print one row per run, its verdict included, then what needs a word.
+    Print one row per run with its verdict, then explanatory notes.
 
-    That are dashes, runs that do not count, and criteria beyond their limits. Without a title it
-    is the scenario, with what is changed in it; of several scenarios each run has its own below.
+    The notes explain dashes, invalid runs, and criteria beyond their limits. The default title is
+    the scenario with its changes; where the runs have several scenarios each row has its own below
+    it.
     """
     scenarios = {_scenario(run) for run in runs if run['scenario'] is not None}
     if title is None and len(scenarios) == 1:
@@ -126,7 +129,7 @@ def _verdict_text(run: Entry) -> str:
 
 
 def dash_notes(runs: Sequence[Entry], columns: Sequence[RunColumn]) -> list[str]:
-    """Return for each column in which a run that can be read has a dash, what it means there."""
+    """Return a note on the meaning of the dash for each column where a readable run has one."""
     read = [run for run in runs if run['metrics']['steps'] is not None]
     return [
         f"{column.heading.splitlines()[0]} '-': {column.undefined}."
@@ -136,7 +139,7 @@ def dash_notes(runs: Sequence[Entry], columns: Sequence[RunColumn]) -> list[str]
 
 
 def run_notes(run: Entry) -> list[str]:
-    """Return what to know of one run: why it does not count, or what its figures do not show."""
+    """Return notes on one run: why it is invalid, or on limitations of its scores."""
     notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
     if run['valid'] and run['fallbacks']:
         notes.append(fallback_note(run))
@@ -151,7 +154,7 @@ def run_notes(run: Entry) -> list[str]:
 
 
 def beyond_notes(runs: Sequence[Entry]) -> list[str]:
-    """Return for each limit that runs are beyond its source, and the runs with their values."""
+    """Return for each exceeded limit its source, and the runs that exceed it with their values."""
     beyond: dict[str, list[str]] = {}
     for run in runs:
         traction = {'name': TRACTION, **(run['verdict']['traction'] or {'state': NO_LIMIT})}
@@ -164,7 +167,7 @@ def beyond_notes(runs: Sequence[Entry]) -> list[str]:
 
 
 def unknown_limits_notes(run: Entry) -> list[str]:
-    """Return by which limits a success, beyond none, cannot be judged for want of a value."""
+    """Return the limits of a successful run that cannot be checked because a value is missing."""
     verdict = run['verdict']
     unknown = [
         each['name']
@@ -177,7 +180,7 @@ def unknown_limits_notes(run: Entry) -> list[str]:
 
 
 def slow_notes(run: Entry) -> list[str]:
-    """Return that a controller's updates outlast their period, if more than 1 % of them do."""
+    """Return a note if more than 1 % of a controller's updates are longer than the period."""
     median, most = (_in_ms(run['metrics'][f'update_time_{name}_us']) for name in ('median', 'p99'))
     if median is None or most is None or most <= 1e3 * PERIOD_S:
         return []
@@ -188,7 +191,7 @@ def slow_notes(run: Entry) -> list[str]:
 
 
 def fallback_note(run: Entry) -> str:
-    """Return what to know of a run whose controller had to do without a solution."""
+    """Return a note on a run whose controller had steps without a solution of its program."""
     return (
         f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
         'time: the figures are partly those of its fallback'

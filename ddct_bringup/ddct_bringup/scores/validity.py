@@ -1,4 +1,4 @@
-"""Whether a run counts, and what a real-time run says of itself in one line."""
+"""Validity of a run, and the one-line summary of a real-time run."""
 
 import math
 
@@ -11,13 +11,15 @@ from ddct_plant.graph.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE
 
 MISS_TOLERANCE = 0.01
 """
-Share of the steps that may have held a torque. A machine busy with other work missed 6 of 2500,
-which the figures do not show; a node that stands still for half a second misses 50 of 300.
+Largest share of steps without a reply in a valid real-time run.
+
+A machine under load missed 6 of 2500, which does not change the metrics; a node that stops for
+half a second misses 50 of 300.
 """
 
 
 def why_invalid(recording: Recording) -> str:
-    """Return why a run does not count; empty if it does, also where its engine ended it early."""
+    """Return why a run is invalid; empty if it is valid, also where its engine ended it early."""
     trajectory, facts = recording.trajectory, recording.facts
     reasons = [] if facts.lockstep else why_not_real_time(recording)
     if trajectory.steps < facts.steps and not engine_end(recording):
@@ -27,7 +29,7 @@ def why_invalid(recording: Recording) -> str:
 
 
 def not_finite(trajectory: Trajectory) -> list[str]:
-    """Return of each signal that is not finite throughout where it first is not."""
+    """Return for each signal with a value that is not finite the time of the first such value."""
     found = []
     for name, values in trajectory.signals.items():
         if not isinstance(values, np.ndarray) or np.isfinite(values).all():
@@ -39,7 +41,7 @@ def not_finite(trajectory: Trajectory) -> list[str]:
 
 
 def engine_end(recording: Recording) -> str | None:
-    """Return `stalled` or `over_revved` where the run's last state is a reason to end it."""
+    """Return `stalled` or `over_revved` where the last state of the engine ended the run."""
     if recording.settings is None:
         return None
     speed = float(recording.trajectory.joint_speed[-1, 0])
@@ -58,10 +60,10 @@ def _why_early(recording: Recording) -> str:
 
 def missed_steps(recording: Recording) -> int:
     """
-    Return at how many steps a torque was held.
+    Return the number of steps at which the last torque was held for lack of a reply.
 
-    The driveline counts them; replies that only the bag lacks count too, since its signals hold
-    the last value there.
+    The driveline counts them. Replies that are missing from the bag alone count too, since its
+    signals hold the last value there.
     """
     torques = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
     held = (recording.missed.get(topic.name, 0) for topic in torques)
@@ -69,13 +71,13 @@ def missed_steps(recording: Recording) -> int:
 
 
 def safe_state(recording: Recording) -> str:
-    """Return which node went to its safe state and at which scenario time, or ''."""
+    """Return the node that entered its safe state and the scenario time, or ''."""
     states = sorted(recording.realtime.safe_states.items(), key=lambda each: each[1])
     return ', '.join(f'{node} at {(stamp - START_NS) / 1e9:g} s' for node, stamp in states)
 
 
 def why_not_real_time(recording: Recording) -> list[str]:
-    """Return why a real-time run that came to its end does not count; empty if it does."""
+    """Return why a complete real-time run is invalid; empty if it is valid."""
     reasons = []
     missed, steps = missed_steps(recording), recording.trajectory.steps
     if missed > MISS_TOLERANCE * steps:
@@ -89,7 +91,7 @@ def why_not_real_time(recording: Recording) -> list[str]:
 
 
 def realtime_summary(recording: Recording) -> str:
-    """Return misses, worst lateness and safe state in one line."""
+    """Return missed steps, worst lateness and safe state in one line."""
     lateness = recording.realtime.worst_lateness_us
     late = 'unknown' if lateness is None else f'{lateness / 1e3:.2f} ms'
     return (

@@ -1,1 +1,1 @@
-"""Runs over one value or two: `sweep`, the short form of a campaign."""
+"""Runs over the values of one key or two: `sweep`, the short form of a campaign."""

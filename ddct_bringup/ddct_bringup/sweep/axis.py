@@ -1,4 +1,4 @@
-"""What `--over` says: a key, and the values that it takes one after the other."""
+"""Axis of a sweep, given by `--over`: a key and its values."""
 
 import math
 import re
@@ -13,11 +13,11 @@ from ddct_plant.files.input_file import located
 from ddct_plant.files.yaml_text import parse_yaml
 
 MOST = 10_000
-"""Values of one key, and points of a sweep; a campaign is made for more."""
+"""Largest number of values of one key and of points of a sweep; use a campaign for more."""
 _HOW = 'write KEY=START:STOP:COUNT, such as wear_gain=0.5:1.5:11, or KEY=A,B,C'
 _WHOLE = re.compile(r'[+-]?\d+')
 _DIGITS = 12
-"""Of a value between START and STOP, so that what is printed is what ran."""
+"""Significant digits of a value between START and STOP, so that the printed value is exact."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,12 @@ class Axis:
     """A key and its values."""
 
     key: str
-    """A setting of a run, such as `wear_gain`, or a dotted scenario key."""
+    """Setting of a run, such as `wear_gain`, or a dotted scenario key."""
     values: tuple[Any, ...]
     unit: str = ''
 
     def __post_init__(self) -> None:
-        """Refuse values that are none, too many or equal."""
+        """Check the values; raise ParameterError if there are none, too many or equal ones."""
         where = f'--over {printable(self.key)}'
         if not 1 <= len(self.values) <= MOST:
             raise ParameterError(f'{where}: {len(self.values)} values: give 1 to {MOST}')
@@ -42,7 +42,7 @@ class Axis:
 
     @property
     def heading(self) -> str:
-        """The key with its unit."""
+        """Key with its unit."""
         return f'{self.key}, {self.unit}' if self.unit else self.key
 
     @property
@@ -52,7 +52,7 @@ class Axis:
 
 
 def axis_of(text: str) -> Axis:
-    """Return what `KEY=START:STOP:COUNT` or `KEY=A,B,C` says; raise ParameterError if nothing."""
+    """Return the axis for `KEY=START:STOP:COUNT` or `KEY=A,B,C`, else raise ParameterError."""
     key, _, given = text.partition('=')
     if not key or not given:
         raise ParameterError(f'--over {printable(text)}: {_HOW}')
@@ -63,9 +63,9 @@ def axis_of(text: str) -> Axis:
 
 def axis(key: str, values: Any) -> Axis:
     """
-    Return the axis of a key; whole numbers become what the key takes.
+    Return the axis of a key; whole numbers are converted to the type of the key.
 
-    Raise ParameterError for a key that there is not, or that a sweep cannot vary.
+    Raise ParameterError for an unknown key, or one that a sweep cannot vary.
     """
     if key == SCENARIO:
         raise ParameterError(f'--over {key}: give one by --scenario, or a campaign')
@@ -76,7 +76,7 @@ def axis(key: str, values: Any) -> Axis:
 
 
 def value_text(value: Any) -> str:
-    """Return a value as tables and messages show it."""
+    """Return a value as text for tables and messages."""
     return f'{value:.{_DIGITS}g}' if type(value) in (int, float) else printable(value)
 
 

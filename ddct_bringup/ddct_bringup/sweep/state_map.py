@@ -1,4 +1,4 @@
-"""States of runs as coloured cells over values, each state a colour of its own."""
+"""Map of the states of runs: coloured cells over values, one colour per state."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -33,7 +33,7 @@ STATE_COLOURS: Mapping[str, str] = {
     OVER_REVVED: '#7a0019',
     INVALID: BLACK,
 }
-"""Blue where the plates are together, pale where they are locked; the darker the worse."""
+"""Colours by state: blue for engaged plates, pale for locked ones; darker is worse."""
 _MOST_TICKS, _MOST_COLUMNS = 8, 5
 
 
@@ -54,7 +54,7 @@ def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequen
 
 
 def state_legend(figure: Figure, states: set[str], marks: Sequence[Artist] = ()) -> None:
-    """Say below the figure which colour is which of the states that it has; then other marks."""
+    """Draw the legend of the states that occur below the figure, followed by other marks."""
     handles: list[Artist] = [
         Patch(facecolor=STATE_COLOURS[state], edgecolor='#7f7f7f', label=state.replace('_', ' '))
         for state in STATES
@@ -66,12 +66,12 @@ def state_legend(figure: Figure, states: set[str], marks: Sequence[Artist] = ())
 
 
 def places_of(axis: Axis) -> np.ndarray:
-    """Return (n,) where the values of an axis are drawn: numbers at themselves."""
+    """Return the (n,) positions of an axis's values in the drawing; numbers at their value."""
     return np.array(axis.values, float) if axis.numeric else np.arange(len(axis.values))
 
 
 def edges_of(places: np.ndarray) -> np.ndarray:
-    """Return (n + 1,) edges of the cells around (n,) places: in the middle between two."""
+    """Return the (n + 1,) edges of cells around (n,) positions, midway between neighbours."""
     if len(places) == 1:
         return places[0] + np.array([-0.5, 0.5])
     middle = (places[1:] + places[:-1]) / 2.0
@@ -79,13 +79,13 @@ def edges_of(places: np.ndarray) -> np.ndarray:
 
 
 def label_values(axis: Axis, which: Any) -> None:
-    """Label matplotlib's x or y axis with an axis of a sweep; few values are ticks themselves."""
+    """Label matplotlib's x or y axis with an axis of a sweep; few values become the ticks."""
     which.set_label_text(axis.heading)
     if not axis.numeric or len(axis.values) <= _MOST_TICKS:
         which.set_ticks(places_of(axis), _tick_texts(axis.values))
 
 
 def _tick_texts(values: Sequence[Any]) -> list[str]:
-    """Return numbers with four digits, or with all of them where four do not tell them apart."""
+    """Return numbers with four digits, or with all where four do not distinguish them."""
     short = [f'{each:.4g}' if type(each) is float else value_text(each) for each in values]
     return short if len(set(short)) == len(short) else [value_text(each) for each in values]

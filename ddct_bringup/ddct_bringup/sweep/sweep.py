@@ -26,14 +26,14 @@ from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 SCHEMA_VERSION = 1
-"""Of what `ddct sweep --json` writes."""
+"""Schema version of the output of `ddct sweep --json`."""
 OVER = 'over'
-"""In a run's entry the values by the keys of the axes."""
+"""Key in a run's entry of the values by the keys of the axes."""
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is run; what cannot be is refused when it is built."""
+    """Runs of a sweep: controllers and settings, checked when built."""
 
     base: RunBase
     axes: Sequence[Axis]
@@ -68,12 +68,12 @@ class Sweep:
 
     @cached_property
     def settings(self) -> list[RunSettings]:
-        """Those of the points."""
+        """Settings of every point."""
         return [self.base.at(point) for point in self.points]
 
     @property
     def conditions(self) -> str:
-        """What all runs share, for a heading: scenario, architecture, clutch and wear gain."""
+        """Common conditions of all runs as a heading: scenario, architecture, clutch, wear."""
         settings = self.settings[0]
         changes = [f'{key}={value}' for key, value in self.base.changes.items()]
         swept = [axis.key for axis in self.axes]
@@ -87,7 +87,7 @@ class Sweep:
 
     @property
     def varied(self) -> str:
-        """What is varied, for a heading."""
+        """Varied keys, for a heading."""
         return f'over {", ".join(axis.key for axis in self.axes)}'
 
     def __len__(self) -> int:
@@ -96,9 +96,9 @@ class Sweep:
 
     def run(self, index: int) -> Entry:
         """
-        Carry out one run: those of the first controller come first.
+        Carry out one run; those of the first controller come first.
 
-        Its entry is that of `scores.json`, but that its place, `OVER`, stands for a bag.
+        Its entry is that of `scores.json`, with its values under `OVER` instead of a bag.
         """
         controller, point = divmod(index, len(self.points))
         entry = scored_headless(self.settings[point], self.controllers[controller], self.limits)
@@ -106,12 +106,12 @@ class Sweep:
         return {OVER: self.points[point], **entry}
 
     def runs(self) -> AbstractContextManager[Iterator[Entry]]:
-        """Carry out all runs on all cores, as they are taken; as `in_processes`."""
+        """Carry out all runs on all cores as the iterator is consumed, see `in_processes`."""
         return in_processes(self.run, len(self))
 
 
 def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
-    """Return what `--json` writes: the axes, the limits, and a row per run."""
+    """Return the document of `--json`: the axes, the limits, and a row per run."""
     return {
         'schema_version': SCHEMA_VERSION,
         'over': [
@@ -125,12 +125,12 @@ def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
 
 
 def sweep_csv(runs: Sequence[Entry]) -> str:
-    """Return what `--csv` writes: a row per run, with the columns that a campaign's has."""
+    """Return the text of `--csv`: a row per run, with the columns of a campaign."""
     return rows_csv([result_row(run, run[OVER]) for run in runs])
 
 
 def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Table:
-    """Return a row per run: the controller, where it ran, its metrics and its state."""
+    """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
     columns = [CONTROLLER, *map(_place, sweep.axes), *map(metric, metrics), STATE]
     return table_of(title, columns, runs)
@@ -142,7 +142,7 @@ def _place(axis: Axis) -> RunColumn:
 
 
 def sweep_notes(runs: Sequence[Entry], metrics: Sequence[Quantity]) -> list[str]:
-    """Return what dashes mean, and why runs are not valid and where, as `wear_gain=0.7`."""
+    """Return notes on dashes, and on invalid runs with their values, as `wear_gain=0.7`."""
     failed: dict[str, list[str]] = {}
     for run in runs:
         if not run['valid']:

@@ -1,4 +1,4 @@
-"""The figure that `sweep` draws: metrics as lines over one value, states as maps over two."""
+"""Quantity of `sweep`: metrics as lines over one key, states as maps over two."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,11 +39,13 @@ _CROSS: dict[str, Any] = {**_MARK, 'marker': 'x'}
 _RING: dict[str, Any] = {**_MARK, 'marker': 'o', 'markerfacecolor': 'none'}
 _MARKS_OF_RUNS = ((_CROSS, 'other than engaged'), (_RING, 'engaged, no value'))
 _MARGIN = 0.08
-"""Above and below the values shown, of their range."""
+"""Margin above and below the values shown, as a share of their range."""
 _FARTHEST = 4.0
 """
-Of a value of a run that is not engaged from those of engaged runs, of their range or half their
-size, to be shown at itself: one that runs away would leave no room for the others.
+Largest distance of a value shown at its place from those of engaged runs.
+
+It applies to runs that are not engaged, in ranges of the engaged values or halves of their size: a
+runaway would leave no room for the others.
 """
 
 
@@ -56,7 +58,7 @@ def write_sweep_figure(
 
 
 def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
-    """Return who is drawn over what, and below it in which conditions, for a figure so wide."""
+    """Return the title for a figure of this width: controllers and axes, then the conditions."""
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
@@ -89,7 +91,7 @@ def _draw_metric(
     axes: Axes, places: np.ndarray, names: Sequence[str], values: np.ndarray, engaged: np.ndarray
 ) -> None:
     """
-    Draw lines through engaged runs; a cross marks another, at the edge if it is far beyond.
+    Draw lines through engaged runs; a cross marks another run, at the edge if it is far away.
 
     An engaged run without a value is a ring at the lower edge. `values` and `engaged` are
     (controllers, places).
@@ -102,7 +104,7 @@ def _draw_metric(
         axes.plot(places, np.where(good, each, np.nan), label=name, **style)
         at = np.clip(np.nan_to_num(each, nan=low), low, high)
         for mark, chosen in ((_CROSS, ~good), (_RING, good & ~np.isfinite(each))):
-            if chosen.any():  # an empty line beyond the clip would have the layout collapse
+            if chosen.any():  # an empty line outside the clip makes the layout collapse
                 axes.plot(places[chosen], at[chosen], color=style['color'], clip_on=False, **mark)
 
 
@@ -142,7 +144,7 @@ def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Drawing:
 
 
 def _range(engaged: np.ndarray, every: np.ndarray) -> tuple[float, float]:
-    """Return what a panel shows: the values of engaged runs, and of others near them."""
+    """Return the range of a panel: the values of engaged runs, and of others near them."""
     every, engaged = every[np.isfinite(every)], engaged[np.isfinite(engaged)]
     if len(engaged):
         low, high = np.min(engaged), np.max(engaged)

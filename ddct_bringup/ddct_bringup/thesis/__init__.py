@@ -1,1 +1,1 @@
-"""What is kept of the thesis: Table 5.1 as printed, and what the admissible scenarios predict."""
+"""Data of the thesis: Table 5.1 as printed, and predictions of the admissible scenarios."""

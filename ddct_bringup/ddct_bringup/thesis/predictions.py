@@ -1,4 +1,4 @@
-"""Predictions with their spread: the kept values of the frozen scenario and of every member."""
+"""Predictions with their range: stored values of the frozen scenario and of every member."""
 
 import importlib.resources
 from collections import Counter
@@ -16,7 +16,7 @@ from ddct_plant.scenario.scenario import Scenario
 FOLDER = 'admissible_scenarios'
 FILE = 'predictions.json'
 Value = float | str | None
-"""A figure, None where it is not defined; hit or miss of a word of Table 5.2."""
+"""Number, None where it is undefined; for Table 5.2 the text hit or miss."""
 
 
 @dataclass(frozen=True)
@@ -25,27 +25,27 @@ class Prediction:
 
     frozen: Value
     members: Mapping[str, Value]
-    """By the member's name."""
+    """Predicted values by the name of the member."""
 
     @property
     def values(self) -> tuple[Value, ...]:
-        """All of them: the frozen scenario is admissible too."""
+        """All values, including that of the frozen scenario, which is admissible too."""
         return (self.frozen, *self.members.values())
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Those that are defined, of a figure."""
+        """All values that are defined numbers."""
         return tuple(value for value in self.values if isinstance(value, (int, float)))
 
     def contains(self, value: float) -> bool:
-        """Return whether a value is between the least and the largest."""
+        """Return whether a value is between the smallest and the largest prediction."""
         return bool(self.numbers) and min(self.numbers) <= value <= max(self.numbers)
 
     def text(self, form: str) -> str:
         """
-        Return the range, its ends in a format such as '.2f'; of words each with its count.
+        Return the range with its ends in a format such as '.2f'; for hits and misses their counts.
 
-        The end of a figure that some members do not have, such as t_a without w_d = 0, is '-'.
+        The end of a range is '-' where some members have no value, such as t_a without w_d = 0.
         """
         words = Counter(value for value in self.values if isinstance(value, str))
         if words:
@@ -63,7 +63,7 @@ class Predictions:
     """Every prediction by its id in the thesis gate, such as '5.1 mpc3 engagement_time_s'."""
 
     scenario_digest: str
-    """Of the frozen scenario that they belong to."""
+    """Digest of the frozen scenario that the predictions belong to."""
     by_id: Mapping[str, Prediction]
 
     def as_record(self) -> dict[str, Any]:
@@ -84,7 +84,7 @@ def folder_of_members() -> Path:
 
 @cache
 def kept_predictions() -> Predictions:
-    """Return the predictions that are kept with the ensemble."""
+    """Return the predictions that are stored with the ensemble."""
     content = parse_json((folder_of_members() / FILE).read_text(encoding='utf-8'))
     return Predictions(
         content['scenario_digest'],
@@ -96,16 +96,16 @@ def kept_predictions() -> Predictions:
 
 
 def predictions_for(scenario: Scenario) -> Mapping[str, Prediction]:
-    """Return the kept predictions by id; none for another scenario than the packaged one."""
+    """Return the stored predictions by id; none for another scenario than the packaged one."""
     kept = kept_predictions()
     return kept.by_id if kept.scenario_digest == scenario_digest(scenario) else {}
 
 
 def predicted_range(controller: str, name: str) -> str:
     """
-    Return a figure's range over the admissible scenarios, for a run with the thesis's conditions.
+    Return the range of a metric over the admissible scenarios for a run of the thesis.
 
-    Empty for a figure that is no prediction, and for all where the ranges are not those of the
+    Empty for a metric without a prediction, and for all where the ranges do not belong to the
     packaged scenario.
     """
     found = predictions_for(load_scenario('thesis')).get(f'5.1 {controller} {name}')

@@ -1,4 +1,4 @@
-"""Table 5.1 as printed, which of its rows were fitted to, and what may stand beside them."""
+"""Table 5.1 as printed, and which of its rows the scenario was fitted to."""
 
 from dataclasses import dataclass
 
@@ -11,53 +11,55 @@ PREDICTED = 'predicted'
 
 @dataclass(frozen=True)
 class ThesisRow:
-    """One printed row; the figures have the names that `metrics.Metrics` gives ours."""
+    """One printed row; its values have the names of `metrics.Metrics`."""
 
     label: str
     """Name in the thesis."""
     controller: str
     """Name in the controller registry."""
     engagement_time_s: float
-    """t_a, from control start to w_d = 0."""
+    """Engagement time t_a in s, from control start to w_d = 0."""
     torsion_speed_std_rpm: float
-    """Standard deviation of w_sr; the thesis prints no unit, rpm is the one that fits."""
+    """
+    Standard deviation of w_sr in rpm; the thesis prints no unit, and rpm is the one that fits.
+    """
     acceleration_std_m_s2: float
-    """Standard deviation of A_x."""
+    """Standard deviation of A_x in m/s^2."""
     use: str
-    """CALIBRATED: the scenario was fitted to it. PREDICTED: it took no part in the fit."""
+    """Use of the row: CALIBRATED, the scenario was fitted to it, or PREDICTED, it was not."""
 
-    def figures(self) -> dict[str, float]:
-        """Return the three printed figures by metric name."""
-        return {name: getattr(self, name) for name in FIGURES}
+    def printed_values(self) -> dict[str, float]:
+        """Return the three printed values by metric name."""
+        return {name: getattr(self, name) for name in TABLE_METRICS}
 
     def cells(self) -> tuple[str, ...]:
-        """Return them as they are printed."""
-        return tuple(f'{value:g}' for value in self.figures().values())
+        """Return the three values as text, with the printed digits."""
+        return tuple(f'{value:g}' for value in self.printed_values().values())
 
     def hit(self, name: str, value: float | None) -> bool:
-        """Return whether a predicted figure is near enough; an undefined one is not."""
-        printed = self.figures()[name]
+        """Return whether a predicted value is within the tolerance; an undefined one is not."""
+        printed = self.printed_values()[name]
         return value is not None and abs(value / printed - 1.0) <= PREDICTION_TOLERANCE
 
     def verdict(self, name: str, value: float | None) -> str:
-        """Return the same in a word."""
+        """Return `hit` or `miss` for a predicted value."""
         return 'hit' if self.hit(name, value) else 'miss'
 
 
-FIGURES = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
-"""Metrics that the table has, in its order."""
-FORMS = dict(zip(FIGURES, ('.3f', '.2f', '.3f'), strict=True))
-"""Formats in which our figures are shown."""
-TOLERANCES = dict(zip(FIGURES, (0.05, 0.10, 0.10), strict=True))
+TABLE_METRICS = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
+"""Metrics of Table 5.1, in the order of its columns."""
+FORMS = dict(zip(TABLE_METRICS, ('.3f', '.2f', '.3f'), strict=True))
+"""Formats of the computed values by metric."""
+TOLERANCES = dict(zip(TABLE_METRICS, (0.05, 0.10, 0.10), strict=True))
 """
-Relative deviation from the print that each fitted figure may have.
+Largest relative deviation of each fitted value from the printed one.
 
-For the calibration it is the unit of the scaled residuals. The rounding of the print (0.5 % of
-t_a, up to 3 % of a sigma) is no measure there: no parameters of the model come that close, so it
-would only say which figures to sacrifice.
+The calibration scales its residuals by it. The rounding of the print (0.5 % of t_a, up to 3 % of a
+sigma) is not a useful tolerance: no parameters of the model come that close, so it would only
+decide which values are sacrificed.
 """
 PREDICTION_TOLERANCE = 0.25
-"""The same of a predicted figure, as the thesis gate states it."""
+"""Largest relative deviation of a predicted value, as in the thesis gate."""
 
 THESIS_TABLE = (
     ThesisRow('LS8', 'ls8', 0.71, 1.15, 0.20, CALIBRATED),
@@ -66,22 +68,22 @@ THESIS_TABLE = (
     ThesisRow('MPC4', 'mpc4', 0.52, 0.20, 0.06, PREDICTED),
     ThesisRow('PI', 'pi', 0.88, 0.70, 0.18, CALIBRATED),
 )
-"""Table 5.1 (Chapter 5), in its order."""
+"""Rows of Table 5.1 (Chapter 5), in its order."""
 PREDICTED_ROWS = [row for row in THESIS_TABLE if row.use == PREDICTED]
 ROW_OF = {row.controller: row for row in THESIS_TABLE}
-"""The rows by registry name."""
+"""Rows by registry name of the controller."""
 
 
 def thesis_row(controller: str) -> ThesisRow | None:
-    """Return the row of a registry name, None for a controller that the table does not have."""
+    """Return the row of a registry name, None for a controller that is not in the table."""
     return ROW_OF.get(controller)
 
 
 def is_thesis_run(settings: RunSettings) -> bool:
     """
-    Return whether a run has the thesis's own conditions.
+    Return whether a run has the conditions of the thesis.
 
-    They are its scenario unchanged, the detailed architecture, and the linear clutch, new.
+    They are its unchanged scenario, the detailed architecture, and a new linear clutch.
     """
     return (
         settings.detailed

@@ -1,1 +1,1 @@
-"""The verdict over a run: its state, and its criteria beside the limits that can be cited."""
+"""Verdict of a run: its state, and its criteria compared with limits whose source is cited."""

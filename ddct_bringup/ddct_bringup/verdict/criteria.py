@@ -1,4 +1,4 @@
-"""The criteria of an engagement: one table of what is computed of every run, and in which unit."""
+"""Table of the criteria of an engagement: how each is computed for a run, and its unit."""
 
 import math
 from collections.abc import Callable
@@ -10,24 +10,27 @@ import numpy as np
 from ddct_bringup.verdict.friction_work import LEAST_SLIP_RPM, slips_at, work_over_least
 from ddct_bringup.verdict.judged_run import JudgedRun, Values
 from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_negative_jerk
-from ddct_bringup.verdict.metric_figures import METRICS, NO_WINDOW
+from ddct_bringup.verdict.metric_definitions import METRICS, NO_WINDOW
 from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
 from ddct_plant.program.table import Quantity
 
 AXIS_FACTOR = 1.4
-"""Of longitudinal vibration in a dose that concerns health (2002/44/EC, Annex, part B, 1)."""
+"""Factor of longitudinal vibration in a dose for health (2002/44/EC, Annex, part B, 1)."""
 
 
 @dataclass(frozen=True)
 class Criterion(Quantity):
-    """One quantity that an engagement is judged by; its key names it in `verdict`."""
+    """One criterion of an engagement; its key is its name in `verdict`."""
 
     value: Callable[[JudgedRun], Values | None] = field(kw_only=True)
-    """None, or a number that is not finite, where it is not defined."""
+    """Function that computes the criterion; None or not finite where it is undefined."""
     exists: Callable[[JudgedRun], Any] = field(default=lambda run: True, kw_only=True)
-    """Whether a run can have it by its plant, (R,) of many: its limit does not apply where not."""
+    """
+    Whether the criterion is defined for the run's plant, (R,) for many runs. No limit applies
+    where it is not.
+    """
     metric: str = field(default='', kw_only=True)
-    """The metric of `scores.json` that it is too, empty for none."""
+    """Key of the metric of `scores.json` that is the same quantity; empty for none."""
 
 
 def _daily_dose(run: JudgedRun) -> Values | None:
@@ -57,7 +60,7 @@ def _criterion(
 
 
 def _metric(name: str, key: str) -> Criterion:
-    """Return the criterion that a metric is too."""
+    """Return the criterion that has the value of a metric."""
     metric = METRICS[key]
     return _criterion(
         name,
@@ -77,7 +80,7 @@ _NO_LOCK = 'the clutch is linear, or never locked after control start'
 _NOT_TOGETHER = 'the plates never came together after control start'
 _NOTHING = 'the run ends before control start'
 _BELOW_1_S = 'the run ends less than 1 s after control start'
-"""Why a figure is undefined."""
+"""Reasons why a criterion is undefined."""
 
 CRITERIA = (
     _criterion(
@@ -203,18 +206,18 @@ def criterion_values(run: JudgedRun) -> dict[str, float | int | None]:
 
 
 def raw_criteria(run: JudgedRun) -> dict[str, Values | None]:
-    """Return the values by name as their functions give them."""
+    """Return the values of all criteria by name, without conversion to Python numbers."""
     with np.errstate(all='ignore'):  # what is not finite becomes None
         return {criterion.key: criterion.value(run) for criterion in CRITERIA}
 
 
 def existing(run: JudgedRun) -> dict[str, Any]:
-    """Return of every criterion by name whether the run can have it, (R,) of many runs."""
+    """Return by criterion whether it is defined for the run's plant, (R,) for many runs."""
     return {criterion.key: criterion.exists(run) for criterion in CRITERIA}
 
 
 def finite(value: Any) -> float | int | None:
-    """Return a number of Python's own, None for one that is not finite."""
+    """Return the value as a Python number, None where it is not finite."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

@@ -1,4 +1,4 @@
-"""Friction work of an engagement over the least that the rigid car needs."""
+"""Friction work of an engagement relative to the minimum for a rigid car."""
 
 from typing import Any
 
@@ -11,13 +11,13 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
 
 LEAST_SLIP_RPM = 50.0
-"""At control start, below which the least is so small that a ratio to it says nothing."""
+"""Least slip at control start, in rpm; below it the minimum is too small for a useful ratio."""
 _PRIMARY = 1
-"""Its place among the joints, whose effort is C_f."""
+"""Index of the primary shaft among the joints; its effort is C_f."""
 
 
 def slips_at(trajectory: Trajectory, start: int) -> np.ndarray:
-    """Say whether there is slip to be removed at step `start`, (...)."""
+    """Return whether the plates slip at step `start`, (...)."""
     slip = trajectory.slip_speed[..., start : start + 1]
     return np.any(np.abs(slip) >= rad_s_from_rpm(LEAST_SLIP_RPM), axis=-1)
 
@@ -26,9 +26,9 @@ def work_over_least(trajectory: Trajectory, start: int, plant: JudgedPlant | Non
     """
     Return the friction work from step `start` on over J_m J_eq/(J_m + J_eq) w_d^2/2, (...).
 
-    That is what two free rigid inertias lose when slip w_d goes to zero; it takes more when the
-    engine drives meanwhile. Not finite below 50 rpm of slip there; None where the plant is not
-    known or the run ends before.
+    The denominator is the energy that two free rigid inertias lose when the slip w_d goes to zero;
+    the work is larger when the engine drives meanwhile. Not finite below 50 rpm of slip at
+    `start`; None where the plant is unknown or the run ends before `start`.
     """
     if plant is None or trajectory.steps < start:
         return None
@@ -38,7 +38,7 @@ def work_over_least(trajectory: Trajectory, start: int, plant: JudgedPlant | Non
 
 
 def _work(trajectory: Trajectory, start: int) -> np.ndarray:
-    """Return the friction work in J from step `start` on, exact where the run reports it."""
+    """Return the friction work in J from step `start` on; exact where the run records it."""
     if trajectory.friction_work is not None:
         return np.sum(trajectory.friction_work[..., start + 1 :], axis=-1)
     torque = trajectory.joint_effort[..., start:, _PRIMARY]

@@ -1,4 +1,4 @@
-"""What an engagement is judged by: its signals from control start on, and when the plates meet."""
+"""Data that the criteria of an engagement are computed from: signals after control start, lock."""
 
 import math
 from collections.abc import Mapping
@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.meeting import SLIPPING, events_of, first_lock, locked_at
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.vibration import (
     SHORTEST_JUDDER_S,
@@ -18,38 +17,39 @@ from ddct_bringup.verdict.vibration import (
     strongest_stretch,
     weighted_acceleration,
 )
+from ddct_bringup.verdict.zero_slip import SLIPPING, events_of, first_lock, locked_at
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline import RELEASE
 
 _DRIVESHAFT = 3
-"""Its place among the joints."""
+"""Index of the driveshaft among the joints."""
 Values = float | int | np.ndarray
-"""A number, or one for each of many runs."""
+"""One number, or one number per run, (R,)."""
 
 
 @dataclass(frozen=True)
 class JudgedRun:
-    """What the criteria are computed from."""
+    """Signals, metrics and plant of a run from which its criteria are computed."""
 
     trajectory: Trajectory
     control_start: int
     """Step at which feedback starts."""
     score_window_s: tuple[float, float]
     metrics: Mapping[str, Any]
-    """Those of `scores.json`, by name."""
+    """Metrics of `scores.json` by name."""
     engagements_a_day: float
     plant: JudgedPlant | None = None
-    """None where it is not known, as of a log; of many runs its values are (R,)."""
+    """Plant of the run; None where it is unknown, as for a log. Values are (R,) for many runs."""
 
     @cached_property
     def torsion_speed_rpm(self) -> np.ndarray:
-        """(N+1,) w_sr in rpm."""
+        """Torsion speed w_sr in rpm, (N+1,)."""
         return rpm_from_rad_s(self.trajectory.joint_speed[..., _DRIVESHAFT])
 
     @cached_property
     def shuffle(self) -> tuple[Values | None, Values | None]:
-        """Amplitude in rpm and decay in s of w_sr once the plates are together."""
+        """Amplitude in rpm and decay time in s of w_sr after the plates have engaged."""
         together = self.together_from
         return (None, None) if together is None else shuffle(self.torsion_speed_rpm[together:])
 
@@ -60,17 +60,17 @@ class JudgedRun:
 
     @property
     def slips_for_judder(self) -> Any:
-        """Whether the clutch slips long enough for a judder, (R,) of many runs."""
+        """Whether the clutch slips long enough to compute the judder, (R,) for many runs."""
         slipping = self.slipping
         return (slipping.stop - slipping.start - 1) * PERIOD_S >= SHORTEST_JUDDER_S
 
     @cached_property
     def strongest(self) -> tuple[Values | None, Values | None]:
         """
-        Weighted acceleration and dose where they are strongest, None where the window has none.
+        Largest weighted acceleration and dose; None where the score window contains none.
 
-        That is over any stretch after control start as long as the score window. A window whose
-        place is known beforehand says nothing of plates that come together after it.
+        The maximum is taken over every interval after control start that is as long as the score
+        window: a window at a fixed place would miss plates that lock after it.
         """
         first, last = (steps_in('score_window_s', time) for time in self.score_window_s)
         if self.metrics['vdv_m_s1_75'] is None:
@@ -80,7 +80,7 @@ class JudgedRun:
 
     @property
     def acceleration(self) -> np.ndarray:
-        """A_x in m/s^2 from control start on."""
+        """Vehicle acceleration A_x in m/s^2 from control start on."""
         return self.trajectory.vehicle_accel[..., self.control_start :]
 
     @property
@@ -91,9 +91,10 @@ class JudgedRun:
     @cached_property
     def locks_from_s(self) -> float | None:
         """
-        Scenario time of the first lock after control start, or control start when locked there.
+        Scenario time in s of the first lock after control start.
 
-        None when the plates never lock, and for a linear clutch.
+        It is control start where the plates are locked there; None when they never lock, and for a
+        linear clutch.
         """
         if locked_at(self.trajectory, self.control_start):
             return time_of_step(self.control_start)
@@ -102,13 +103,17 @@ class JudgedRun:
 
     @property
     def time_to_lock_s(self) -> float | None:
-        """From control start to the first lock; None too when locked at control start."""
+        """
+        Time in s from control start to the first lock.
+
+        None without a lock, and when the plates are locked at control start.
+        """
         lock = first_lock(self.trajectory, self.control_start)
         return lock.time_s - time_of_step(self.control_start) if lock else None
 
     @property
     def releases(self) -> int | None:
-        """How often the plates part after `locks_from_s`; None without."""
+        """Number of releases after `locks_from_s`; None without a lock."""
         if self.locks_from_s is None:
             return None
         releases = events_of(self.trajectory, RELEASE)
@@ -116,7 +121,7 @@ class JudgedRun:
 
     @property
     def together_from(self) -> int | None:
-        """First step at or after the lock, or t_a for a linear clutch; None without."""
+        """First step at or after the lock, or after t_a for a linear clutch; None without one."""
         if self.trajectory.clutch_phase is not None:
             return None if self.locks_from_s is None else step_at(self.locks_from_s)
         time = self.metrics['engagement_time_s']
@@ -127,10 +132,10 @@ class JudgedRun:
     @cached_property
     def slipping(self) -> slice:
         """
-        Samples from the first to the last of slipping, from control start on.
+        Samples from the first to the last with slip, from control start on.
 
-        Of a linear clutch, which slips on after t_a, those before t_a at which w_d is not 0;
-        without t_a all of them.
+        For a linear clutch, which continues to slip after t_a, the samples before t_a at which w_d
+        is not 0; all samples where there is no t_a.
         """
         if self.trajectory.clutch_phase is not None:
             mask = self.trajectory.clutch_phase == SLIPPING
@@ -144,5 +149,5 @@ class JudgedRun:
 
 def step_at(time_s: float) -> int:
     """Return the first step at or after a scenario time."""
-    # A time on the grid is not pushed to the next step by its last bit.
+    # The margin keeps a time on the grid from being rounded up to the next step by its last bit.
     return math.ceil(time_s / PERIOD_S - 1e-9)

@@ -1,7 +1,7 @@
 """
-What a run is judged by: the rules of the states, and the limits of the criteria, from a file.
+Rules of the states and limits of the criteria, read from a limits file.
 
-Whatever is wrong with a limits file is named with file, line and key.
+Every error in a limits file is reported with file, line and key.
 """
 
 import argparse
@@ -23,10 +23,10 @@ from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_vers
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 SCHEMA_VERSION = 2
-"""Of a limits file; in 1 a convention had no reason."""
+"""Schema version of a limits file; in version 1 a convention had no reason."""
 CONVENTION = 'convention'
 _REASONED_FROM = 2
-"""Version from which a convention has a reason."""
+"""First schema version in which a convention has a reason."""
 _CITATION = ('source', 'clause')
 _MOST = 1e9
 
@@ -37,24 +37,26 @@ def _rule(unit: str, at_least: float | None = None) -> float:
 
 @dataclass(frozen=True)
 class Rules:
-    """Thresholds of the states, and what the criteria assume; their reasons stand in the file."""
+    """Thresholds of the states, and assumptions of the criteria; the file gives the reasons."""
 
     engaged_slip: float = _rule('rpm')
-    """Magnitude of w_d below which the plates of a linear clutch count as one."""
+    """Magnitude of w_d in rpm below which the plates of a linear clutch count as engaged."""
     locked_slip: float = _rule('rpm')
-    """The same of a clutch that sticks, where it has not locked."""
+    """Magnitude of w_d in rpm below which a stick-slip clutch without a lock is nearly engaged."""
     settled_time: float = _rule('s')
-    """How long the slip has to keep below it at the end of the run."""
+    """Time in s for which the slip must stay below the threshold at the end of the run."""
     oscillation_turns: float = _rule('1', at_least=3.0)
-    """Turns of the slip after control start from which it goes to and fro; 3 make a cycle."""
+    """
+    Number of turns of the slip after control start that make an oscillation; 3 are one cycle.
+    """
     runaway_slip: float = _rule('rpm')
-    """Magnitude of w_d beyond which the plates have been driven apart."""
+    """Magnitude of w_d in rpm above which the plates have been driven apart."""
     runaway_growth: float = _rule('rpm/s')
-    """Growth of the magnitude of w_d at the end from which they are being driven apart."""
+    """Growth rate of |w_d| in rpm/s at the end above which the plates are being driven apart."""
     runaway_swing: float = _rule('1', at_least=1.0)
-    """How far a swing reaches of what was reached before, from which they grow without end."""
+    """Ratio of the last swing to the largest earlier one at which oscillations diverge."""
     engagements_a_day: float = _rule('1')
-    """For the daily vibration dose."""
+    """Number of engagements per day, for the daily vibration dose."""
 
 
 @dataclass(frozen=True)
@@ -65,11 +67,11 @@ class Limit:
     value: float
     unit: str
     applies_to: tuple[str, ...] | None
-    """Names of scenarios; None for all."""
+    """Names of the scenarios that the limit applies to; None for all."""
     source: str
-    """Where it is published and in which clause, or that it is a convention and why."""
+    """Publication and clause of the limit, or for a convention its reason."""
     convention: bool
-    """Whether it is agreed on rather than published."""
+    """Whether the limit is a convention rather than published."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +81,12 @@ class Limits:
     rules: Rules
     limits: tuple[Limit, ...]
     traction: TractionRule | None
-    """What the driven axle can carry; None where the file does not limit it."""
+    """Limit of the traction of the driven axle; None where the file has none."""
     origin: dict[str, Any] = field(compare=False)
-    """`name`, `digest` and `schema_version` of the file, as `scores.json` has them."""
+    """Name, digest and schema version of the file, under the keys of `scores.json`."""
 
     def of(self, scenario: str) -> dict[str, Limit]:
-        """Return by criterion the strictest limit for a scenario, where there is one."""
+        """Return the strictest limit of each criterion for a scenario, by criterion."""
         strictest: dict[str, Limit] = {}
         for limit in sorted(self.limits, key=attrgetter('value')):
             if limit.applies_to is None or scenario in limit.applies_to:
@@ -94,13 +96,13 @@ class Limits:
 
 @cache
 def packaged_limits() -> Limits:
-    """Return the limits that come with the package, called `packaged`."""
+    """Return the limits of the package, named `packaged`."""
     file = files('ddct_bringup.verdict') / 'limits.yaml'
     return limits_of_text(file.read_text(encoding='utf-8'), 'packaged')
 
 
 def add_limits_option(parser: argparse.ArgumentParser) -> None:
-    """Add --limits to a program's options; `load_limits` takes it."""
+    """Add the option --limits to a parser; its value is an argument of `load_limits`."""
     parser.add_argument(
         '--limits',
         type=Path,
@@ -110,7 +112,7 @@ def add_limits_option(parser: argparse.ArgumentParser) -> None:
 
 
 def load_limits(file: str | Path | None) -> Limits:
-    """Return the limits of a file, the packaged ones for None; raise DdctError that names it."""
+    """Return the limits of a file, the packaged ones for None; raise DdctError with its name."""
     if file is None:
         return packaged_limits()
     path = Path(file)
@@ -121,10 +123,10 @@ def load_limits(file: str | Path | None) -> Limits:
 
 def limits_of_text(text: str, name: str) -> Limits:
     """
-    Return the limits of a text, called `name`; raise ParameterError that names what is bad.
+    Return the limits of a text under the name `name`.
 
-    Their origin has the name without its folders, and a digest that tells two files of one name
-    apart.
+    Their origin has the name without its folders, and a digest that distinguishes files of the
+    same name. Raise ParameterError with the key of the first error.
     """
     with located(f'limits {name}'):
         content, lines = parse_yaml_with_lines(text)
@@ -222,7 +224,7 @@ def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:
 def _mapping(
     path: str, content: Any, required: Sequence[str], optional: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Return what stands at `path`, '' for the whole file, if it has these keys and no other."""
+    """Return the mapping at `path`, '' for the whole file; require these keys and no others."""
     where = path or 'line 1'
     if not isinstance(content, dict):
         raise ParameterError(f'{where}: give keys and values')

@@ -6,7 +6,7 @@ import scipy
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 
 MEAN_S = 2.0
-"""Over which an acceleration is averaged."""
+"""Averaging time of the acceleration in s."""
 
 
 def mean_acceleration(acceleration: np.ndarray) -> np.ndarray | None:

@@ -1,4 +1,4 @@
-"""What the verdict needs to know of the plant of a run besides its signals."""
+"""Parameters of the plant that the verdict uses besides the signals of a run."""
 
 import math
 from dataclasses import dataclass
@@ -9,26 +9,28 @@ from ddct_plant.scenario.scenario import Scenario
 
 @dataclass(frozen=True)
 class JudgedPlant:
-    """Inertias, ratio and limits of the car that was driven, all SI."""
+    """Inertias, ratio and limits of the simulated car, in SI units."""
 
     engine_inertia: float
-    """J_m in kg m^2."""
+    """Engine inertia J_m in kg m^2."""
     rest_inertia: float
-    """J_eq = J_p + J_v/tau^2 in kg m^2: the rest of the car, rigid, at the shaft."""
+    """Inertia J_eq = J_p + J_v/tau^2 in kg m^2 of the rigid car at the primary shaft."""
     total_ratio: float
-    """tau."""
+    """Total transmission ratio tau."""
     mass: float
-    """m_v in kg."""
+    """Vehicle mass m_v in kg."""
     wheel_radius: float
-    """r_w in m."""
+    """Wheel radius r_w in m."""
     gravity: float
-    """g in m/s^2."""
+    """Gravitational acceleration g in m/s^2."""
     cut_speed: float = math.inf
-    """w_m in rad/s from which the rev limiter cuts the fuel; infinite without one."""
+    """
+    Engine speed w_m in rad/s above which the rev limiter cuts the fuel; infinite without one.
+    """
 
     @classmethod
     def of(cls, scenario: Scenario) -> 'JudgedPlant':
-        """Return the plant that a scenario describes."""
+        """Return the plant of a scenario."""
         return cls.of_parameters(scenario.driveline, scenario.vehicle, scenario.cut_speed)
 
     @classmethod
@@ -52,5 +54,5 @@ class JudgedPlant:
 
     @property
     def joint_inertia(self) -> float:
-        """J_m J_eq / (J_m + J_eq) in kg m^2, that of the slip between two free inertias."""
+        """Inertia of the slip between two free inertias, J_m J_eq / (J_m + J_eq), in kg m^2."""
         return self.engine_inertia * self.rest_inertia / (self.engine_inertia + self.rest_inertia)

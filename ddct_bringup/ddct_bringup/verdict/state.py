@@ -1,10 +1,10 @@
 """
-The state that a run reached: one word, by the rules of the limits file.
+State at the end of a run, by the rules of the limits file.
 
-    engaged          the plates turn as one at the end, or never parted
-    nearly_engaged   plates that stick hardly slip at the end, but are not locked
-    not_engaged      neither, but nothing worse
-    oscillating      the slip goes to and fro and has not settled
+    engaged          the plates turn together at the end, or never separated
+    nearly_engaged   a stick-slip clutch hardly slips at the end, but is not locked
+    not_engaged      the plates still slip at the end, without oscillation or runaway
+    oscillating      the slip oscillates and has not settled
     runaway          the plates are driven apart
     stalled, over_revved   the engine left its limits, which ends the run
     invalid          the run does not count
@@ -18,9 +18,9 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.limits import Rules
-from ddct_bringup.verdict.meeting import LOCKED
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.swings import FEWEST_SWINGS, cycle_of, free_turns
+from ddct_bringup.verdict.zero_slip import LOCKED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
@@ -28,23 +28,23 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 ENGAGED, NEARLY_ENGAGED, NOT_ENGAGED = 'engaged', 'nearly_engaged', 'not_engaged'
 OSCILLATING, RUNAWAY, INVALID = 'oscillating', 'runaway', 'invalid'
 SUCCESSES = (ENGAGED, NEARLY_ENGAGED)
-"""The states in which an engagement has not failed, the best first."""
+"""States of a successful engagement, the best first."""
 STATES = (*SUCCESSES, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
 _ENGINE = 0
-"""Its place among the joints."""
+"""Index of the engine among the joints."""
 DOUBT = 2.0
-"""Standard errors of a slope: 95 % of what chance makes."""
+"""Half-width of the 95 % confidence interval of a slope, in standard errors."""
 
 
 def slip_state(
     trajectory: Trajectory, control_start: int, rules: Rules, plant: JudgedPlant | None = None
 ) -> str:
     """
-    Return the state of a run that counts, whose engine kept its limits.
+    Return the state of a valid run whose engine stayed within its limits.
 
-    `control_start` is the step at which feedback starts. Only what comes after it counts, but for
-    RUNAWAY by the magnitude of the slip. Of a plant that is not known no swing counts as forced,
-    and the engine has no rev limiter.
+    `control_start` is the step at which feedback starts. Only later samples count, except for
+    RUNAWAY by the magnitude of the slip. Without a plant no swing counts as forced, and the engine
+    has no rev limiter.
     """
     whole = rpm_from_rad_s(trajectory.slip_speed)
     if np.max(np.abs(whole)) > rules.runaway_slip:
@@ -54,12 +54,12 @@ def slip_state(
     cycle = cycle_of(slip, turns, rules)
     if success := _success(trajectory.clutch_phase, slip, cycle, rules):
         return success
-    asked = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
+    reference = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
     apart = _driven_apart(slip, rules) if cycle is None else _swings_apart(slip, turns, rules)
     if plant is not None:
         fastest = trajectory.joint_speed[-1 - _window(rules) :, _ENGINE].max()
         apart = apart or (fastest >= plant.cut_speed and _stays_grown(slip, rules))
-    if apart and asked <= rules.engaged_slip:
+    if apart and reference <= rules.engaged_slip:
         return RUNAWAY
     return NOT_ENGAGED if cycle is None else OSCILLATING
 
@@ -68,11 +68,11 @@ def _success(
     phase: np.ndarray | None, slip: np.ndarray, cycle: float | None, rules: Rules
 ) -> str | None:
     """
-    Return whether the plates are together at the end: ENGAGED, NEARLY_ENGAGED or None.
+    Return ENGAGED or NEARLY_ENGAGED where the plates are engaged at the end, else None.
 
-    Those of a clutch that sticks are when they are locked, at once; what keeps as near to zero as
-    a lock, without one, nearly is. A linear clutch cannot lock: it runs through zero, where such
-    plates would stay, and its slip may come back from beyond.
+    A stick-slip clutch is engaged as soon as it is locked, and nearly engaged when its slip stays
+    as close to zero as in a lock. A linear clutch cannot lock: its slip passes through zero, where
+    stick-slip plates would stay locked, and may return from the other side.
     """
     if phase is None:
         settled = _keeps_within(rules.engaged_slip, rules.settled_time, slip, cycle)
@@ -85,13 +85,13 @@ def _success(
 
 
 def _keeps_within(band: float, least_s: float, slip: np.ndarray, cycle: float | None) -> bool:
-    """Say whether the slip keeps within a band for so long at the end, and for half a cycle."""
-    # A cycle leaves the band again before the longest half of it is over.
+    """Return whether the slip stays within a band at the end, `least_s` and half a cycle long."""
+    # An oscillation leaves the band again within its longest half cycle.
     return _time_within(slip, band) >= max(least_s, cycle or 0.0)
 
 
 def _time_within(slip: np.ndarray, band: float) -> float:
-    """Return for how many s the slip has kept within the band at the end."""
+    """Return the time in s for which the slip has stayed within the band at the end."""
     outside = np.flatnonzero(np.abs(slip) > band)
     first = outside[-1] + 1 if outside.size else 0
     return float((len(slip) - 1 - first) * PERIOD_S)
@@ -99,10 +99,10 @@ def _time_within(slip: np.ndarray, band: float) -> float:
 
 def _comes_back(slip: np.ndarray, rules: Rules) -> bool:
     """
-    Say whether a slip that has crossed zero is about to return there.
+    Return whether a slip that has crossed zero is about to return to zero.
 
-    It has gone less far beyond than it was before, and at the rate at which it falls at the end it
-    is gone in less time than it has been beyond.
+    Its magnitude after the crossing is smaller than before, and at the rate of decrease at the end
+    it reaches zero in less time than has passed since the crossing.
     """
     window, crossed = _window(rules), _crossing(slip)
     distance = np.abs(slip)
@@ -115,10 +115,10 @@ def _comes_back(slip: np.ndarray, rules: Rules) -> bool:
 
 def _driven_apart(slip: np.ndarray, rules: Rules) -> bool:
     """
-    Say whether the slip grows at the end.
+    Return whether the slip grows at the end.
 
-    Of one that has crossed zero, and has not gone further than it was before, the growth must not
-    become less, as it does in an overshoot.
+    Where the slip has crossed zero and its magnitude is not larger than before the crossing, its
+    growth rate must not decrease, as it does in an overshoot.
     """
     window = _window(rules)
     distance = np.abs(slip)
@@ -138,20 +138,22 @@ def _driven_apart(slip: np.ndarray, rules: Rules) -> bool:
 
 def _stays_grown(slip: np.ndarray, rules: Rules) -> bool:
     """
-    Say whether the engine was faster than at first all the time at the end, and plates apart.
+    Return whether the slip stays above its first value and above the band at the end.
 
-    Where the rev limiter holds the engine such a slip grows no more, and is only its ripple.
+    Where the rev limiter limits the engine speed such a slip no longer grows: only the ripple of
+    the limiter is left.
     """
     return bool(slip[-1 - _window(rules) :].min() > max(slip[0], rules.engaged_slip))
 
 
 def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:
     """
-    Say whether a slip that goes to and fro moves away from zero, or swings ever further.
+    Return whether an oscillating slip drifts away from zero, or its amplitude grows.
 
-    The plates do not meet in the last cycle, and a straight line through the middles of the later
-    half of the swings grows by more than its doubt. The slip swings ever further when its last
-    cycle reaches `runaway_swing` times what was reached before.
+    It drifts when it does not reach the band around zero in the last cycle, and the slope of a
+    straight line through the midpoints of the later half of the swings exceeds `runaway_growth` by
+    its uncertainty. The amplitude grows when the last cycle reaches `runaway_swing` times the
+    earlier maximum.
     """
     before, cycle = slip[: turns[-3] + 1], slip[turns[-3] + 1 :]
     if np.abs(cycle).max() >= rules.runaway_swing * np.abs(before).max():
@@ -159,13 +161,13 @@ def _swings_apart(slip: np.ndarray, turns: Sequence[int], rules: Rules) -> bool:
     at = np.asarray(turns)
     middles = ((slip[at[1:]] + slip[at[:-1]]) / 2.0)[(len(at) - 1) // 2 :]
     times = ((at[1:] + at[:-1]) * PERIOD_S / 2.0)[(len(at) - 1) // 2 :]
-    if len(middles) < FEWEST_SWINGS or _met(cycle, rules.engaged_slip):
+    if len(middles) < FEWEST_SWINGS or _reaches(cycle, rules.engaged_slip):
         return False
     (slope, _), spread = np.polyfit(times, np.sign(middles[-1]) * middles, 1, cov=True)
     return bool(slope - DOUBT * np.sqrt(spread[0, 0]) >= rules.runaway_growth)
 
 
-def _met(slip: np.ndarray, band: float) -> bool:
+def _reaches(slip: np.ndarray, band: float) -> bool:
     return bool(slip.min() <= band and slip.max() >= -band)
 
 
@@ -174,11 +176,11 @@ def _window(rules: Rules) -> int:
 
 
 def _crossing(slip: np.ndarray) -> int:
-    """Return from which sample on the slip keeps the sign that it ends with, 0 for all."""
+    """Return the first sample after the last change of sign of the slip, 0 without one."""
     other_side = np.flatnonzero(slip * slip[-1:] < 0.0)
     return int(other_side[-1]) + 1 if other_side.size else 0
 
 
 def _growth(values: np.ndarray) -> float:
-    """Return the slope per s of the straight line through samples of 10 ms."""
+    """Return the slope per s of a straight line fitted to samples at 10 ms."""
     return float(np.polyfit(np.arange(len(values)) * PERIOD_S, values, 1)[0])

@@ -1,7 +1,7 @@
 """
-What the driven axle can carry: beyond it the car's wheels would spin.
+Traction limit of the driven axle, above which the wheels of the car would spin.
 
-The plant's wheels roll without slip, so a run that drives harder is none of a car.
+The wheels of the plant roll without slip, so a run with a larger driving force is not realistic.
 """
 
 from dataclasses import dataclass
@@ -13,27 +13,28 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verdict.plant import JudgedPlant
 
 _DRIVESHAFT = 3
-"""Its place among the joints."""
+"""Index of the driveshaft among the joints."""
 
 
 @dataclass(frozen=True)
 class TractionRule:
-    """What a limits file assumes of tyres and car; the reasons stand there."""
+    """Assumptions about tyres and car in a limits file, which gives their reasons."""
 
     friction: float
-    """mu between tyre and road."""
+    """Friction coefficient mu between tyre and road."""
     driven_share: float
-    """Of the weight on the driven front axle at rest, 0 to 1."""
+    """Share of the weight on the driven front axle at rest, 0 to 1."""
     height_over_wheelbase: float
-    """h/L of the centre of gravity."""
+    """Height of the centre of gravity over the wheelbase, h/L."""
     reason: str
-    """Why these values, in a line for tables."""
+    """Reason for these values, one line for tables."""
 
     def limit(self, gravity: float) -> float:
         """
         Return the largest driving force over the mass in m/s^2: mu g s / (1 + mu h/L).
 
-        Acceleration a takes m a h/L off the front axle, so mu (m g s - m a h/L) = m a.
+        An acceleration a reduces the load on the front axle by m a h/L, so mu (m g s - m a h/L) =
+        m a.
         """
         least = self.friction * gravity * self.driven_share
         return least / (1.0 + self.friction * self.height_over_wheelbase)
@@ -43,8 +44,8 @@ def driving_acceleration(trajectory: Trajectory, plant: JudgedPlant | None) -> A
     """
     Return the largest driving force at the wheels over the mass of the car in m/s^2, (...).
 
-    The force is the driveshaft's torque over the radius of the wheels. None where the plant is not
-    known.
+    The force is the driveshaft torque divided by the wheel radius. None where the plant is
+    unknown.
     """
     if plant is None:
         return None

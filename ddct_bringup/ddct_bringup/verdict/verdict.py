@@ -1,4 +1,4 @@
-"""The verdict over one run: state, and each criterion beside its limit. Never one number."""
+"""Verdict of one run: its state, and each criterion with its limit. There is no overall score."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,10 +9,10 @@ from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
 Verdict = dict[str, Any]
-"""State, limits, criteria and traction, as in `scores.json`."""
+"""State, limits, criteria and traction of a run, under the keys of `scores.json`."""
 WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'
 TRACTION = 'traction'
-"""Key of what the driven axle carries, beside the criteria."""
+"""Key of the traction in a verdict, next to the criteria."""
 _TRACTION_UNIT = 'm/s^2'
 
 
@@ -26,13 +26,14 @@ def verdict_of(
     traction: Mapping[str, Any] | None = None,
 ) -> Verdict:
     """
-    Return the verdict over a run of a scenario, of its state and the values of its criteria.
+    Return the verdict of a run of a scenario from its state and the values of its criteria.
 
-    A run that is neither engaged nor nearly engaged has failed, whatever its criteria are. Another
-    is beyond limits if one criterion is, or if its wheels would spin. It is within if every
-    criterion with a limit is: of a limit without a value, as in a run that ended early, nobody
-    knows whether it was kept. No limit applies to what does not exist for the plant, as `exists`
-    says by criterion. `traction` is that of `judged_traction`.
+    A run that is neither engaged nor nearly engaged has failed, whatever its criteria are.
+    Otherwise it is beyond limits if one criterion exceeds its limit, or if the wheels would spin.
+    It is within limits if every criterion with a limit is; a criterion without a value, as in a
+    run that ended early, cannot be compared with its limit. No limit applies to a criterion that
+    is not defined for the plant: `exists` has this by criterion. `traction` is the result of
+    `judged_traction`.
     """
     strictest = {key: limit for key, limit in limits.of(scenario).items() if exists[key]}
     criteria = [
@@ -52,14 +53,14 @@ def verdict_of(
 
 
 def verdict_of_unreadable() -> Verdict:
-    """Return the verdict over a run of which nothing is known."""
+    """Return the verdict of a run whose recording cannot be read."""
     return {'state': INVALID, 'limits': FAILED, 'criteria': [], TRACTION: None}
 
 
 def judged_traction(
     value: float | int | None, plant: JudgedPlant | None, limits: Limits
 ) -> dict[str, Any]:
-    """Return the largest driving force over the mass beside what the driven axle can carry."""
+    """Return the largest driving force over the mass, and its limit for the driven axle."""
     rule = limits.traction
     limit = rule.limit(plant.gravity) if rule and plant else None
     return {
@@ -75,7 +76,7 @@ def judged_traction(
 def _judged(
     name: str, unit: str, value: float | int | None, limit: Limit | None
 ) -> dict[str, Any]:
-    """Return one criterion; the magnitude of its value is what is limited."""
+    """Return the entry of one criterion; the limit applies to the magnitude of its value."""
     return {
         'name': name,
         'value': value,

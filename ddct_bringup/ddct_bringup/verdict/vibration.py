@@ -1,8 +1,8 @@
 """
-What is felt of an engagement.
+Comfort of an engagement.
 
-By a passenger jerk, weighted acceleration and vibration dose; of driveline and car judder, shuffle
-and dip.
+Jerk, weighted acceleration and vibration dose act on a passenger; judder, shuffle and torque dip
+are oscillations of driveline and car.
 """
 
 from functools import cache
@@ -14,14 +14,15 @@ from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 
 JERK_CUTOFF_HZ = 20.0
 _JERK_FILTER_ORDER = 2
-"""Order of the Butterworth filter, which runs once forward and once backward."""
+"""Order of the Butterworth filter, which runs forward and backward once each."""
 JUDDER_BAND_HZ = (2.0, 20.0)
 BAND_PASS_ORDER = 2
 SHORTEST_JUDDER_S = 1.0 / JUDDER_BAND_HZ[0]
 """
-One period of the lowest frequency of the band, below which nothing can be said of it: 51 samples.
+Shortest slipping time in s for which a judder is computed: 51 samples.
 
-The filter needs 16 samples, for its padding.
+It is one period of the lowest frequency of the band. The filter itself needs 16 samples for its
+padding.
 """
 
 
@@ -29,10 +30,10 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     """
     Return the (..., n-1) jerk in m/s^3 midway between the (..., n) samples in m/s^2.
 
-    The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward, so
-    that it is not delayed, and is differenced. Beyond both ends it goes on for 90 ms, turned about
-    its value there: a slope stays as it is, a level gives no jerk. Shorter than 10 samples gives
-    an empty array.
+    The acceleration passes a second-order Butterworth low-pass of 20 Hz forward and backward,
+    which adds no delay, and is differenced. It is extended by 90 ms beyond both ends,
+    point-symmetric about its end values: a slope continues, and a constant gives no jerk. Fewer
+    than 10 samples give an empty array.
     """
     padding = 3 * (_JERK_FILTER_ORDER + 1)
     if acceleration.shape[-1] <= padding:
@@ -46,13 +47,13 @@ def _low_pass() -> tuple[np.ndarray, np.ndarray]:
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
-    """Return the (..., n) acceleration in m/s^2 weighted by W_d, started in equilibrium."""
+    """Return the (..., n) acceleration in m/s^2 weighted by W_d, initially in steady state."""
     sos = _weighting()
     return scipy.signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
 
 
 def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the states (sections, ..., 2) of a filter that rests on values (..., 1)."""
+    """Return the states (sections, ..., 2) of a filter in steady state at values (..., 1)."""
     states = scipy.signal.sosfilt_zi(sos)
     return states.reshape(len(sos), *(1,) * (values.ndim - 1), 2) * values
 
@@ -60,10 +61,10 @@ def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
 @cache
 def _weighting() -> np.ndarray:
     """
-    Return W_d as sections for 100 Hz.
+    Return the weighting W_d as second-order sections for 100 Hz.
 
-    ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and
-    (1 + s/w3) / (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
+    ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and (1 + s/w3) /
+    (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
     """
     high_pass = 2.0 * np.pi * 0.4
     corner, quality = 2.0 * np.pi * 2.0, 0.63
@@ -81,9 +82,10 @@ def vibration_dose(weighted: np.ndarray) -> np.ndarray:
 
 def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the largest r.m.s. and the largest dose of (..., n) `weighted` over any such stretch.
+    Return the largest r.m.s. and the largest dose over all intervals of (..., n) `weighted`.
 
-    It has `periods` periods, of which there must be as many. What comes late cannot hide from it.
+    An interval has `periods` periods; `weighted` has at least as many. The maximum over all
+    intervals also includes late vibration.
     """
     before = np.zeros((*weighted.shape[:-1], 1))
     squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
@@ -96,19 +98,19 @@ def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, n
 
 
 def _fourth_power(values: np.ndarray) -> np.ndarray:
-    """Return a^4; numpy's power of 4 takes many times as long."""
+    """Return a^4 by two multiplications; numpy's power of 4 takes many times as long."""
     return np.square(np.square(values))
 
 
 def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the digital section of an analogue one, each polynomial with three coefficients."""
+    """Return the digital section of an analogue one; each polynomial has three coefficients."""
     b, a = scipy.signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
     return np.pad(b, (0, 3 - len(b))), np.pad(a, (0, 3 - len(a)))
 
 
 @cache
 def band_pass() -> np.ndarray:
-    """Return the Butterworth band-pass, as sections."""
+    """Return the Butterworth band-pass of the judder as second-order sections."""
     return scipy.signal.butter(
         BAND_PASS_ORDER, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos'
     )
@@ -116,7 +118,7 @@ def band_pass() -> np.ndarray:
 
 def judder(torsion_speed: np.ndarray) -> float | None:
     """
-    Return the root of the mean square of the (n,) w_sr between 2 and 20 Hz, in its unit.
+    Return the r.m.s. of the (n,) w_sr between 2 and 20 Hz, in the unit of w_sr.
 
     The samples are those while the clutch slips. A second-order Butterworth band-pass runs forward
     and backward. None for less than `SHORTEST_JUDDER_S`.
@@ -130,8 +132,8 @@ def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:
     """
     Return amplitude and decay time of the (n,) w_sr after lock.
 
-    The amplitude is the largest magnitude, in the unit of w_sr. The decay time in s runs from
-    there until the magnitude stays below 1/e of it; None when the samples end before.
+    The amplitude is the largest magnitude, in the unit of w_sr. The decay time in s is counted
+    from that sample until the magnitude stays below 1/e of it; None when the samples end before.
     """
     if not torsion_speed.size or not np.isfinite(torsion_speed).all():
         return None, None
@@ -143,13 +145,13 @@ def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:
 
 
 def torque_dip(torque: np.ndarray) -> np.ndarray | None:
-    """Return how far the (..., n) torque falls at most below an earlier value, in its unit."""
+    """Return the largest drop of the (..., n) torque below an earlier value, in its unit."""
     if not torque.size:
         return None
     return np.max(np.maximum.accumulate(torque, axis=-1) - torque, axis=-1)
 
 
 def mean_jerk(acceleration: np.ndarray) -> np.ndarray | None:
-    """Return the largest magnitude of the jerk's mean over 1 s in m/s^3; None below 1 s."""
+    """Return the largest magnitude of the mean jerk over 1 s in m/s^3; None below 1 s."""
     changes = acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]
     return np.max(np.abs(changes), axis=-1) if changes.size else None

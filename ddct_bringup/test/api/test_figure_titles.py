@@ -1,4 +1,4 @@
-"""A figure of the Python interface says which runs it shows, and in which conditions."""
+"""The title of a figure of the Python interface names its runs and their conditions."""
 
 import pytest
 
@@ -18,7 +18,7 @@ def test_one_run_is_named_with_its_scenario_architecture_clutch_and_wear(new):
     assert title(new) == 'pi\nthesis; detailed, linear clutch, wear 1, lockstep, seed 0'
 
 
-def test_what_several_runs_differ_in_stands_beside_their_controllers(new):
+def test_varied_conditions_are_named_beside_the_controllers(new):
     worn = api.run('ls8', wear_gain=0.7, architecture='base')
     first, second = title(new, worn).split('\n')
     assert first == 'pi, ls8 over architecture, wear gain'

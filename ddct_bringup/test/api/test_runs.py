@@ -1,4 +1,4 @@
-"""The interface for Python: runs, what can be asked of them, and what is refused."""
+"""The Python interface: runs, their results, and arguments that are refused."""
 
 import hashlib
 import json
@@ -29,7 +29,7 @@ SHORT_S = 2.0
 
 
 class Soft(api.Controller):
-    """A controller with one option and a state that a run must reset."""
+    """Controller with one option and a state that a run must reset."""
 
     options = {'gain': api.Option(0.1, 'torque per slip error', 'N m/rpm')}
 
@@ -93,7 +93,7 @@ def test_a_kept_run_is_the_bag_of_bringup_and_loads_to_an_equal_run(worn, tmp_pa
         api.run('ls8', out=tmp_path / 'ours')
 
 
-def test_frequency_evidence_is_that_of_the_loop_and_says_who_has_none(worn):
+def test_frequency_evidence_is_that_of_the_loop_and_none_without_a_linear_model(worn):
     evidence = worn.frequency()
     assert evidence['controller'] == 'ls8'
     assert [point['wear_gain'] for point in evidence['wear']] == [0.7, 1.0, 1.3]
@@ -101,7 +101,7 @@ def test_frequency_evidence_is_that_of_the_loop_and_says_who_has_none(worn):
     assert api.run(Soft, duration=SHORT_S).frequency()['linear'] is False
 
 
-def test_a_run_shows_itself_in_one_line(worn):
+def test_a_run_is_printed_as_one_line(worn):
     assert repr(worn) == (
         '<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, limits beyond, valid>'
     )
@@ -109,7 +109,7 @@ def test_a_run_shows_itself_in_one_line(worn):
     assert repr([crashed]).endswith(', not valid: it crashed>]')
 
 
-def test_a_kept_run_says_in_its_bag_which_controller_file_ran(tmp_path):
+def test_the_bag_of_a_kept_run_names_the_controller_file(tmp_path):
     file = tmp_path / 'mine.yaml'
     file.write_text(
         'name: mine\nunits: {input: rpm, output: N m}\npolynomial: {num: [-0.1], den: [1.0]}\n'
@@ -137,7 +137,7 @@ def test_a_table_has_a_row_per_run_with_metrics_and_verdict(worn):
     assert rows['verdict_state'].tolist() == 2 * [worn.verdict['state']]
 
 
-def test_without_pandas_an_error_says_what_to_install(worn, monkeypatch):
+def test_without_pandas_an_error_names_what_to_install(worn, monkeypatch):
     monkeypatch.setitem(__import__('sys').modules, 'pandas', None)
     with pytest.raises(api.DdctError, match='pip install pandas'):
         worn.dataframe()
@@ -209,7 +209,7 @@ def test_numbers_of_numpy_are_taken_as_pythons(worn):
     assert same.recording.custom_data == worn.recording.custom_data
 
 
-def test_what_a_scenario_moves_by_itself_is_warned_of_and_nothing_is_printed(capfd):
+def test_adjusted_scenario_values_give_a_warning_and_nothing_is_printed(capfd):
     with pytest.warns(UserWarning, match='scenario thesis: '):
         api.run('pi', duration=SHORT_S, set={'vehicle.mass_kg': 1400.0})
     with warnings.catch_warnings():
@@ -254,7 +254,7 @@ def test_runs_in_threads_are_those_of_the_main_one(worn):
         ({'limits': 'no_such.yaml'}, 'no_such.yaml'),
     ],
 )
-def test_what_cannot_be_used_is_an_error_that_names_it(options, text):
+def test_an_invalid_argument_is_an_error_that_names_it(options, text):
     with pytest.raises(api.DdctError, match=text):
         api.run(**{'controller': 'pi', 'duration': SHORT_S, **options})
 
@@ -287,7 +287,8 @@ def test_a_loaded_run_is_judged_by_the_limits_that_are_given(tmp_path):
     packaged = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     mine = tmp_path / 'mine.yaml'
     stricter = '{criterion: weighted_acceleration, value: 0.001, unit: m/s^2, applies_to: all'
-    mine.write_text(f'{packaged}  - {stricter}, convention: true}}\n', encoding='utf-8')
+    convention = f'{stricter}, convention: true, reason: to tell it from the packaged one}}'
+    mine.write_text(f'{packaged}  - {convention}\n', encoding='utf-8')
 
     def limit_of(run):
         criteria = run.entry['verdict']['criteria']

@@ -138,7 +138,7 @@ def test_a_message_that_is_cut_short_is_an_error(case):
             CdrNormaliser(definition).normalise(clean[:length])
 
 
-def test_two_layouts_of_the_same_length_are_told_apart():
+def test_two_layouts_of_the_same_length_are_distinguished():
     definition = load_definition('diagnostic_msgs/msg/DiagnosticArray')
     serialise = serialize_dynamic(definition.type_name, definition.schema_text)
     normaliser = CdrNormaliser(definition)

@@ -1,4 +1,4 @@
-"""Our message definitions are those of the ROS installation, without its comments."""
+"""The message definitions equal those of the ROS installation, without its comments."""
 
 import json
 import re
@@ -21,7 +21,7 @@ TYPES = message_types()
 
 
 def installed(type_name, suffix):
-    """Return the text of a file that the ROS packages have installed of a type."""
+    """Return the text of a type's file that the ROS packages have installed."""
     package, _, name = type_name.partition('/msg/')
     try:
         from ament_index_python.packages import get_package_share_directory
@@ -35,7 +35,7 @@ def installed(type_name, suffix):
 
 
 def stripped(type_name):
-    """Return the lines of the installed definition without comments, types by their full names."""
+    """Return the lines of the installed definition without comments, type names in full."""
     lines = []
     for line in installed(type_name, '.msg').splitlines():
         words = line.partition('#')[0].split()

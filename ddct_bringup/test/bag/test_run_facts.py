@@ -1,4 +1,4 @@
-"""The facts of a run survive the way through a bag's custom data."""
+"""The facts of a run are written to and read from a bag's custom data unchanged."""
 
 import dataclasses
 import math

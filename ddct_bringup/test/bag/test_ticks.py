@@ -1,4 +1,4 @@
-"""Which ticks of a recording count as complete, and what is wrong with the others."""
+"""Complete ticks are found by stamps, and a missing or misplaced message is named."""
 
 import pytest
 from made_run import made_facts
@@ -24,7 +24,7 @@ def stamps_of(steps=5):
     return {topic: [stamp_of_step(k) for k in range(steps + 1)] for topic in topics}
 
 
-def test_a_whole_recording_has_no_complaint():
+def test_a_complete_recording_is_accepted():
     assert check_ticks(stamps_of(5), LOCKSTEP) == 5
 
 
@@ -96,7 +96,7 @@ def test_engine_torque_request_is_needed_once_it_was_recorded():
 
 
 @pytest.mark.parametrize('lacking', SENSED_TOPICS, ids=lambda topic: topic.name)
-def test_one_topic_of_sensors_asks_for_the_others(lacking):
+def test_one_topic_of_sensors_requires_the_others(lacking):
     names = [topic.resolved_name for topic in SENSED_TOPICS if topic is not lacking]
     run = made_facts().kind_of_bag({'/driveline/joint_states', names[0]})
     stamps = {**stamps_of(5), **{name: stamps_of(5)['/clutch/slip'] for name in names}}

@@ -1,11 +1,11 @@
-"""Which runs go into a batch, and in a line why another does not."""
+"""Which runs can be computed in a batch, and the one-line reason for others."""
 
 import dataclasses
 
 import numpy as np
 import pytest
 
-from ddct_bringup.batch.batchable import HEEDED, batchable
+from ddct_bringup.batch.batchable import SUPPORTED_KEYS, batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -24,12 +24,12 @@ PI = PiController(0.1, 0.1)
 
 
 class Proportional(Controller):
-    """Somebody's controller that says what it is."""
+    """A user's controller with a linear model."""
 
     gain = -0.1
 
     def reset(self):
-        """Have no state."""
+        """Do nothing: there is no state."""
 
     def update(self, measurement):
         return Command(self.gain * measurement.slip_error_rpm)
@@ -53,7 +53,7 @@ class Led(Proportional):
 
 class Remembering(Proportional):
     def hold(self, measurement):
-        """Go on."""
+        """Keep the state."""
 
 
 class Broken(Proportional):
@@ -109,14 +109,14 @@ def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
     assert batchable(RunSettings(load_scenario('thesis', changes), **settings), PI) == reason
 
 
-def test_what_a_batch_does_not_know_keeps_a_run_out_of_it():
+def test_a_run_with_an_unsupported_key_is_not_in_a_batch():
     names = {field.name for field in dataclasses.fields(Scenario)}
-    assert names > HEEDED
+    assert names > SUPPORTED_KEYS
     stick_slip = {f.name for f in dataclasses.fields(Scenario) if f.metadata.get('stick_slip')}
-    assert names - HEEDED >= {*stick_slip, 'engine_limits'}
+    assert names - SUPPORTED_KEYS >= {*stick_slip, 'engine_limits'}
 
 
-def test_somebodys_linear_controller_gives_what_it_gives_step_by_step():
+def test_a_foreign_linear_controller_has_the_results_of_the_run_step_by_step():
     controller = Proportional()
     (ours,) = run_batch([(SETTINGS, controller)], packaged_limits())
     assert ours is not None

@@ -1,4 +1,4 @@
-"""The criteria of many runs at once are those of each run, whatever their slip does."""
+"""The criteria of many runs at once are those of each single run, for any slip."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ PLANTS = [
 
 @pytest.fixture(scope='module')
 def stack():
-    """Return signals that wander, with slips that rest at zero now and then, or never meet it."""
+    """Return random-walk signals, with slips that are zero at times, or that never reach zero."""
     random = np.random.default_rng(3)
 
     def wandering(*shape):
@@ -57,7 +57,7 @@ def judged(kind, trajectory, window=WINDOW, plant=None):
 
 
 @pytest.mark.parametrize('window', [WINDOW, (200, 500)], ids=['scored', 'ends before'])
-def test_criteria_are_those_of_each_run(stack, window):
+def test_criteria_are_those_of_each_single_run(stack, window):
     runs = judged(JudgedRuns, stack, window, stacked_plants(PLANTS))
     ours: dict[str, Any] = raw_criteria(runs)
     exist = existing(runs)
@@ -79,7 +79,7 @@ def test_criteria_are_those_of_each_run(stack, window):
 
 
 def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_run(stack):
-    """From 51 samples on, the same for 100 as for 101; the last run rests at zero at first."""
+    """Judder exists from 51 samples on, for 100 and 101 samples; the last run starts at rest."""
     lengths = [1, 15, 16, 50, 51, 100, 101, 0]
     steps = np.arange(SAMPLES)
     slip = np.array([np.where(steps < START + length, 30.0, -1e-9) for length in lengths])

@@ -1,4 +1,4 @@
-"""A batch of runs gives what each run gives step by step, whatever else is in the batch."""
+"""A batch gives the results of each run step by step, independent of the other runs in it."""
 
 import dataclasses
 from collections import Counter
@@ -25,7 +25,7 @@ LIMITS = packaged_limits()
 
 
 def scenario(random, **changes):
-    """Return one whose every number that a campaign may vary is its own."""
+    """Return a scenario with a different value of every number that a campaign may vary."""
 
     def times(size):
         return float(random.uniform(1.0 - size, 1.0 + size))
@@ -121,7 +121,7 @@ def test_metrics_and_criteria_are_those_of_the_run_step_by_step(batch, serial):
         assert_close(criteria(ours['verdict']), criteria(expected['verdict']))
 
 
-def test_words_are_those_of_the_run_step_by_step(batch, serial):
+def test_states_are_those_of_the_run_step_by_step(batch, serial):
     for ours, expected in zip(batch, serial, strict=True):
         assert (ours['valid'], ours['reason']) == (expected['valid'], expected['reason'])
         assert ours['verdict']['limits'] == expected['verdict']['limits']
@@ -155,7 +155,7 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
             assert ours == pytest.approx(theirs, rel=1e-9, abs=1e-10 * np.abs(theirs).max()), name
 
 
-def test_a_controller_may_stand_in_many_runs_and_have_been_used():
+def test_a_controller_may_be_used_in_many_runs_and_before_the_batch():
     settings = RunSettings(load_scenario('thesis', SHORT))
     controller = make_controller('ls3', settings)
     fresh = run_batch([(settings, controller)], LIMITS)

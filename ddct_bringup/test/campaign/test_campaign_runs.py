@@ -1,4 +1,4 @@
-"""Each index is one run: its case, its controller, values that belong together, its seed."""
+"""Each index is one run: its case, its controller, dependent values, its seed."""
 
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ def test_the_indices_go_through_controllers_then_the_grid_then_samples() -> None
     assert [(run.settings.wear_gain, run.settings.clutch) for run in runs[:12:3]] == grid
 
 
-def test_all_controllers_meet_the_same_cases_with_the_same_noise() -> None:
+def test_all_controllers_have_the_same_cases_with_the_same_noise() -> None:
     made = campaign()
     for case in range(made.cases):
         first, second = made.run(case), made.run(case + made.cases)
@@ -55,7 +55,7 @@ def test_another_key_does_not_change_what_a_key_draws() -> None:
         assert drawn == campaign().varied(case)['vehicle.mass_kg']
 
 
-def test_what_belongs_together_moves_with_what_varies() -> None:
+def test_dependent_values_change_with_varied_ones() -> None:
     made = campaign(grid={'gear': [1, 3]})
     for index in (0, 4):
         run = made.run(index)
@@ -115,7 +115,7 @@ def test_planning_builds_each_case_once(monkeypatch: pytest.MonkeyPatch) -> None
     assert built == [*range(made.cases)]
 
 
-def test_a_controller_that_does_not_suit_the_run_is_told_before_the_first_one() -> None:
+def test_a_controller_that_does_not_suit_the_run_is_refused_before_the_first_run() -> None:
     made = campaign(grid={'controllers.ls8.gain': [1.0, 2.0]})
     with pytest.raises(ParameterError, match='ls8'):
         list(made.plan())

@@ -1,4 +1,4 @@
-"""The digest of the code covers what rows depend on: modules, and the YAML files beside them."""
+"""The digest of the code covers everything that rows depend on: modules, and YAML files."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,7 +17,7 @@ from ddct_plant.base.errors import DdctError
 
 @pytest.fixture
 def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Return a folder that stands for our packages: a module and a YAML file in each."""
+    """Return a folder in place of the packages: a module and a YAML file in each."""
     for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup'):
         (tmp_path / package / 'room').mkdir(parents=True)
         (tmp_path / package / 'module.py').write_text('GAIN = 1.0\n', encoding='utf-8')
@@ -46,7 +46,7 @@ def test_a_module_and_a_yaml_file_of_every_package_belong_to_the_code(
         require_code(before)
 
 
-def test_what_no_row_depends_on_does_not_belong_to_it(sources: Path) -> None:
+def test_files_that_no_row_depends_on_are_not_in_the_digest(sources: Path) -> None:
     before = code_digest()
     assert digest_after(sources / 'ddct_bringup' / 'page.css', 'p { color: red }\n') == before
 

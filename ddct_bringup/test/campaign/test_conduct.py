@@ -1,4 +1,4 @@
-"""A campaign ends with the same bytes however it is computed, and loses nothing on the way."""
+"""A campaign gives the same bytes on any workers, and an interruption loses nothing."""
 
 import errno
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import compute_rows
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.run.output_folder import held
+from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files import output_file
@@ -38,19 +38,19 @@ name: wild
 units: {input: rpm, output: N m}
 transfer_function: {gain: 1.0, numerator: [], denominator: [-2000]}
 """
-"""A controller whose state leaves all numbers behind within some steps."""
+"""Source of a controller whose state overflows within some steps."""
 
 
 @pytest.fixture
 def use() -> Iterator[Callable[[OneByOne], OneByOne]]:
-    """Compute campaigns by these workers until the test ends."""
+    """Compute campaigns on these workers until the test ends."""
     with ExitStack() as stack:
         yield lambda workers: stack.enter_context(in_this_process(workers))
 
 
 @pytest.fixture(scope='module')
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of a campaign that nothing came in the way of."""
+    """Return the folder of a campaign without interruption."""
     out = tmp_path_factory.mktemp('whole') / 'campaign'
     with in_this_process():
         carry_out(made(), packaged_limits(), out)
@@ -65,7 +65,7 @@ def carried_out(out: Path, *, resume: bool = False, **changes: Any) -> bytes:
     return carry_out(made(**changes), packaged_limits(), out, resume=resume).read_bytes()
 
 
-def test_a_row_holds_the_run_its_values_and_its_scores(whole: Path) -> None:
+def test_a_row_contains_the_run_its_values_and_its_scores(whole: Path) -> None:
     table = parquet.read_table(whole / RESULTS).to_pandas()
     assert table['index'].tolist() == list(range(RUNS))
     assert table['controller'].tolist() == ['pi'] * 4 + ['ls8'] * 4
@@ -106,7 +106,7 @@ def test_the_time_left_counts_each_controller_by_its_own_runs(
     assert left[-1] == 0.0
 
 
-def test_the_manifest_says_what_the_campaign_is(whole: Path) -> None:
+def test_the_manifest_describes_the_campaign(whole: Path) -> None:
     manifest = Manifest.read(whole)
     assert (manifest.root_seed, manifest.runs, manifest.shard_size) == (0, RUNS, 1)
     assert manifest.code_digest == code_digest()
@@ -170,7 +170,7 @@ def test_workers_that_always_die_end_the_campaign_with_a_line(
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
 
 
-def test_what_a_worker_cannot_do_is_told_with_its_runs(tmp_path: Path, use) -> None:
+def test_an_error_of_a_worker_is_reported_with_its_runs(tmp_path: Path, use) -> None:
     use(OneByOne(lambda first: MemoryError('full') if first == 2 else None))
     with pytest.raises(
         DdctError, match=r'runs 2 to 2 could not be computed \(MemoryError: full\)'
@@ -238,12 +238,12 @@ def test_a_folder_with_other_content_is_not_touched(whole: Path, tmp_path: Path)
 
 def test_two_campaigns_into_one_folder_are_one(tmp_path: Path) -> None:
     out = tmp_path / 'out'
-    with held(out), pytest.raises(DdctError, match='is writing there'):
+    with locked_folders(out), pytest.raises(DdctError, match='is writing there'):
         carried_out(out)
     assert not out.exists()
 
 
-def test_a_manifest_that_is_damaged_is_told(tmp_path: Path) -> None:
+def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
     with pytest.raises(DdctError, match='no manifest.json in it: give the folder of a campaign'):
         Manifest.read(tmp_path)
     (tmp_path / MANIFEST).write_text('{"schema_version": 1}', encoding='utf-8')

@@ -1,4 +1,4 @@
-"""Named distributions have the quantiles of their name, and keep what the key takes."""
+"""Named distributions have the right quantiles, and stay within the range of their key."""
 
 import re
 from typing import Any
@@ -46,7 +46,7 @@ def test_a_quantile_is_that_of_the_distribution_of_the_name(content, expected) -
     assert found == pytest.approx(expected.ppf(UNIFORM), rel=1e-7)
 
 
-def test_a_choice_takes_each_value_as_often_as_its_weight_says() -> None:
+def test_a_choice_takes_each_value_with_its_weight_as_probability() -> None:
     gear = described('gear', distribution='choice', values=[1, 2, 3], weights=[1, 2, 1])
     assert [gear.value(each) for each in (0.01, 0.24, 0.26, 0.74, 0.76, 0.99)] == [
         1,
@@ -139,7 +139,9 @@ def test_a_step_rounds_what_is_drawn_to_what_the_key_takes() -> None:
         ('gear', {'distribution': 'choice', 'values': [1], 'weights': [0]}, 'are all zero'),
     ],
 )
-def test_what_cannot_be_drawn_is_named(key: str, content: Any, words: str) -> None:
+def test_an_unusable_distribution_is_reported_with_its_key(
+    key: str, content: Any, words: str
+) -> None:
     with pytest.raises(ParameterError, match=re.escape(words)):
         described(key, **content)
 

@@ -1,4 +1,4 @@
-"""A random number follows from root seed, key and case, and from nothing else."""
+"""A random number depends on root seed, key and case, and on nothing else."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The bag of a row has the scores of the row, and another one is told from it."""
+"""The bag of a row has the scores of the row, and another bag is detected."""
 
 from pathlib import Path
 
@@ -80,7 +80,7 @@ def test_every_row_of_a_campaign_replays_to_the_last_bit(
     assert (folder.parent / 'again' / 'ls8' / 'ls8_0.mcap').is_file()
 
 
-def test_a_replay_that_differs_ends_with_1_and_its_figures(
+def test_a_replay_that_differs_ends_with_exit_code_1_and_the_differences(
     folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr('ddct_bringup.programs.campaign_folder.read_row', _another_row)
@@ -102,14 +102,14 @@ def _another_row(results: Path, index: int) -> dict[str, object]:
         (['--index', '0', '--limits', 'absent.yaml'], 'limits absent.yaml: cannot be read'),
     ],
 )
-def test_a_row_that_is_not_there_is_told(
+def test_a_missing_row_is_reported(
     folder: Path, capfd: pytest.CaptureFixture[str], arguments: list[str], words: str
 ) -> None:
     assert replay(folder, *arguments, '--overwrite') == 1
     assert words in capfd.readouterr().err
 
 
-def test_a_folder_without_a_campaign_is_told(
+def test_a_folder_without_a_campaign_is_reported(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     assert replay(tmp_path, '--index', '0') == 1

@@ -1,4 +1,4 @@
-"""A run among many is settled, scored and judged as the same run alone; a failed one says why."""
+"""One of many runs is scored and judged as the same run alone; a failed one has its reason."""
 
 import pytest
 
@@ -15,7 +15,7 @@ BASE = RunBase(THESIS, {'duration_s': 2.0}, {'clutch': 'stick_slip'}, labels=())
 
 
 class Diverging(api.Controller):
-    """A controller whose answer is no number."""
+    """A controller whose command is not a number."""
 
     def reset(self):
         pass
@@ -24,7 +24,7 @@ class Diverging(api.Controller):
         return api.Command(float('nan'))
 
 
-def test_what_is_varied_is_set_as_by_set_with_what_belongs_to_it():
+def test_varied_values_are_set_as_by_set_with_their_dependent_values():
     settings = BASE.at({'wear_gain': 0.8, 'vehicle.mass_kg': 1800.0})
     scenario = load_scenario(
         'thesis', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'], clutch='stick_slip'
@@ -57,7 +57,7 @@ def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
     assert row['criterion.peak_jerk'] == peak['value']
 
 
-def test_a_run_that_fails_is_invalid_with_its_reason_and_without_figures():
+def test_a_failed_run_is_invalid_with_its_reason_and_without_scores():
     chosen = chosen_from(Diverging, 'diverging')
     entry = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
     row = result_row(entry, {'wear_gain': 0.9})

@@ -1,4 +1,4 @@
-"""Each row has the seed of its run, and a single run with that seed has the figures of the row."""
+"""Each row has the seed of its run, and a single run with that seed has the scores of the row."""
 
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ def rows_of(content: dict[str, Any], out: Path) -> list[dict[str, Any]]:
     return parquet.read_table(out / RESULTS).to_pylist()
 
 
-def test_a_single_run_with_the_seed_of_a_row_has_its_figures(tmp_path: Path) -> None:
+def test_a_single_run_with_the_seed_of_a_row_has_its_scores(tmp_path: Path) -> None:
     rows = rows_of(NOISY, tmp_path / 'out')
     assert len({row['seed'] for row in rows}) == 2
     assert [row['seed'] for row in rows[:2]] == [row['seed'] for row in rows[2:]]

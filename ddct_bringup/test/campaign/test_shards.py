@@ -1,4 +1,4 @@
-"""The runs of a shard that are computed at once are those that go step by step, one by one."""
+"""The runs of a shard that are computed at once equal those computed step by step."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""A specification is read with its files; whatever is wrong with it is named with its line."""
+"""A specification is read with its files; every mistake is reported with its line."""
 
 import re
 from pathlib import Path
@@ -96,7 +96,7 @@ def test_a_specification_that_cannot_be_used_is_named(
     assert str(complaint.value).startswith(f'{tmp_path}/spec.yaml: ')
 
 
-def test_a_specification_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_missing_specification_is_reported(tmp_path: Path) -> None:
     with pytest.raises(DdctError, match=r'absent\.yaml: cannot be read \(No such file'):
         read_spec(tmp_path / 'absent.yaml')
 
@@ -114,7 +114,7 @@ def test_a_specification_that_is_not_there_is_told(tmp_path: Path) -> None:
     ],
     ids=['controller', 'scenario', 'runs'],
 )
-def test_what_is_not_there_or_too_much_is_told_before_anything_is_computed(
+def test_missing_or_excessive_parts_are_reported_before_anything_is_computed(
     tmp_path: Path, text: str, words: str
 ) -> None:
     spec = read_spec(written(tmp_path, text))

@@ -1,4 +1,4 @@
-"""The time left of a campaign: controllers differ, and each is measured soon."""
+"""Remaining time of a campaign: controllers differ, and each is measured soon."""
 
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ def job(first: int, last: int) -> ShardJob:
     return ShardJob(UNUSED, UNUSED, '', first, last)
 
 
-def test_before_the_first_shard_nothing_is_known() -> None:
+def test_before_the_first_shard_there_is_no_estimate() -> None:
     assert TimeLeft(100).left_s([job(0, 10)], 2) is None
 
 

@@ -1,4 +1,4 @@
-"""Which keys drive failure: those that do, and none of the others; of few failures nothing."""
+"""Attribution of failure to the keys that drive it, and to no others; none for few failures."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ RUNS = 400
 
 
 def drawn(seed, runs=RUNS):
-    """Return six keys that were drawn independently, one of them of five values."""
+    """Return six keys that were drawn independently, one of them with five values."""
     random = np.random.default_rng(seed)
     values = {key: random.uniform(size=runs) for key in KEYS}
     return {**values, 'gear': random.integers(1, 6, runs).astype(float)}
@@ -55,7 +55,7 @@ def test_two_failed_runs_are_too_few():
 
 
 @pytest.mark.parametrize('failures', [FEWEST - 1, FEWEST])
-def test_as_few_runs_that_did_not_fail_say_nothing_either(failures):
+def test_too_few_runs_that_did_not_fail_give_no_attribution(failures):
     failed = np.arange(RUNS) < failures
     assert bool(too_few(failed)) == bool(too_few(~failed)) == (failures < FEWEST)
 
@@ -66,7 +66,7 @@ def test_five_failures_in_one_corner_are_enough():
     assert blamed(values, failed) == ['wear_gain']
 
 
-def test_a_key_of_which_too_much_and_too_little_fails_is_found():
+def test_a_key_that_causes_failure_at_both_ends_is_found():
     values = drawn(4)
     wear = values['wear_gain']
     assert blamed(values, (wear < 0.08) | (wear > 0.92)) == ['wear_gain']
@@ -113,7 +113,7 @@ def test_invalid_runs_take_no_part():
     assert found['keys'][0]['key'] == 'wear_gain'
 
 
-def test_the_same_runs_give_the_same_figures():
+def test_the_same_runs_give_the_same_effects():
     values = drawn(8)
     failed = values['wear_gain'] < 0.2
     assert effects_of(values, failed) == effects_of(values, failed)

@@ -1,4 +1,4 @@
-"""Where failure begins on a grid: along one line, from its start to both sides."""
+"""Boundary of failure on a grid: along one line, from its start to both sides."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from made_results import made_results
 
 from ddct_bringup.campaign_report.boundaries import Boundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.words import boundary_text, good_text
+from ddct_bringup.campaign_report.texts import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]
@@ -17,7 +17,7 @@ def found(outcomes, start=1.0, values=WEAR):
 
 
 def by_mark(marks):
-    """Return outcomes written as a row of letters."""
+    """Return outcomes from a row of letters."""
     return [{'e': ENGAGED, 'f': 'failed', 'i': INVALID}[mark] for mark in marks]
 
 
@@ -63,7 +63,7 @@ def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
 
 
 @pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
-def test_their_texts_have_the_digits_that_tell_them_apart(good, bad):
+def test_their_texts_have_enough_digits_to_differ(good, bad):
     side = {'last_good': good, 'first_failure': bad, 'runs': 1, 'failed': 1, 'invalid': 0}
     side |= {'index': 3, 'state': 'stalled'}
     assert float(boundary_text(side).split()[0]) == bad

@@ -1,4 +1,4 @@
-"""Reading a campaign: rows and nominal values, and one line for each folder that is not whole."""
+"""Reading a campaign: rows and nominal values, and one line for each incomplete folder."""
 
 import json
 from pathlib import Path
@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
     return make_campaign(tmp_path / 'wear', GRID, worn_fails)
 
 
-def test_a_data_frame_has_a_row_per_run_and_the_summary_stands_beside_it(folder: Path) -> None:
+def test_a_data_frame_has_a_row_per_run_and_comes_with_the_summary(folder: Path) -> None:
     table, summary = read_campaign(folder)
     assert table.index.tolist() == list(range(12))
     failed = table[table.verdict_state != ENGAGED]
@@ -83,7 +83,7 @@ def test_a_figure_of_another_kind_is_refused_before_anything_is_written(
     assert not (folder / PAGE).exists()
 
 
-def test_words_of_a_row_cannot_control_the_terminal(
+def test_text_of_a_row_cannot_control_the_terminal(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     made = make_campaign(tmp_path / 'evil', GRID, lambda run: INVALID, reason='\x1b[31mred')
@@ -122,7 +122,7 @@ def test_nominal_values_are_those_of_the_scenario_and_the_settings_without_varia
 
 
 def complaint(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """Return the one line that `show` ends with."""
+    """Return the one line of error of `show`."""
     assert main(['show', str(folder)]) == 1
     captured = capsys.readouterr()
     assert captured.out == ''
@@ -146,7 +146,7 @@ def test_a_campaign_that_was_interrupted_can_go_on(
 
 
 @pytest.mark.parametrize('keep', [0, 10, -30])
-def test_damaged_results_are_said_to_be_so(
+def test_damaged_results_are_reported(
     folder: Path, capsys: pytest.CaptureFixture[str], keep: int
 ) -> None:
     path = folder / RESULTS

@@ -20,7 +20,7 @@ from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 EVIL = '</script></style>--><evil onload="x"> \'"&amp;'
-"""Closes whatever is open and opens an element that no page has."""
+"""Text that closes every open element and opens one that no page has."""
 
 
 class Elements(HTMLParser):
@@ -88,7 +88,7 @@ def test_every_number_of_the_summary_is_on_the_page(folder: Path, page: Elements
         assert set(wanted) <= set(page.numbers)
 
 
-def test_the_summary_says_what_failed(folder: Path) -> None:
+def test_the_summary_has_the_failed_runs(folder: Path) -> None:
     summary = json.loads((folder / SUMMARY).read_text(encoding='utf-8'))
     pi, ls8 = summary['groups']
     assert (pi['failed']['failed'], pi['failed']['invalid'], pi['failed']['share']) == (
@@ -143,7 +143,7 @@ def test_the_page_needs_nothing_else(folder: Path) -> None:
     assert '://' not in html.replace('http://www.w3.org/2000/svg', '')
 
 
-def test_words_from_a_campaign_are_text_and_never_a_part_of_the_page() -> None:
+def test_text_from_a_campaign_is_escaped_on_the_page() -> None:
     results = made_results(
         [ENGAGED, EVIL],
         {'clutch': [EVIL, 'linear'], EVIL: [0.8, 1.0]},

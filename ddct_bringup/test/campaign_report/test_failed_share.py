@@ -1,4 +1,4 @@
-"""How often engagement fails: counts by the verdict's states, and their interval."""
+"""Share of failed engagements: counts by the verdict's states, and their interval."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_of_invalid_runs_alone_there_is_no_share():
     assert share.interval() == (0.0, 1.0)
 
 
-def test_runs_on_a_grid_have_a_share_but_no_interval_and_it_is_said_why():
+def test_runs_on_a_grid_have_a_share_but_no_interval_with_a_reason():
     found = summary_of(made_results([ENGAGED, 'runaway'], {'wear_gain': [1.0, 1.2]}))
     failed = found['groups'][0]['failed']
     assert (failed['share'], failed['interval']) == (0.5, None)
@@ -87,7 +87,7 @@ def test_random_runs_at_one_point_of_a_grid_have_an_interval_and_at_two_have_non
     assert two['groups'][0]['failed']['interval'] is None
 
 
-def test_a_varied_word_makes_groups_of_its_own():
+def test_a_varied_text_key_makes_separate_groups():
     results = made_results(
         [ENGAGED, 'stalled', 'runaway', ENGAGED],
         {'clutch': ['linear', 'stick_slip'] * 2, 'wear_gain': [1.0] * 4},
@@ -106,7 +106,7 @@ def test_a_varied_word_makes_groups_of_its_own():
     }
 
 
-def test_invalid_runs_say_why_the_most_frequent_reason_first():
+def test_reasons_of_invalid_runs_are_listed_the_most_frequent_first():
     results = made_results([INVALID, ENGAGED, INVALID, INVALID], {'wear_gain': [1.0] * 4})
     results.columns['reason'][:] = ['once', '', 'twice', 'twice']
     assert summary_of(results)['groups'][0]['failed']['reasons'] == [

@@ -1,4 +1,4 @@
-"""Maps: what each cell and point says, and the one scale of colours that all share."""
+"""Maps: the content of each cell and point, and the common scale of colours."""
 
 from typing import Any
 
@@ -112,7 +112,7 @@ def test_a_map_of_random_samples_has_all_of_them() -> None:
     assert points['at'][1][:8] == [0, 1, 2, 3, 4, 5, 6, 0]
 
 
-def test_more_samples_than_a_page_can_hold_are_drawn_in_part_from_first_to_last() -> None:
+def test_of_too_many_samples_a_part_from_first_to_last_is_drawn() -> None:
     runs = 2 * MOST_POINTS + 500
     found = maps_of(sampled(runs))
     assert {each['extent'] for each in found['maps']} == {f'{MOST_POINTS} of {runs} runs'}
@@ -148,6 +148,6 @@ def test_a_success_of_second_rank_is_no_failed_cell(monkeypatch: pytest.MonkeyPa
     assert (panel['failed'], panel['state']) == ([0, 0], ['nearly_engaged', ENGAGED])
 
 
-def test_nothing_is_drawn_over_what_does_not_vary():
+def test_keys_that_do_not_vary_have_no_map():
     results = made_results([ENGAGED, ENGAGED], {WEAR: [1.0, 1.0]}, {JERK: [1.0, 2.0]})
     assert campaign_maps(results) is None

@@ -1,5 +1,5 @@
 """
-Results of other versions are read for what they have; nothing is mixed into them.
+Results of other versions are read with the columns that they have, and are not mixed.
 
 `stored` is a campaign of version 0.1.0, before rows had their seed.
 """
@@ -51,7 +51,7 @@ def test_a_stored_campaign_is_read_from_python(stored: Path) -> None:
     assert jerk['p50'] == pytest.approx(2.40, abs=0.01)
 
 
-def test_a_stored_campaign_is_shown_with_what_it_lacks(
+def test_a_stored_campaign_is_shown_with_its_missing_columns(
     stored: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(['show', str(stored), '--figure', str(stored / 'wear.png')]) == 0
@@ -60,7 +60,7 @@ def test_a_stored_campaign_is_shown_with_what_it_lacks(
     assert 'Results of another version' in (stored / PAGE).read_text(encoding='utf-8')
 
 
-def test_absent_columns_are_absent_and_unknown_ones_are_kept(
+def test_missing_columns_stay_missing_and_unknown_ones_are_kept(
     changed: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table, summary = read_campaign(changed)
@@ -86,7 +86,7 @@ def test_without_a_column_that_is_needed_the_line_names_it(changed: Path, name: 
         read_campaign(changed)
 
 
-def test_a_key_that_this_version_does_not_know_is_read_without_its_nominal_value(
+def test_a_key_of_another_version_is_read_without_its_nominal_value(
     changed: Path,
 ) -> None:
     manifest = json.loads((changed / MANIFEST).read_text(encoding='utf-8'))
@@ -122,7 +122,9 @@ def test_resume_refuses_to_mix_versions_and_names_both(
     assert (stored / RESULTS).read_bytes() == before
 
 
-def test_replay_compares_what_the_row_has(stored: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_replay_compares_the_columns_of_the_row(
+    stored: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     from ddct_bringup.campaign.columns import compared_in, differences, read_row
 
     row = read_row(stored / RESULTS, 0)

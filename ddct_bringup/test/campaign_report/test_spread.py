@@ -1,4 +1,4 @@
-"""How a quantity spreads over engaged runs, how bad it becomes, and that failures do not rank."""
+"""Distribution of a quantity over engaged runs, and its worst case; failures are not ranked."""
 
 import numpy as np
 import pytest

@@ -12,9 +12,9 @@ from ddct_bringup.processes.warm_parent import WarmParent
 @pytest.fixture(scope='session')
 def stubs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """
-    Return the folder of the programs, on the path of every process that we start.
+    Return the folder of the programs, on the path of every process that the tests start.
 
-    These also have the variable `AT_THE_START`.
+    These processes also have the variable `AT_THE_START`.
     """
     folder = tmp_path_factory.mktemp('path')
     with pytest.MonkeyPatch.context() as patch:

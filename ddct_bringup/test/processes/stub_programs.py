@@ -1,11 +1,11 @@
-"""What the tests of small programs share."""
+"""Waiting for small programs in tests."""
 
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 WITHIN_S = 20.0
-"""How long a small program may take to start or to end on a loaded machine."""
+"""Timeout for the start or end of a small program on a loaded machine, s."""
 
 
 def wait_until(condition: Callable[[], object]) -> None:
@@ -17,7 +17,7 @@ def wait_until(condition: Callable[[], object]) -> None:
 
 
 def gone(pid: int) -> bool:
-    """Say whether a process has ended, waited for or not."""
+    """Return whether a process has ended, waited for or not."""
     try:
         return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] in 'ZX'
     except OSError:

@@ -55,7 +55,7 @@ def processes(tmp_path: Path, stubs: Path, parent: WarmParent, monkeypatch: pyte
     deadlines = [time.monotonic() + WITHIN_S]
 
     def stopped() -> bool:
-        assert time.monotonic() < deadlines[-1], 'nothing was noticed'
+        assert time.monotonic() < deadlines[-1], 'nothing was detected'
         return False
 
     def make(**texts: str) -> NodeProcesses:
@@ -73,7 +73,7 @@ def processes(tmp_path: Path, stubs: Path, parent: WarmParent, monkeypatch: pyte
 
 
 def wait_as_supervisor(nodes: NodeProcesses) -> str:
-    """Return why the supervisor ends, having stopped everything."""
+    """Return the reason with which the supervisor ends after it has stopped everything."""
     try:
         with pytest.raises(DdctError) as raised:
             nodes.wait_for('driveline')
@@ -82,12 +82,12 @@ def wait_as_supervisor(nodes: NodeProcesses) -> str:
     return str(raised.value)
 
 
-def test_a_stopped_driveline_is_noticed_within_the_stated_time_and_everything_ends(
+def test_a_stopped_driveline_is_detected_within_the_stated_time_and_everything_ends(
     processes, monkeypatch
 ):
     monkeypatch.setattr(node_process, 'ANSWER_TIMEOUT_S', 1.0)
     nodes = processes(driveline=OBEDIENT, load=OBEDIENT)
-    nodes._look(0.0)
+    nodes._check(0.0)
     nodes._nodes[0].process.send_signal(signal.SIGSTOP)
     started = time.monotonic()
     reason = wait_as_supervisor(nodes)
@@ -96,7 +96,7 @@ def test_a_stopped_driveline_is_noticed_within_the_stated_time_and_everything_en
     assert [node.process.returncode for node in nodes._nodes] == [0, 0]
 
 
-def test_a_node_that_never_begins_is_noticed_too(processes, monkeypatch):
+def test_a_node_that_never_begins_is_detected_too(processes, monkeypatch):
     monkeypatch.setattr(node_process, 'START_S', 1.0)
     reason = wait_as_supervisor(
         processes(driveline="print('ready', flush=True)\ntime.sleep(60)\n")
@@ -104,16 +104,16 @@ def test_a_node_that_never_begins_is_noticed_too(processes, monkeypatch):
     assert reason.startswith('node driveline has shown no sign of life for 1 s')
 
 
-def test_silence_while_the_supervisor_itself_was_stopped_is_none(processes):
+def test_time_in_which_the_supervisor_was_stopped_counts_for_no_missing_pulse(processes):
     nodes = processes(driveline=OBEDIENT)
     nodes._nodes[0].process.send_signal(signal.SIGSTOP)
-    nodes._look(0.0)
+    nodes._check(0.0)
     for _ in range(19):
-        nodes._look(3600.0)
+        nodes._check(3600.0)
     nodes.__exit__()
 
 
-def test_a_deaf_node_is_killed_at_the_end_of_the_ladder_and_that_is_told(processes):
+def test_a_node_that_ignores_signals_is_killed_at_the_end_of_the_ladder_and_named(processes):
     nodes = processes(driveline=OBEDIENT, load=DEAF)
     nodes.stop(lambda name: True)
     assert [node.process.returncode for node in nodes._nodes] == [0, -signal.SIGKILL]
@@ -122,7 +122,7 @@ def test_a_deaf_node_is_killed_at_the_end_of_the_ladder_and_that_is_told(process
     nodes.__exit__()
 
 
-def test_a_node_that_was_killed_by_another_is_said_to_be(processes):
+def test_a_node_that_was_killed_by_another_process_is_named_with_the_signal(processes):
     nodes = processes(driveline=OBEDIENT)
     nodes._nodes[0].process.kill()
     assert wait_as_supervisor(nodes).startswith('node driveline was killed by SIGKILL; its log')
@@ -191,7 +191,7 @@ def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, 
     assert (tmp_path / 'whole').exists(), 'the recorder could not finish'
 
 
-def test_the_guardian_kills_what_does_not_heed_the_end_of_its_supervisor(tmp_path):
+def test_the_guardian_kills_nodes_that_ignore_the_end_of_their_supervisor(tmp_path):
     ready = tmp_path / 'ready'
     deaf = subprocess.Popen(
         [
@@ -216,7 +216,7 @@ def quick_to_leave(monkeypatch):
 
 
 def test_a_node_that_hangs_while_it_leaves_has_ended_well(processes, quick_to_leave):
-    """As Fast DDS may let it."""
+    """Fast DDS may hang while a node leaves."""
     nodes = processes(driveline=OBEDIENT, clutch=HANGS_LEAVING.format(code=0) + 'run()\n')
     nodes.stop(lambda name: True)
     nodes.require_clean_end()
@@ -243,10 +243,10 @@ def test_the_owner_of_time_may_hang_while_it_leaves(processes, quick_to_leave):
 
 @pytest.mark.parametrize('order', [('driveline', 'clutch'), ('clutch', 'driveline')])
 @pytest.mark.parametrize('code', [1, -signal.SIGKILL])
-def test_to_blame_is_the_node_that_failed_and_not_the_driveline_that_noticed(
+def test_the_cause_is_the_node_that_failed_and_not_the_driveline_that_ended_after_it(
     processes, order, code
 ):
-    """Both have ended when the supervisor looks: without the clutch the driveline fails too."""
+    """Both nodes have ended at the check: without the clutch the driveline fails too."""
     programs = {
         'clutch': OBEDIENT if code < 0 else "print('ready', flush=True); sys.exit(1)",
         'driveline': "print('ready', flush=True); sys.exit(1)",
@@ -259,7 +259,7 @@ def test_to_blame_is_the_node_that_failed_and_not_the_driveline_that_noticed(
     assert wait_as_supervisor(nodes).startswith('node clutch ')
 
 
-def test_a_node_that_ended_well_is_not_to_blame_where_the_driveline_failed(processes):
+def test_a_node_that_ended_well_is_not_the_cause_where_the_driveline_failed(processes):
     done = "print('ready', flush=True)"
     nodes = processes(clutch=done, driveline="print('ready', flush=True); sys.exit(1)")
     for node in nodes._nodes:

@@ -1,4 +1,4 @@
-"""Only segments without a live owner are removed, and only those that were asked for."""
+"""Only requested segments without a live owner are removed."""
 
 import fcntl
 import os

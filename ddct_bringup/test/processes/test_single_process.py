@@ -1,4 +1,4 @@
-"""The nodes of a single process end in order: who owns time first, the recorder last."""
+"""The nodes of a single process end in order: the owner of time first, the recorder last."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ NAMES = [spec.name for spec in GRAPH_NODES]
 
 
 class FakeNode:
-    """Notes in which order nodes are closed."""
+    """Node that records the order in which nodes are closed."""
 
     def __init__(self, name: str, closed: list[str]) -> None:
         self.done = Future()

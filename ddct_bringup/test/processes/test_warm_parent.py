@@ -1,4 +1,4 @@
-"""The warm parent: what it forks is like a process that was started anew, and nothing is left."""
+"""Forks of the warm parent are like new processes, and none is left behind."""
 
 import importlib.util
 import json
@@ -69,28 +69,28 @@ def test_what_it_forks_is_a_child_of_ours_with_our_environment_as_it_is_now(
 ) -> None:
     monkeypatch.setenv('OF_THE_TEST', 'as \udcff it is')
     child = run(ABOUT_ITSELF, 'a', 'b c')
-    said = json.loads(child.words())
-    assert said['pid'] == said['session'] == child.process.pid
-    assert said['parent'] == os.getpid()
-    assert said['arguments'] == ['a', 'b c']
-    assert said['variables'] == ['as \udcff it is', 'yes']
-    assert said['input'] == ''
-    assert said['descriptors'] == [0, 1, 2]
+    report = json.loads(child.output_text())
+    assert report['pid'] == report['session'] == child.process.pid
+    assert report['parent'] == os.getpid()
+    assert report['arguments'] == ['a', 'b c']
+    assert report['variables'] == ['as \udcff it is', 'yes']
+    assert report['input'] == ''
+    assert report['descriptors'] == [0, 1, 2]
     assert child.process.returncode == 0
     monkeypatch.delenv('OF_THE_TEST')
     monkeypatch.delenv('AT_THE_START')
-    assert json.loads(run(ABOUT_ITSELF).words())['variables'] == [None, None]
+    assert json.loads(run(ABOUT_ITSELF).output_text())['variables'] == [None, None]
 
 
 def test_ps_shows_a_fork_as_python_with_its_module(run: Run) -> None:
     child = run(ABOUT_ITSELF)
-    command = json.loads(child.words())['command']
+    command = json.loads(child.output_text())['command']
     assert command[:4] == [sys.executable, '-P', '-m', child.job.module]
     assert not any(command[4:])
 
 
 @pytest.mark.parametrize(
-    ('text', 'code', 'last_words'),
+    ('text', 'code', 'last_line'),
     [
         ('def main(): return 0', 0, ''),
         ('def main(): pass', 0, ''),
@@ -112,11 +112,11 @@ def test_ps_shows_a_fork_as_python_with_its_module(run: Run) -> None:
     ],
 )
 def test_a_fork_ends_as_a_program_of_its_own_would(
-    run: Run, text: str, code: int, last_words: str
+    run: Run, text: str, code: int, last_line: str
 ) -> None:
     child = run(text)
     assert child.process.returncode == code
-    assert child.last_words() == last_words
+    assert child.last_line() == last_line
 
 
 def test_nothing_goes_from_one_fork_to_the_next(run: Run) -> None:
@@ -131,7 +131,7 @@ def test_nothing_goes_from_one_fork_to_the_next(run: Run) -> None:
         '    sys.path.append("/nowhere")\n'
         '    signal.signal(signal.SIGINT, signal.SIG_IGN)\n'
     )
-    first, second = run(text).words(), run(text).words()
+    first, second = run(text).output_text(), run(text).output_text()
     assert first == second
     assert first.startswith('False False ')
 
@@ -142,7 +142,7 @@ def test_two_forks_draw_other_random_numbers(run: Run) -> None:
         'from numpy import random as others\n'
         'def main(): print(random.random(), others.random(), others.default_rng().random())\n'
     )
-    first, second = (run(text).words().split() for _ in range(2))
+    first, second = (run(text).output_text().split() for _ in range(2))
     assert all(one != other for one, other in zip(first, second, strict=True))
 
 
@@ -163,7 +163,7 @@ def test_it_has_no_thread_but_those_that_ros_brings_along_and_its_forks_have_the
     )
     child = run(ABOUT_ITSELF)
     assert _threads(parent.process.pid) == int(alone.stdout)
-    assert json.loads(child.words())['threads'] == int(alone.stdout)
+    assert json.loads(child.output_text())['threads'] == int(alone.stdout)
 
 
 def test_its_numerics_have_one_thread_unless_the_user_wants_more(
@@ -185,10 +185,10 @@ def test_its_numerics_have_one_thread_unless_the_user_wants_more(
         child = Child(name)
         (child.process,) = parent.start([child.job])
         child.process.wait(WITHIN_S)
-    assert set(child.words().split()) == {'1'}
+    assert set(child.output_text().split()) == {'1'}
 
 
-def test_one_that_was_started_ahead_goes_to_the_first_who_asks_and_is_gone_at_the_end() -> None:
+def test_a_parent_started_ahead_is_returned_to_the_first_caller_and_closed_at_the_end() -> None:
     with warm_parent.started_ahead():
         (ahead,) = warm_parent._ahead
         with warm_parent.warm_parent() as first, warm_parent.warm_parent() as second:
@@ -205,7 +205,7 @@ def test_a_parent_that_was_killed_since_the_last_start_is_replaced(run: Run, par
     run('def main(): pass')
     parent.process.kill()
     parent.process.wait()
-    assert json.loads(run(ABOUT_ITSELF).words())['parent'] == os.getpid()
+    assert json.loads(run(ABOUT_ITSELF).output_text())['parent'] == os.getpid()
 
 
 def test_a_parent_that_is_killed_while_it_should_fork_is_named() -> None:
@@ -222,7 +222,9 @@ def test_a_parent_that_is_killed_while_it_should_fork_is_named() -> None:
             parent.start([Job('ddct_bringup.processes.guardian')], stopped=stopped)
 
 
-def test_a_parent_that_cannot_work_says_why(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+def test_a_parent_that_cannot_import_is_reported_with_the_reason(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+):
     (tmp_path / 'json.py').write_text('raise ImportError("of the test")')
     monkeypatch.setenv('PYTHONPATH', str(tmp_path), prepend=':')
     with WarmParent() as parent, pytest.raises(DdctError, match='ImportError: of the test$'):
@@ -246,7 +248,7 @@ def test_ctrl_c_while_it_imports_ends_it_at_once() -> None:
         assert parent.process.returncode == -signal.SIGKILL
 
 
-def test_no_fork_begins_before_whoever_watches_knows_of_all(
+def test_no_fork_begins_before_all_are_registered_for_supervision(
     parent: WarmParent, module: Callable[[str], str], tmp_path: Path
 ) -> None:
     name = module(f'import pathlib\npathlib.Path({str(tmp_path / "began")!r}).touch()\n')

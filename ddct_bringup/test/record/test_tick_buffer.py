@@ -1,4 +1,4 @@
-"""Ticks come out of the buffer whole and in order; in real time with holes, but not too soon."""
+"""The buffer returns complete ticks; in real time incomplete ones too, but not too soon."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from ddct_plant.base.timebase import stamp_of_step
 
 
 class Buffer:
-    """A buffer of the topics a and b; what comes out of it, as {step: topics}."""
+    """Buffer of the topics a and b; its ticks are returned as {step: topics}."""
 
     def __init__(self, *, lockstep):
         self.buffer = TickBuffer(
@@ -61,7 +61,7 @@ def test_lock_step_never_gives_an_incomplete_tick_back(lockstep):
     assert lockstep.drain() == []
 
 
-def test_lock_step_says_that_it_missed_the_start(lockstep):
+def test_lock_step_reports_that_it_missed_the_start(lockstep):
     with pytest.raises(
         DdctError, match=f'a: step {LAG_LIMIT_STEPS + 1} came where step 0 was due'
     ):

@@ -1,4 +1,4 @@
-"""The frequency-domain evidence is of the loop that runs, and `compare` leaves it in a file."""
+"""The frequency-domain evidence is of the simulated loop, and `compare` writes it to a file."""
 
 import dataclasses
 import json
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 STEP_RPM = 1.0
 AT_STEP = 100
-"""After control has started, at 0.6 s; the run has 200 steps and more from there."""
+"""Step index of the step of the error, after control start at 0.6 s; 200 steps and more follow."""
 SCENARIO = load_scenario('thesis')
 LINEAR = [
     name
@@ -33,9 +33,10 @@ LINEAR = [
 
 class SteppedError(Controller):
     """
-    A controller that sees its slip error raised by `step_rpm` from `AT_STEP` on.
+    A controller whose slip error is raised by `step_rpm` from `AT_STEP` on.
 
-    For the feedback that is a step of the reference; a filter of the reference does not see it.
+    For the feedback that is a step of the reference, but a filter of the reference does not get
+    it.
     """
 
     def __init__(self, inner: Controller, step_rpm: float) -> None:
@@ -54,11 +55,11 @@ class SteppedError(Controller):
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
 @pytest.mark.parametrize('name', LINEAR)
-def test_a_small_step_of_the_slip_error_moves_the_run_as_the_sampled_loop_says(name, wear_gain):
+def test_a_small_step_of_the_slip_error_has_the_response_of_the_sampled_loop(name, wear_gain):
     """
-    The change of w_d between two runs, whole classes of the graph, within 1e-3 of its peak.
+    The change of w_d between two complete runs is within 1e-3 of its peak.
 
-    That holds the sampling, the delay, the wear gain, every sign and unit.
+    It depends on the sampling, the delay, the wear gain, every sign and unit.
     """
     require_run_as_the_loop(name, RunSettings(SCENARIO, wear_gain=wear_gain))
 

@@ -1,4 +1,4 @@
-"""Each chart of the report draws the signal that its title names, with its sign and unit."""
+"""Each chart of the report draws the signal in its title, with its sign and unit."""
 
 import math
 from typing import Any
@@ -11,9 +11,9 @@ from bokeh.models.renderers import GlyphRenderer
 from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.chart_signals import chart_signals_of
 from ddct_bringup.report.charts import ChartRun, chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
-from ddct_bringup.report.quantities import quantities_of
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent
@@ -43,7 +43,7 @@ FACTS = made_facts(
 
 
 def random_run() -> Trajectory:
-    """Return a run with another number in every place."""
+    """Return a run with a different number in every place."""
     random = np.random.default_rng(1)
     arrays = {
         signal.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(signal.name, ())))
@@ -65,7 +65,7 @@ SHOWN = {
     'C_m': (RUN.engine_torque, 'N m'),
     'w_d_sensed': ((RUN.sensed_slip_speed - RUN.slip_speed) * RPM, 'rpm'),
 }
-"""The values by chart, as docs/develop/interfaces.md names the signals."""
+"""Values by chart, from the signals of docs/develop/interfaces.md."""
 
 
 @pytest.fixture(scope='module')
@@ -89,7 +89,7 @@ def lines(chart) -> list[GlyphRenderer]:
 
 
 def test_every_signal_has_its_chart(charts):
-    assert list(charts) == list(SHOWN) == [quantity.key for quantity in quantities_of(RUN)]
+    assert list(charts) == list(SHOWN) == [quantity.key for quantity in chart_signals_of(RUN)]
 
 
 @pytest.mark.parametrize('key', SHOWN)
@@ -99,7 +99,7 @@ def test_a_chart_draws_its_signal_over_time(charts, key):
     np.testing.assert_allclose(time, np.arange(STEPS + 1) / 100.0, rtol=1e-6)
     np.testing.assert_allclose(shown, values, rtol=1e-6)
     assert charts[key].yaxis[0].axis_label == unit
-    (quantity,) = [each for each in quantities_of(RUN) if each.key == key]
+    (quantity,) = [each for each in chart_signals_of(RUN) if each.key == key]
     assert (quantity.unit, charts[key].xaxis[0].axis_label) == (unit, 'time, s')
 
 
@@ -123,7 +123,7 @@ def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
 
 
 def sticking_run() -> Trajectory:
-    """Return `RUN` with a clutch that closes at 0.02 s, locks, and lets go again."""
+    """Return `RUN` with a clutch that closes at 0.02 s, locks, and releases."""
     random = np.random.default_rng(2)
     events: list[tuple[PhaseEvent, ...]] = [()] * (STEPS + 1)
     events[1] = (PhaseEvent(0.007, 'reverse'),)
@@ -149,7 +149,7 @@ STICK_SLIP = sticking_run()
 
 @pytest.fixture(scope='module')
 def both():
-    """Return the charts of a linear run beside one with a clutch that sticks."""
+    """Return the charts of a linear run together with one with a stick-slip clutch."""
     runs = [
         ChartRun(0, 'linear', LineLook(0, ()), RUN, FACTS, True),
         ChartRun(1, 'sticks', LineLook(1, ()), STICK_SLIP, FACTS, True),
@@ -163,7 +163,7 @@ def test_a_clutch_that_sticks_adds_its_charts_for_its_own_runs_only(both):
     assert [len(lines(both[key])) for key in ('C_m', 'temperature')] == [2, 1]
 
 
-def test_transmitted_torque_stands_beside_the_capacity_of_the_phase(both):
+def test_transmitted_torque_is_drawn_with_the_capacity_of_the_phase(both):
     transmitted, capacity = lines(both['C_f_transmitted'])
     np.testing.assert_allclose(drawn(transmitted)[1], RUN.joint_effort[:, 1], rtol=1e-6)
     expected = RUN.clutch_torque[:, 0].copy()

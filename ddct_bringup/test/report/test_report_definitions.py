@@ -1,16 +1,16 @@
-"""What the page's tables and charts leave open is defined on the page."""
+"""The page defines the terms of its tables and charts."""
 
 import pytest
 
+from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SENSOR_SIGNALS
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.report.quantities import CLUTCH_QUANTITIES, QUANTITIES, SENSOR_QUANTITIES
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_figures import FURTHER, TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 
-SIGNALS = (*QUANTITIES, *CLUTCH_QUANTITIES, *SENSOR_QUANTITIES)
+SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SENSOR_SIGNALS)
 GROUPS = definitions(SIGNALS, thesis=True)
 
 
@@ -22,7 +22,9 @@ GROUPS = definitions(SIGNALS, thesis=True)
         ('Frequency', LOOP_FIGURES),
     ],
 )
-def test_every_figure_of_the_tables_is_defined_with_its_unit_and_when_it_has_none(title, figures):
+def test_every_quantity_of_the_tables_is_defined_with_its_unit_and_when_it_has_no_value(
+    title, figures
+):
     entries = {entry.term: entry for entry in GROUPS[title]}
     metrics = {entry.term: entry for entry in GROUPS['Metrics']}
     for figure in figures:
@@ -58,7 +60,7 @@ def test_a_dash_sigma_and_a_slip_below_zero_are_explained():
     assert 'never locks' in terms['w_d below zero']
 
 
-def test_a_page_without_the_thesis_says_nothing_of_it():
+def test_a_page_without_the_thesis_has_no_definitions_of_it():
     reading = definitions(SIGNALS, thesis=False)['Reading the tables']
     assert 'thesis' not in ' '.join(entry.term for entry in reading)
     assert not any('Table 5.1' in entry.meaning for entry in reading)

@@ -1,4 +1,4 @@
-"""What a bag says is text on the page, never a part of it."""
+"""Text from a bag is escaped on the page."""
 
 import json
 import re
@@ -24,7 +24,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=0.7', 'score_window_s=[0.1,0.6]']))
 EVIL = '</script></textarea></style>--><evil onload="x"> \'"&amp; w_<evil>'
-"""Closes whatever is open and opens an element that no page has."""
+"""Text that closes every open element and opens one that no page has."""
 
 
 class Elements(HTMLParser):
@@ -53,7 +53,7 @@ class Elements(HTMLParser):
 
 
 def recording(text: str) -> Recording:
-    """Return a run whose bag holds `text` wherever it may hold any."""
+    """Return a run whose bag has `text` in every place for text."""
     scenario = SETTINGS.scenario
     facts = made_facts(
         controller='pi',

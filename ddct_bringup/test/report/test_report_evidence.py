@@ -1,4 +1,4 @@
-"""What a file beside the bags says is taken only where the page can show all of it."""
+"""A file next to the bags is used only where the page can show all of it."""
 
 import copy
 import dataclasses
@@ -27,7 +27,7 @@ def whole():
 
 @pytest.fixture
 def remark(tmp_path, monkeypatch, whole, run):
-    """Return a function that tells where the evidence beside a bag was taken from."""
+    """Return a function that returns the source of the evidence for a bag."""
     monkeypatch.setattr(evidence, 'frequency_evidence', lambda names, settings: whole)
     found = dataclasses.replace(run, path=tmp_path / 'pi' / 'pi_0.mcap')
 
@@ -40,7 +40,7 @@ def remark(tmp_path, monkeypatch, whole, run):
     return read
 
 
-def test_figures_are_those_of_the_run_s_own_wear_gain(whole):
+def test_loop_values_are_those_of_the_run_s_own_wear_gain(whole):
     (entry,) = whole['controllers']
     for wear_gain in (0.7, 1.0, 1.3):
         assert LoopEvidence('pi', wear_gain, entry).point['wear_gain'] == wear_gain

@@ -1,4 +1,4 @@
-"""Labels of the report tell runs apart and say no more than needed."""
+"""Labels of the report distinguish runs, and are no longer than needed."""
 
 from ddct_bringup.report.runs import common_conditions, run_labels
 
@@ -52,7 +52,7 @@ def test_logs_are_called_measured_and_their_number_is_among_the_conditions():
     assert common_conditions([log, log]) == ['2 logs of a car']
 
 
-def test_the_same_run_twice_is_told_apart_by_the_bag():
+def test_the_same_run_twice_is_labelled_with_the_bag():
     entries = [entry(bag='new/pi'), entry(bag='old/pi'), entry('ls8')]
     assert run_labels(entries) == ['pi (new/pi)', 'pi (old/pi)', 'ls8']
 
@@ -61,7 +61,7 @@ def test_labels_are_never_the_same():
     assert run_labels([entry(bag='a')] * 3) == ['pi (a)', 'pi (a) #2', 'pi (a) #3']
 
 
-def test_a_bag_that_tells_nothing_goes_by_its_name():
+def test_a_bag_without_facts_is_labelled_by_its_name():
     unknown = dict.fromkeys(entry(), None) | {'bag': 'broken/pi'}
     assert run_labels([entry('ls8'), unknown]) == ['ls8', 'broken/pi']
     assert common_conditions([unknown]) == []

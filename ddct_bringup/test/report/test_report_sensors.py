@@ -1,4 +1,4 @@
-"""The page says whether controllers read sensors, which ones, and how far these were off."""
+"""The page shows whether controllers read sensors, which ones, and the sensor errors."""
 
 from pathlib import Path
 

@@ -9,9 +9,9 @@ from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, wi
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -47,7 +47,7 @@ def test_the_thesis_s_conditions_are():
     assert [row and row.label for row in rows] == ['LS8', None]
 
 
-def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
+def test_a_cell_has_the_computed_value_the_printed_one_and_their_difference():
     runs = [
         run('ls8', RunSettings(THESIS), engagement_time_s=0.781),
         run('ls1', RunSettings(THESIS), engagement_time_s=1.562),
@@ -61,7 +61,7 @@ def test_a_cell_has_the_value_the_printed_figure_and_their_difference():
     assert (cells[2].value, cells[2].text, cells[2].share) == (None, '–', 0.0)
 
 
-def test_a_predicted_figure_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
+def test_a_predicted_value_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
     runs = [
         run('mpc3', RunSettings(THESIS), engagement_time_s=0.62),
         run('mpc4', RunSettings(THESIS)),

@@ -1,4 +1,4 @@
-"""A controller in a file runs like any other, under the name that the file gives it."""
+"""A controller in a file runs like any other, under the name in the file."""
 
 import json
 
@@ -41,7 +41,7 @@ def test_the_bag_has_the_name_inside_and_no_path(file, tmp_path):
         assert b'any_name' not in written.read_bytes()
 
 
-def test_it_does_to_the_bit_what_the_same_controller_of_the_registry_does(file):
+def test_it_gives_to_the_bit_the_run_of_the_same_controller_in_the_registry(file):
     from_file = run_headless(SETTINGS, str(file))
     assert from_file.sha256() == run_headless(SETTINGS, 'ls8').sha256()
 

@@ -1,11 +1,11 @@
-"""The note in a failed run's folder: whatever it holds, the run never looks like a good one."""
+"""The note in a failed run's folder marks the run as failed, whatever its content."""
 
 from pathlib import Path
 
 import pytest
 
-from ddct_bringup.run.beside_bag import NOTE_FILE, failed_run, note_failure
 from ddct_bringup.run.description import custom_data
+from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run, note_failure
 from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.scoring import unreadable_entry
 from ddct_plant.base.errors import DdctError
@@ -16,7 +16,7 @@ SETTINGS = RunSettings(load_scenario('thesis'), wear_gain=0.7)
 FACTS = custom_data(SETTINGS, 'ls8', 300)
 
 
-def test_a_note_gives_back_the_reason_and_what_the_run_was_to_be(tmp_path: Path) -> None:
+def test_a_note_is_read_back_with_the_reason_and_the_planned_facts(tmp_path: Path) -> None:
     note_failure(tmp_path, 'node clutch was killed', FACTS)
     found = failed_run(tmp_path)
     assert found is not None
@@ -33,7 +33,7 @@ def test_without_a_note_no_run_has_failed(tmp_path: Path) -> None:
     'text',
     ['', '{', '[]', '7', '{}', '{"reason": "x"}', '{"reason": 3, "run": 4}', '{"run": {}}', '\0'],
 )
-def test_a_note_that_cannot_be_read_still_says_that_the_run_failed(
+def test_a_note_that_cannot_be_read_still_marks_the_run_as_failed(
     tmp_path: Path, text: str
 ) -> None:
     (tmp_path / NOTE_FILE).write_text(text, encoding='utf-8')
@@ -61,7 +61,7 @@ def test_the_folder_of_a_failed_run_is_found_with_or_without_a_bag(tmp_path: Pat
     assert find_bags(tmp_path / 'a') == [tmp_path / 'a']
 
 
-def test_a_failed_run_is_told_by_its_note_and_not_by_its_missing_bag(tmp_path: Path) -> None:
+def test_a_failed_run_is_recognised_by_its_note_and_not_by_its_missing_bag(tmp_path: Path) -> None:
     note_failure(tmp_path, 'node clutch was killed', FACTS)
     entry = unreadable_entry(tmp_path, DdctError('no .mcap file'))
     assert (entry['valid'], entry['reason']) == (False, 'node clutch was killed')

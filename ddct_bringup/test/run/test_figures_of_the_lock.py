@@ -1,4 +1,4 @@
-"""What happens at the lock is measured there, in runs of the packaged scenarios."""
+"""Metrics of the lock are measured at its instant, in runs of the packaged scenarios."""
 
 from functools import lru_cache
 

@@ -1,4 +1,4 @@
-"""The headless loop is accurate, repeatable, and honest about what it cannot run."""
+"""The headless loop is accurate and repeatable, and ends at a value that is not finite."""
 
 import math
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
 
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
@@ -42,7 +42,7 @@ def test_it_has_every_tick_and_times_every_update():
     assert all(time_us > 0.0 for time_us in timing.update_times_us)
 
 
-def test_feedback_starts_when_the_scenario_says():
+def test_feedback_starts_at_the_control_start_of_the_scenario():
     trajectory = run_headless(SETTINGS, 'ls8')
     start = SETTINGS.scenario.control_start_step
     closed_loop = [float(dict(pairs)['closed_loop_torque_n_m']) for pairs in trajectory.status]

@@ -1,4 +1,4 @@
-"""The four architectures differ in the closed loop as Section 1.6 and Chapters 2 and 3 say."""
+"""The four architectures differ in the closed loop as in Section 1.6 and Chapters 2 and 3."""
 
 from functools import cache
 

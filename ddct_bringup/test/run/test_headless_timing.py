@@ -1,7 +1,7 @@
 """`timing.json` of a run without a graph counts its periods and its updates."""
 
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -11,17 +11,17 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 CAPACITY_N_M = 350.0
-"""Published for the C635."""
+"""Torque capacity published for the C635, N m."""
 LAUNCHES = {
     'launch': (1.0, 2.0),
     'launch_hill': (1.0, 2.0),
     'launch_gentle': (3.0, 4.5),
     'launch_hot': (1.0, 2.0),
 }
-"""Between which times in s the clutch locks for the first time."""
+"""Earliest and latest time of the first lock of the clutch, s, by scenario."""
 CONTROLLERS = ('ls8', 'hinf1')
 REST = 1e-9
-"""rad/s."""
+"""Largest wheel speed of a car at rest, rad/s."""
 
 
 @lru_cache
@@ -50,7 +50,7 @@ def test_a_launch_locks_in_time_within_capacity_and_heats_as_launches_do(name, c
 
 @pytest.mark.parametrize('name', [*LAUNCHES, 'tip_in'])
 def test_the_final_speeds_are_those_that_the_torques_give(name):
-    """Momentum seen at the wheels: clutch torque and shaft torque cancel in it."""
+    """In the momentum at the wheels clutch torque and shaft torque cancel."""
     scenario, trajectory = run(name)
     p = scenario.driveline
     speeds = trajectory.joint_speed[:, :3]

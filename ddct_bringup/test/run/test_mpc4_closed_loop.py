@@ -1,4 +1,4 @@
-"""What docs/controllers/mpc4.md claims of clutch and engine together holds in its scenario."""
+"""The claims of docs/controllers/mpc4.md on clutch and engine together hold in its scenario."""
 
 import math
 from typing import Any
@@ -70,8 +70,8 @@ def test_the_coming_corner_of_the_reference_costs_more_than_it_gives():
 
 
 @pytest.mark.parametrize('weight', [math.sqrt(0.05), 0.05])
-def test_without_the_pull_the_slip_error_decays_as_the_weights_say(weight):
-    """Of e with dw_d/dt = a: least squares of (e + a t, a) over the horizon, Q = (1, weight^2)."""
+def test_without_the_pull_the_slip_error_decays_at_the_rate_of_the_weights(weight):
+    """Minimise (e + a t, a) with dw_d/dt = a over the horizon, weighted by Q = (1, weight^2)."""
     times = 0.01 * np.arange(1, 8)
     rate = np.sum(times) / (np.sum(times**2) + 7 * weight**2)
     model = transmission_model(SETTINGS.scenario.driveline)
@@ -107,7 +107,7 @@ def test_the_advantage_goes_as_the_authority_shrinks(change, least):
         ('engine_authority.minimum_torque_n_m=290.0', 'engine_authority.maximum_torque_n_m=320.0'),
     ],
 )
-def test_the_engine_delivers_what_is_asked_as_the_controller_expects(name, changes):
+def test_the_engine_delivers_the_requested_torque_as_the_controller_expects(name, changes):
     trajectory = run(name, *changes)
     for status, torque, demand in zip(
         trajectory.status[START:],
@@ -131,13 +131,13 @@ NO_DELAY = 'no delay in its model'
 
 
 def test_without_the_delay_in_its_model_the_level_runs_away_with_a_new_clutch():
-    """Why the plant of Section 3.2.1.3, P_2 G_a without a delay, is not MPC4's model."""
+    """So the plant of Section 3.2.1.3, P_2 G_a without a delay, is not MPC4's model."""
     assert READINGS[NO_DELAY].growth(1.0) > 1.05
     assert abs(rpm_from_rad_s(READINGS[NO_DELAY].run().slip_speed[-1])) > 1000.0
 
 
 def test_a_measured_state_gives_what_the_filter_gives():
-    """Section 4.1 takes the state as measured; the twist is not, and an observer stands in."""
+    """Section 4.1 takes the state as measured; the twist is not, so an observer estimates it."""
     measured, filtered = (
         metrics(each) for each in (READINGS['state measured'].run(), run('mpc4'))
     )
@@ -174,7 +174,7 @@ def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
 
 @pytest.mark.parametrize('wear_gain', [0.2, 0.33, 0.47, 0.5])
 def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_end(wear_gain):
-    """What a clutch that sticks carries has a limit, so the slip grows and the loop diverges."""
+    """The capacity of a clutch that sticks is limited: the slip grows and the loop diverges."""
     scenario = load_scenario('thesis', ['duration_s=6'], clutch='stick_slip')
     settings = RunSettings(scenario, clutch='stick_slip', wear_gain=wear_gain)
     trajectory = run_headless(settings, 'mpc4_wear')

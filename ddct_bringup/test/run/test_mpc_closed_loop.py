@@ -1,4 +1,4 @@
-"""MPC1-3 in the closed loop, and what the pages say of them."""
+"""MPC1-3 in the closed loop agree with their pages."""
 
 import numpy as np
 import pytest
@@ -83,23 +83,25 @@ class AsDrawn(Controller):
         return Command(self.own)
 
 
-def told_all(name):
-    """Return a controller of Table 4.1 that is told what `mpc_preview` is."""
+def with_full_information(name):
+    """Return a controller of Table 4.1 with the information of `mpc_preview`."""
     options = {'measured': 'speeds', 'load_known': True, 'delay_in_model': True, 'preview': True}
     return PREDICTIVE[name](ControllerContext(SETTINGS, options))
 
 
 @pytest.mark.parametrize('name', TABLE_4_1)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
-def test_told_all_slip_ends_at_zero_without_a_fallback(name, architecture):
-    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), told_all(name))
+def test_with_full_information_slip_ends_at_zero_without_a_fallback(name, architecture):
+    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), with_full_information(name))
     assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 1.0
     assert {dict(status).get('fallbacks', '0') for status in run.status} == {'0'}
 
 
 @pytest.mark.parametrize('name', TABLE_4_1)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
-def test_as_drawn_an_error_stays_which_section_6_1_wants_an_integrator_for(name, architecture):
+def test_as_drawn_an_error_stays_that_section_6_1_would_remove_by_an_integrator(
+    name, architecture
+):
     run = thesis_run(name, architecture, 1.0).trajectory
     assert 4.5 < rpm_from_rad_s(run.slip_speed[-1]) < 6.0
     statuses = [dict(status) for status in run.status]
@@ -108,7 +110,7 @@ def test_as_drawn_an_error_stays_which_section_6_1_wants_an_integrator_for(name,
 
 
 def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
-    """No code of the product but plant and start: toolbox filter and normal equations here."""
+    """Only plant and start are the product's; toolbox filter and normal equations are new here."""
     peer = run_headless(SETTINGS, AsDrawn(prediction_steps=22, control_steps=4))
     ours = thesis_run('mpc3', 'detailed', 1.0).trajectory
     np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
@@ -119,8 +121,10 @@ def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
     assert figures_of_peer.slip_final_rpm == pytest.approx(5.70, abs=5e-3)
 
 
-def test_mpc_preview_is_mpc3_that_is_told_all():
-    runs = [run_headless(SETTINGS, each) for each in (told_all('mpc3'), 'mpc_preview')]
+def test_mpc_preview_is_mpc3_with_full_information():
+    runs = [
+        run_headless(SETTINGS, each) for each in (with_full_information('mpc3'), 'mpc_preview')
+    ]
     assert runs[0].sha256() == runs[1].sha256()
 
 
@@ -147,8 +151,8 @@ def test_every_option_changes_the_run_and_none_breaks_it(changes):
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
-def test_wear_leaves_an_error_that_the_thesis_calls_bad(wear_gain):
-    """Table 5.2; the model has no disturbance that could stand for the wear."""
+def test_wear_leaves_an_error_that_the_thesis_rates_bad(wear_gain):
+    """Table 5.2: the model has no disturbance that could represent the wear."""
     slip_rpm = thesis_run('mpc3', 'detailed', wear_gain).slip_rpm[-1]
     assert abs(slip_rpm) > 10.0
 
@@ -171,7 +175,7 @@ def test_limits_of_the_request_hold_in_the_loop():
     assert np.abs(np.diff(requests)).max() <= 15.0 + 1e-6
 
 
-def test_the_first_reading_is_what_the_registry_has(readings_table):
+def test_the_first_reading_is_the_one_in_the_registry(readings_table):
     for name in TABLE_4_1:
         row = next(row for row in readings_table.rows if row[0] == name)
         assert row[2:5] == cells(TABLE_5_1, headless_run(SETTINGS, name))
@@ -199,7 +203,7 @@ def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(rea
 
 
 def test_limit_is_a_limit_for_every_run():
-    """Each has the limit of its own t_a and stray, so it is one of those that it bounds."""
+    """Each run has the limit for its own t_a and stray, so it is among the runs that it bounds."""
     for controller, _, _, *figures_and_limits in clutch_torque_limit().rows:
         torsion, least_torsion, acceleration, least_acceleration = map(float, figures_and_limits)
         if 'printed' not in controller:

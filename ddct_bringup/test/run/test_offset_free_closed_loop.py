@@ -136,7 +136,7 @@ def test_the_slip_ends_at_zero_far_beyond_that(name, wear_gain):
 
 
 @pytest.mark.parametrize('wear_gain', [0.4, 1.6])
-def test_the_status_says_when_a_bound_holds_the_wear_gain(wear_gain):
+def test_the_status_reports_when_a_bound_holds_the_wear_gain(wear_gain):
     reached, estimates = np.transpose(
         [
             (status['wear_gain_at_bound'] == 'true', float(status['wear_gain_estimate']))
@@ -150,7 +150,7 @@ def test_the_status_says_when_a_bound_holds_the_wear_gain(wear_gain):
 
 
 class WrongEngineTorque(NoisySpeeds):
-    """Tells a controller a C_m that is wrong by a constant."""
+    """Controller that receives C_m with a constant error."""
 
     def __init__(self, controller, error_n_m):
         super().__init__(controller, 0.0, seed=0)

@@ -1,4 +1,4 @@
-"""The end of a run: what came meanwhile is looked at again, an old result is never lost."""
+"""Commit checks the folders again: new files of others stay, an old result is never lost."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What `--list` and `compare` print of a controller's origin tells its author what to do."""
+"""`--list` and `compare` print a controller's origin, or the line that declares it."""
 
 import io
 from pathlib import Path
@@ -19,26 +19,26 @@ def of_class(computed_from=None):
     return factory_spec('my_slip', type('Mine', (), attributes), 'mine.py')
 
 
-def test_the_class_that_does_not_say_it_is_named_with_what_to_write_and_why():
+def test_a_class_without_origin_is_named_with_the_line_to_write_and_the_reason():
     (line,) = printed(of_class())
     assert 'whether another driveline in the scenario changes their gains: my_slip' in line
     assert "write into the class computed_from = 'scenario' if they are computed from" in line
     assert "computed_from = 'thesis' if they are fixed numbers" in line
 
 
-def test_what_the_line_says_to_write_ends_it():
+def test_the_line_to_write_ends_the_printed_line():
     assert printed(of_class(SCENARIO)) == ['computed from scenario: my_slip']
     assert printed(of_class(THESIS), 'pi') == ['computed from thesis: my_slip, pi']
 
 
-def test_a_controller_file_is_not_asked_for_what_it_cannot_say():
+def test_a_controller_file_is_not_named_as_one_without_origin():
     file = Path(__file__).parents[3] / 'docs' / 'templates' / 'transfer_function.yaml'
     assert printed(str(file)) == [
         'as their files have them, whatever driveline the scenario has: mine'
     ]
 
 
-def test_the_class_in_a_python_file_can_say_it(tmp_path):
+def test_the_class_in_a_python_file_can_state_its_origin(tmp_path):
     file = tmp_path / 'mine.py'
     file.write_text(
         'from ddct_controllers.interface import Command, Controller\n'
@@ -51,5 +51,5 @@ def test_the_class_in_a_python_file_can_say_it(tmp_path):
     assert 'changes their gains: Mine (write into the class' in line
 
 
-def test_one_that_cannot_be_loaded_is_called_so():
+def test_a_controller_that_cannot_be_loaded_is_listed_as_such():
     assert printed('nobody') == ['cannot be loaded, as the options of controllers say: nobody']

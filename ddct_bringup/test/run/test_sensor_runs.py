@@ -1,4 +1,4 @@
-"""Runs with sensors: control reads what they say, the plant and the scores are the truth."""
+"""In runs with sensors control reads sensor values; plant and scores use true signals."""
 
 from typing import Any
 
@@ -17,22 +17,22 @@ NOISY = 'sensors={engine_speed: {noise_rad_s: 0.5}, engine_torque: {noise_n_m: 2
 
 
 class Listener(Controller):
-    """Asks for nothing and keeps what it is told."""
+    """Controller that requests no clutch torque and stores its measurements."""
 
     def __init__(self, *, commands_engine: bool) -> None:
         self.commands_engine = commands_engine
-        self.told: list[Measurement] = []
+        self.measurements: list[Measurement] = []
 
     def reset(self) -> None:
-        """Keep all."""
+        """Keep the stored measurements."""
 
     def hold(self, measurement: Measurement) -> None:
         self.update(measurement)
 
     def update(self, measurement: Measurement) -> Command:
-        self.told.append(measurement)
-        asked = measurement.engine_torque + 5.0
-        return Command(0.0, engine_torque=asked if self.commands_engine else None)
+        self.measurements.append(measurement)
+        requested = measurement.engine_torque + 5.0
+        return Command(0.0, engine_torque=requested if self.commands_engine else None)
 
 
 def settings(*changes: str, **run: Any) -> RunSettings:
@@ -57,22 +57,23 @@ ALL_BIASED = (
 )
 
 
-def test_a_controller_is_told_what_the_sensors_say_and_so_is_the_reference():
+def test_controller_and_reference_receive_the_sensor_values():
     listener, run = listen(*ALL_BIASED)
-    for step, told in enumerate(listener.told):
-        speeds = [told.engine_speed, told.shaft_speed, told.wheel_speed]
+    for step, each in enumerate(listener.measurements):
+        speeds = [each.engine_speed, each.shaft_speed, each.wheel_speed]
         assert speeds == run.sensed_joint_speed[step].tolist()
-        assert told.vehicle_speed == run.sensed_vehicle_speed[step] == run.vehicle_speed[step] + 7
-        assert told.engine_torque == run.sensed_engine_torque[step] == run.engine_torque[step] + 7
-        assert told.slip_speed == run.sensed_slip_speed[step]
+        assert each.vehicle_speed == run.sensed_vehicle_speed[step] == run.vehicle_speed[step] + 7
+        assert each.engine_torque == run.sensed_engine_torque[step] == run.engine_torque[step] + 7
+        assert each.slip_speed == run.sensed_slip_speed[step]
     np.testing.assert_allclose(run.sensed_slip_speed, run.slip_speed + 4.0, atol=1e-9)
-    held = run.slip_reference[:60, 0]  # detailed: until control start it is the slip as seen
+    held = run.slip_reference[:60, 0]  # detailed: until control start it is the measured slip
     assert np.array_equal(held, run.sensed_slip_speed[:60])
 
 
-def test_a_controller_that_commands_the_engine_is_told_the_demand_itself():
+def test_a_controller_that_commands_the_engine_receives_the_demand_itself():
     listener, run = listen(*ALL_BIASED, commands_engine=True)
-    assert [told.engine_torque for told in listener.told] == run.torque_demand.tolist()
+    demands = [each.engine_torque for each in listener.measurements]
+    assert demands == run.torque_demand.tolist()
     assert np.array_equal(run.sensed_engine_torque, run.engine_torque + 7.0)
     assert not np.array_equal(run.engine_torque, run.torque_demand)
 
@@ -90,8 +91,8 @@ def test_exact_sensors_leave_the_run_as_it_is_without(controller):
     assert not exact.sensed_joint_held.any()
 
 
-def test_the_plant_obeys_the_true_torque_and_the_scores_are_of_the_truth():
-    # A loop that reads no sensor at all: base, and a controller that asks for nothing.
+def test_the_plant_integrates_the_true_torque_and_the_scores_are_of_true_signals():
+    # A loop that reads no sensor at all: base, and a controller that requests no torque.
     run = run_headless(
         settings('sensors.engine_torque.bias_n_m=50', architecture='base'),
         Listener(commands_engine=False),

@@ -1,4 +1,4 @@
-"""On a road whose slope changes, plant and controller see one load."""
+"""On a road whose slope changes, plant and controller use the same load."""
 
 import pytest
 

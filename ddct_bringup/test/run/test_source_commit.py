@@ -1,4 +1,4 @@
-"""A bag names the commit of our own sources, says when they differ from it, or says unknown."""
+"""A bag names the commit of the sources, marks changed sources, or names the commit unknown."""
 
 import subprocess
 from pathlib import Path
@@ -23,7 +23,7 @@ def git(folder: Path, *arguments: str) -> str:
 
 @pytest.fixture
 def sources(tmp_path: Path) -> Path:
-    """Return a repository that looks like ours."""
+    """Return a repository with the layout of this one."""
     root = tmp_path / 'sources'
     for file in (MODULE, OTHER, NOTES):
         (root / file).parent.mkdir(parents=True, exist_ok=True)
@@ -102,7 +102,7 @@ def test_a_hook_of_another_repository_does_not_lead_astray(
     assert source_commit(sources / MODULE) == commit
 
 
-def test_the_bag_tells_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bag_contains_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(description, 'source_commit', lambda: 'abc-dirty')
     settings = RunSettings(load_scenario('thesis'))
     assert description.custom_data(settings, 'pi', 300)['commit'] == 'abc-dirty'

@@ -28,7 +28,7 @@ CORNERS = [
     ('decoupled_pid', {'slip_bandwidth_rad_s': 20.0, 'engine_bandwidth_rad_s': 1.0}),
     ('pedal_mpc', {'slowest_engagement_s': 0.3, 'fastest_engagement_s': 0.3}),
 ]
-"""Ends of the ranges of options; lqi has its margins tested."""
+"""Options at the ends of their ranges, by controller; lqi has its margins tested."""
 
 
 @cache

@@ -16,7 +16,7 @@ from ddct_plant.scenario.plant import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 UNDAMPED = ('driveline.shaft_damping=0.0', 'driveline.halfshaft_damping=0.0')
-"""So that all that is dissipated is friction."""
+"""Changes that leave friction as the only dissipation."""
 LAUNCH = ('initial.shaft_speed_rad_s=0', 'initial.engine_speed_rad_s=104.7')
 
 
@@ -72,7 +72,7 @@ def test_slip_is_zero_while_locked_and_work_is_zero_within_a_locked_period():
     assert (found.friction_work[1:][~locked[1:]] > 0.0).all()
 
 
-def test_events_alternate_stand_in_their_period_and_end_in_the_phase_that_is_recorded():
+def test_events_alternate_lie_in_their_period_and_end_in_the_recorded_phase():
     found = run(*LAUNCH, 'driveline.total_ratio=16.06', controller='hinf2')
     states = {'lock': 2.0, 'release': 1.0}
     phase = found.clutch_phase[0]
@@ -139,7 +139,7 @@ def test_plates_of_two_speeds_start_slipping_and_carry_the_kinetic_capacity(engi
 
 
 @pytest.mark.parametrize('engine', [160.0, 180.0])
-def test_a_clutch_that_is_called_open_starts_without_torque(engine):
+def test_a_clutch_in_the_phase_open_starts_without_torque(engine):
     changes = ('initial.clutch_phase=open', f'initial.engine_speed_rad_s={engine}')
     start = initial_state(settings(*changes))
     assert (start.torque_request, start.clutch_torque) == (0.0, 0.0)
@@ -205,7 +205,7 @@ def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
 
 
 def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run(tmp_path):
-    """By programs and from Python, with key and line."""
+    """Programs and the Python interface name key and line."""
     path = tmp_path / 'fast.yaml'
     text = scenario_to_yaml(load_scenario('thesis', ['driveline.shaft_inertia=0.0005']))
     path.write_text(text, encoding='utf-8')

@@ -1,4 +1,4 @@
-"""Our H-infinity controllers in the frozen scenario, beside the thesis's Hinf1 (Table 5.1)."""
+"""The project's H-infinity controllers in the frozen scenario, beside Hinf1 (Table 5.1)."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_bringup.thesis.table_5_1 import FIGURES, thesis_row
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS, thesis_row
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -30,12 +30,12 @@ def sampled() -> Metrics:
     return metrics('hinf_sampled')
 
 
-@pytest.mark.parametrize('figure', FIGURES)
+@pytest.mark.parametrize('figure', TABLE_METRICS)
 def test_hinf_sampled_dominates_hinf1_as_computed_by_at_least_4_percent(sampled, figure):
     assert getattr(sampled, figure) < 0.96 * getattr(metrics('hinf1'), figure)
 
 
-@pytest.mark.parametrize('figure', FIGURES)
+@pytest.mark.parametrize('figure', TABLE_METRICS)
 def test_hinf_sampled_dominates_hinf1_as_printed_by_at_least_2_percent(sampled, figure):
     assert getattr(sampled, figure) < 0.98 * getattr(thesis_row('hinf1'), figure)
 
@@ -47,7 +47,7 @@ def integrated(request):
 
 
 def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
-    """Those of hinf_sampled.md and Table 5.1, signals and formulas from another source."""
+    """The values on hinf_sampled.md and in Table 5.1, from other code for signals and formulas."""
     name, signals = integrated
     time = np.arange(len(signals['w_d'])) / 100.0
     after = time >= SCENARIO.control_start_s - 1e-9
@@ -60,7 +60,7 @@ def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
         signals['w_sr'][window].std() * 30.0 / np.pi,
         signals['A_x'][window].std(),
     ]
-    found = [getattr(metrics(name), figure) for figure in FIGURES]
+    found = [getattr(metrics(name), figure) for figure in TABLE_METRICS]
     assert found == pytest.approx(expected, rel=2e-3)
     row = f'| `{name}` | ' + ' | '.join(f'{figure:.3f}' for figure in found) + ' |'
     assert row in PAGE.read_text(encoding='utf-8')
@@ -73,7 +73,7 @@ def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):
 
 
 def test_it_goes_further_through_zero_than_hinf1():
-    """The price of a slower, smoother loop."""
+    """A slower, smoother loop goes further through zero."""
     sampled, hinf1 = (
         run_headless(RunSettings(SCENARIO), name).slip_speed.min()
         for name in ('hinf_sampled', 'hinf1')

@@ -1,4 +1,4 @@
-"""Reading `timing.json`."""
+"""`timing.json` is read back, and unusable content is an error."""
 
 import json
 import os
@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import pytest
 
-from ddct_bringup.run.beside_bag import RunTiming, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_plant.base.errors import DdctError
 
 

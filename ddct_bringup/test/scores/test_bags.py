@@ -1,4 +1,4 @@
-"""Bags are found in the folder that is named, wherever that folder is."""
+"""Bags are found in the named folder, wherever that folder is."""
 
 from pathlib import Path
 

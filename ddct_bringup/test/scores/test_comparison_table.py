@@ -1,4 +1,4 @@
-"""The table of `compare`: ours under our headings, the thesis's under its own, only where due."""
+"""The table of `compare`: computed scores, and those of the thesis under its conditions only."""
 
 import dataclasses
 import io
@@ -59,7 +59,7 @@ def printed(settings=None, overrides=(), runs=()):
         ('jerk', 'm/s^3', '5.55'),
     ],
 )
-def test_our_figures_stand_under_their_headings(heading, unit, value, worn):
+def test_computed_values_are_below_their_headings(heading, unit, value, worn):
     text = printed(RunSettings(THESIS, wear_gain=0.7) if worn else None)
     assert value_under(text, heading, 'ls8') == (unit, value)
 
@@ -69,7 +69,7 @@ def test_our_figures_stand_under_their_headings(heading, unit, value, worn):
     # As Table 5.1 prints them: t_a, the deviation of w_sr, that of A_x.
     [('ls8', ['0.71', '1.15', '0.20']), ('mpc4', ['0.52', '0.20', '0.06'])],
 )
-def test_each_figure_of_the_thesis_stands_right_of_ours(controller, printed_figures):
+def test_each_value_of_the_thesis_is_right_of_the_computed_one(controller, printed_figures):
     text = printed()
     names = next(line for line in text.splitlines() if 't_a' in line)
     shown = [value_under(text, 'thesis', controller, place) for place in range(3)]
@@ -119,7 +119,7 @@ def test_a_run_that_is_not_valid_neither_hits_nor_misses():
         ((SLOPE,), f'thesis, 1 value changed: {SLOPE}; detailed, linear clutch'),
     ],
 )
-def test_the_title_says_what_differs_from_the_packaged_scenario(overrides, title):
+def test_the_title_lists_the_changes_of_the_packaged_scenario(overrides, title):
     text = printed(RunSettings(load_scenario('thesis', overrides)), overrides)
     assert title in ' '.join(text.split())
 

@@ -1,4 +1,4 @@
-"""Every metric against a trajectory whose answer is known."""
+"""Every metric for a trajectory with known values."""
 
 import json
 import math
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.beside_bag import RunTiming
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent
@@ -79,7 +79,7 @@ def test_engagement_time_is_undefined_when_the_run_ends_before_control_starts():
 
 
 def sticking(slip, events):
-    """Return a run with a clutch that sticks, its events by step."""
+    """Return a run with a stick-slip clutch and its events by step."""
     run = trajectory(slip_speed=slip)
     steps = tuple(events.get(step, ()) for step in range(STEPS + 1))
     phase = np.where(slip == 0.0, 2.0, 1.0)
@@ -87,7 +87,7 @@ def sticking(slip, events):
 
 
 SLIP = np.maximum(19.6 - 16.0 * TIME, 0.0)
-"""Zero from 1.23 s on, the lock is at 1.225 s."""
+"""Slip in rad/s that is zero from 1.23 s on, with the lock at 1.225 s."""
 
 
 def test_a_clutch_that_sticks_is_engaged_at_the_instant_of_its_first_lock():
@@ -111,7 +111,7 @@ def test_plates_that_pass_through_zero_are_engaged_there_and_locked_later():
     assert metrics.lockup_slip_acceleration_rad_s2 == 44.0
 
 
-def test_bags_recorded_before_reversals_and_slip_accelerations_have_what_they_have():
+def test_bags_from_before_reversals_and_slip_accelerations_have_the_other_metrics():
     slip = np.where(TIME < 1.0025, 3.0, np.where(TIME < 1.5, -1.0, 0.0))
     later = score(sticking(slip, {150: (PhaseEvent(1.495, 'lock'),)}))
     assert later.engagement_time_s == pytest.approx(1.0075 - 0.6, abs=1e-12)
@@ -170,7 +170,7 @@ def test_window_metrics_are_undefined_when_the_run_is_one_step_too_short():
 
 @pytest.mark.parametrize('at_s', [0.65, 1.9, 2.1, 2.95])
 def test_peak_jerk_counts_from_control_start_to_the_end_of_the_run(at_s):
-    """A jolt after the score window, as that of a late lock, is as large as one within it."""
+    """A jolt after the score window, as from a late lock, counts as much as one within it."""
     jolt = 0.05 * np.exp(-(((TIME - at_s) / 0.03) ** 2))
     steady = 0.5 * TIME + np.where(TIME < 0.3, 100.0, 0.0)
     found = score(trajectory(vehicle_accel=steady + jolt)).peak_jerk_m_s3

@@ -1,4 +1,4 @@
-"""Which runs count, and what a real-time run says of itself."""
+"""Validity of runs, and the summary of a real-time run."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,8 +8,8 @@ from made_run import made_facts
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
-from ddct_bringup.run.beside_bag import RunTiming
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.validity import realtime_summary, why_invalid
 from ddct_bringup.verdict.limits import packaged_limits
@@ -60,7 +60,7 @@ def test_a_run_one_step_short_does_not_count(mode):
     assert reason == f'ended early: 300 of 301 steps{why}'
 
 
-def test_a_run_whose_last_tick_the_recorder_missed_says_so():
+def test_a_run_whose_last_tick_is_not_recorded_has_that_as_its_reason():
     reason = why_invalid(recording(facts(steps=301), duration_s=3.01))
     assert reason == (
         'ended early: 300 of 301 steps: the driveline took them all, but the recorder did not '
@@ -88,12 +88,12 @@ def test_a_safe_state_makes_a_run_invalid_and_is_named(node):
     assert entry['reason'] == f'safe state entered by {node} at 0.87 s'
 
 
-def test_scores_say_whether_there_was_a_safe_state_in_real_time_only():
+def test_scores_have_the_safe_state_in_real_time_only():
     assert scored(recording())['safe_state'] == ''
     assert scored(recording(mode='lockstep'))['safe_state'] is None
 
 
-def test_scores_hold_the_worst_lateness_of_the_timing_file(tmp_path):
+def test_scores_contain_the_worst_lateness_of_the_timing_file(tmp_path):
     RunTiming(missed_steps=2, worst_lateness_us=1500.0).write(tmp_path)
     metrics = scored(recording(path=tmp_path / 'x.mcap'))['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (2, 1500.0)
@@ -111,12 +111,12 @@ def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
     )
 
 
-def test_what_nodes_say_on_diagnostics_is_understood():
-    heard = RealtimeFacts()
+def test_diagnostics_of_nodes_are_parsed():
+    received = RealtimeFacts()
     counts = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
-    assert heard.hear('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
-    assert heard.hear('actuator: safe state', {'since_ns': '1870000000'})
-    assert heard == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
+    assert received.receive('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
+    assert received.receive('actuator: safe state', {'since_ns': '1870000000'})
+    assert received == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_what_nodes_say_on_diagnostics_is_understood():
         ('actuator: safe state', {'since_ns': 'now'}),
     ],
 )
-def test_what_others_say_on_diagnostics_is_not_ours(name, pairs):
-    heard = RealtimeFacts()
-    assert not heard.hear(name, pairs)
-    assert heard == RealtimeFacts()
+def test_diagnostics_of_other_nodes_are_ignored(name, pairs):
+    received = RealtimeFacts()
+    assert not received.receive(name, pairs)
+    assert received == RealtimeFacts()

@@ -1,4 +1,4 @@
-"""What a run that its engine ended counts as, and what it is called."""
+"""Validity and state of a run that its engine ended."""
 
 import dataclasses
 from pathlib import Path

@@ -60,13 +60,13 @@ def printed(runs, columns=(CONTROLLER, WEAR, *COLUMNS), stream=None):
         ('jerk', 'm/s^3', 'peak_jerk_m_s3', 12.345, '12.35'),
     ],
 )
-def test_a_value_stands_under_its_heading_and_unit(heading, unit, metric_name, value, shown):
+def test_a_value_is_below_its_heading_and_unit(heading, unit, metric_name, value, shown):
     others = dict.fromkeys(METRIC_NAMES, 1000.0)
     text = printed([run(**{**others, metric_name: value})])
     assert value_under(text, heading, 'pi') == (unit, shown)
 
 
-def test_a_valid_run_is_told_from_one_that_is_not():
+def test_a_valid_run_is_distinguished_from_an_invalid_one():
     text = printed([run('pi'), run('ls8', valid=False)])
     rows = {line.split()[0]: line.split()[-1] for line in text.splitlines() if line.split()}
     assert (rows['pi'], rows['ls8']) == ('yes', 'NO')
@@ -78,7 +78,7 @@ def test_an_undefined_metric_is_a_dash():
     assert row.split() == ['pi', '1', *6 * '-', 'invalid', 'failed', 'yes']
 
 
-def test_the_reason_of_an_invalid_run_stands_below_the_table():
+def test_the_reason_of_an_invalid_run_is_below_the_table():
     text = printed([run('ls8', valid=False, reason='ended early: 1 of 2 steps ' + 'x' * 300)])
     assert f'ls8: not valid: ended early: 1 of 2 steps {"x" * 300}\n' in text
 
@@ -173,7 +173,7 @@ def verdict_beyond():
     }
 
 
-def test_a_run_has_its_state_and_its_limits_and_a_word_on_what_is_beyond():
+def test_a_run_has_its_state_its_limits_and_a_note_on_each_one_exceeded():
     text = printed([run('ls8', verdict=verdict_beyond())])
     row = next(line for line in text.splitlines() if 'ls8' in line.split())
     assert row.split()[-3:] == ['nearly_engaged', 'beyond', 'yes']
@@ -187,14 +187,14 @@ def test_a_limit_is_named_once_with_all_runs_beyond_it():
     assert 'beyond judder 3 rpm (B, 2): pi 4, ls8 4\n' in printed(runs)
 
 
-def test_a_run_beyond_what_the_driven_axle_carries_is_named():
+def test_a_run_above_the_traction_of_the_driven_axle_is_named():
     traction = {'value': 12.79, 'unit': 'm/s^2', 'limit': 4.905, 'source': 'convention: C'}
     traction |= {'convention': True, 'state': 'beyond'}
     text = printed([run('mpc4', verdict={**verdict_beyond(), 'traction': traction})])
     assert 'beyond traction 4.905 m/s^2 (convention: C): mpc4 12.79\n' in text
 
 
-def test_an_engaged_run_says_by_which_limits_it_cannot_be_judged():
+def test_an_engaged_run_has_a_note_on_limits_that_cannot_be_checked():
     no_value = {'name': 'peak_temperature', 'value': None, 'unit': 'degC', 'limit': 300.0}
     criteria = [{**no_value, 'source': 'A, 1', 'state': 'no_limit'}]
     engaged = {'state': 'engaged', 'limits': 'no_limit', 'criteria': criteria, 'traction': None}
@@ -229,7 +229,7 @@ def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
     assert 'pi: not valid: unfinished' in text
 
 
-def test_a_bag_of_before_the_schema_says_so():
+def test_a_bag_from_before_the_schema_is_marked():
     assert 'pi: recorded before' in printed([{**run(), 'before_schema': True}])
 
 
@@ -242,7 +242,7 @@ def test_the_title_is_the_scenario_with_what_is_changed_in_it():
     assert printed([run('pi'), run('ls8')]).splitlines()[0].strip() == 'thesis'
 
 
-def test_of_several_scenarios_each_run_tells_its_own():
+def test_with_several_scenarios_each_row_has_its_own():
     text = printed([run('pi'), {**run('ls8'), 'scenario_changes': ['load.slope_rad=0.05']}])
     assert '\npi: thesis\n' in text
     assert '\nls8: thesis, 1 value changed: load.slope_rad=0.05\n' in text

@@ -1,4 +1,4 @@
-"""What `--over` says, and how each thing that it cannot say is refused."""
+"""Values of `--over`, and how each invalid value is refused."""
 
 import pytest
 
@@ -32,7 +32,7 @@ def test_values_have_the_kind_and_the_unit_of_their_key():
     assert axis('controllers.pi.integral_gain', [0.1]).unit == 'N m/(rpm s)'
 
 
-def test_a_list_has_numbers_or_words():
+def test_a_list_has_numbers_or_text():
     assert axis_of('wear_gain=1,0.7').values == (1.0, 0.7)
     words = axis_of('architecture=base,detailed')
     assert (words.values, words.numeric) == (('base', 'detailed'), False)
@@ -60,7 +60,7 @@ BAD = {
 
 
 @pytest.mark.parametrize(('text', 'words'), BAD.values(), ids=BAD)
-def test_what_cannot_be_varied_is_refused_with_a_way_out(text, words):
+def test_keys_that_cannot_be_varied_are_refused_with_advice(text, words):
     with pytest.raises(ParameterError, match='--over') as error:
         axis_of(text)
     assert words in str(error.value)

@@ -1,4 +1,4 @@
-"""No failed run looks like a good one: lines join engaged runs alone, crosses mark the others."""
+"""Failed runs differ from good ones in the figure: lines join engaged runs, others are crosses."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
 from ddct_bringup.sweep.sweep import OVER, Sweep
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.metric_figures import TABLE_5_1
+from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
 from ddct_controllers.design.drawing.chart_style import chart_style, controller_style, save_chart
 from ddct_plant.scenario.file import ScenarioFile
@@ -62,11 +62,11 @@ def test_each_other_run_has_a_cross_within_the_panel(panel):
     assert high < 8.0
 
 
-def test_a_panel_says_symbol_and_unit_as_they_are_printed(panel):
+def test_a_panel_has_symbol_and_unit_as_they_are_printed(panel):
     assert panel.get_ylabel() == 't_a, s'
 
 
-def test_the_title_says_who_is_drawn_over_what_and_in_which_conditions():
+def test_the_title_has_controllers_axes_and_conditions():
     figure = drawn(['wear_gain=0.8,1.2'], ['pi', 'ls8'], [(ENGAGED, 1.0)] * 4)
     assert figure.axes[0].get_title() == (
         'pi, ls8 over wear_gain\nthesis; detailed, linear clutch'
@@ -98,7 +98,7 @@ def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
 
 
 @pytest.mark.filterwarnings('error')
-def test_the_layout_holds_where_no_run_needs_a_mark(tmp_path):
+def test_the_layout_is_kept_where_no_run_needs_a_mark(tmp_path):
     save_chart(drawn(['wear_gain=0.9,1'], ['pi'], [(ENGAGED, 1.0)] * 2), tmp_path / 'x.png')
 
 
@@ -117,8 +117,8 @@ def test_the_lanes_show_every_state_in_its_own_colour():
     )
     assert cells(figure.axes[-1]) == [list(STATES), list(reversed(STATES))]
     legend = [text.get_text() for text in figure.legends[-1].get_texts()]
-    states_said = [state.replace('_', ' ') for state in STATES]
-    assert legend == [*states_said, 'other than engaged', 'engaged, no value']
+    states_text = [state.replace('_', ' ') for state in STATES]
+    assert legend == [*states_text, 'other than engaged', 'engaged, no value']
 
 
 def test_a_map_has_the_first_key_across_and_the_second_up():
@@ -138,12 +138,12 @@ def test_a_map_has_the_first_key_across_and_the_second_up():
         ('vehicle.mass_kg=1500.1,1500.2', ['1500.1', '1500.2']),
     ],
 )
-def test_ticks_are_short_but_told_apart(over, shown):
+def test_ticks_are_short_but_distinct(over, shown):
     number = len(shown)
     (*_, lanes) = drawn([over], ['pi'], [(ENGAGED, 1.0)] * number).axes
     assert [tick.get_text() for tick in lanes.get_xticklabels()] == shown
 
 
-def test_cells_meet_in_the_middle_between_values():
+def test_cell_edges_are_midway_between_values():
     np.testing.assert_allclose(edges_of(np.array([0.0, 1.0, 4.0])), [-0.5, 0.5, 2.5, 5.5])
     np.testing.assert_allclose(edges_of(np.array([3.0])), [2.5, 3.5])

@@ -1,4 +1,4 @@
-"""`sweep` prints, writes and draws what the same runs alone would say."""
+"""`sweep` prints, writes and draws the results of the same runs alone."""
 
 import csv
 import json
@@ -20,7 +20,7 @@ polynomial: {num: [-1.0], den: [1, -900]}
 
 @pytest.fixture(scope='module')
 def swept(tmp_path_factory):
-    """Return what a sweep of two controllers over mass prints, its exit code and its JSON."""
+    """Return the output, exit code and JSON of a sweep of two controllers over the mass."""
     file = tmp_path_factory.mktemp('sweep') / 'rows.json'
     over = ['--over', 'vehicle.mass_kg=1200,1800', '--controllers', 'pi,ls8']
     code = main([*over, *SHORT, '--wear-gain', '0.9', '--json', str(file)])
@@ -50,7 +50,7 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
     assert rows[2]['metrics']['slip_final_rpm'] != row['metrics']['slip_final_rpm']
 
 
-def test_the_document_says_what_was_varied(swept):
+def test_the_document_has_the_varied_keys(swept):
     document = swept[1]
     assert document['over'] == [
         {'key': 'vehicle.mass_kg', 'unit': 'kg', 'values': [1200.0, 1800.0]}

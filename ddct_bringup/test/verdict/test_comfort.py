@@ -1,4 +1,4 @@
-"""Jerk and vibration dose against signals whose answer is known."""
+"""Jerk and vibration dose of signals with known values."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Every criterion against a run whose answer is known."""
+"""Every criterion for a run with known values."""
 
 from dataclasses import replace
 
@@ -36,7 +36,7 @@ def shaft(signal, index=3):
 
 
 def sticking(events, phase, slip=None, **signals):
-    """Return a run with a clutch that sticks, its events by step as (time, kind) and more."""
+    """Return a run with a stick-slip clutch, with its events by step as (time, kind) and more."""
     slip = np.zeros(301) if slip is None else slip
     steps = tuple(
         tuple(PhaseEvent(*event) for event in events.get(step, ())) for step in range(301)
@@ -143,7 +143,7 @@ def test_judder_needs_half_a_second_of_slipping_one_period_of_2_hz(clutch, sampl
 
 
 def test_judder_goes_on_over_short_locks_from_control_start_to_the_last_slip():
-    """Locks and releases every 0.1 s are judder itself; what came before control start is not."""
+    """Locks and releases every 0.1 s are judder; samples before control start do not count."""
     every = [(step, 1 + step // 10 % 2) for step in range(60, 200, 10)]
     speed = shaft(np.where(T < 0.6, 99.0, 1.0) * np.sin(50.0 * T))
     some = values(sticking({}, phases((0, 1), *every), joint_speed=speed))['judder']
@@ -229,7 +229,7 @@ def test_mean_acceleration_and_mean_negative_jerk_are_those_of_iso_15622():
     assert values(made_run(np.zeros(160)))['mean_negative_jerk'] is None
 
 
-def test_friction_work_is_compared_with_what_two_free_inertias_lose():
+def test_friction_work_is_relative_to_the_loss_of_two_free_inertias():
     # A heavy car: C_f = C_m + J_m w_d/t takes the slip w_d linearly to zero within t.
     slip_rpm, time_s, demand = 400.0, 1.0, 300.0
     slip = slip_rpm * np.clip(1.6 - T, 0.0, 1.0)
@@ -252,7 +252,7 @@ def test_friction_work_before_control_start_does_not_count():
     assert found == pytest.approx(480.0 / least)
 
 
-def test_where_hardly_any_slip_is_to_be_removed_no_least_exists():
+def test_with_hardly_any_slip_at_control_start_there_is_no_minimum_of_the_work():
     for slip_rpm, exists in ((49.9, False), (50.1, True), (-50.1, True)):
         run = made_run(np.full(301, slip_rpm), friction_work=np.ones(301))
         metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)._asdict()
@@ -264,7 +264,7 @@ def test_where_hardly_any_slip_is_to_be_removed_no_least_exists():
         assert existing(unknown)['friction_work_over_least'] == exists
 
 
-def test_what_only_plates_that_stick_have_does_not_exist_for_a_linear_clutch():
+def test_criteria_of_the_stick_slip_clutch_do_not_exist_for_a_linear_clutch():
     for run, expected in ((made_run(np.zeros(301)), False), (sticking({}, phases((0, 1))), True)):
         found = existing(JudgedRun(run, CONTROL_START, WINDOW_S, {'engagement_time_s': None}, 1.0))
         only = ('time_to_lock', 'peak_temperature', 'releases_after_lock')
@@ -299,7 +299,7 @@ def test_weighted_acceleration_of_a_sine_is_its_rms_times_the_weight():
     assert metrics.weighted_acceleration_m_s2 == pytest.approx(expected, rel=0.01)
 
 
-def test_a_jolt_after_the_score_window_is_felt_as_one_within_it():
+def test_a_jolt_after_the_score_window_counts_as_one_within_it():
     def jolt(at_s):
         run = made_run(np.zeros(301), vehicle_accel=5.0 * np.exp(-(((T - at_s) / 0.1) ** 2)))
         found = values(run)
@@ -312,7 +312,7 @@ def test_a_jolt_after_the_score_window_is_felt_as_one_within_it():
     )
     assert jolt(1.2)[0] == pytest.approx(within.weighted_acceleration_m_s2, rel=0.01)
     assert jolt(2.5) == pytest.approx(jolt(1.2), rel=0.05)
-    assert jolt(0.2)[0] < 0.5 * jolt(1.2)[0]  # before control start nobody is judged
+    assert jolt(0.2)[0] < 0.5 * jolt(1.2)[0]  # a jolt before control start does not count
 
 
 @pytest.mark.parametrize('name', ['joint_speed', 'joint_effort', 'vehicle_accel', 'slip_speed'])
@@ -325,7 +325,7 @@ def test_a_value_that_is_not_finite_makes_no_number_up(name):
 
 
 @pytest.mark.parametrize('rows', [1, 2, 30, 61, 62])
-def test_a_run_that_ends_early_has_what_it_has(rows):
+def test_a_run_that_ends_early_has_the_criteria_that_are_defined(rows):
     assert set(values(made_run(np.full(rows, 100.0)))) == set(CRITERION_UNITS)
 
 
@@ -374,9 +374,11 @@ limits:
     assert [criteria['peak_jerk'][key] for key in ('limit', 'state')] == [None, 'no_limit']
     assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
     assert judged(slip_acceleration_at_lock=-40.0, judder=5.0)[0]['limits'] == 'within'
-    assert judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'  # judder: who knows
+    assert (
+        judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'
+    )  # the judder has no value
     assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
-    # What does not exist for a plant does not block; without any limit nobody knows.
+    # An undefined criterion of a plant does not count; without a limit there is no result.
     without = judged(slip_acceleration_at_lock=-40.0, without=['judder'])
     assert without[0]['limits'] == 'within'
     assert [without[1]['judder'][key] for key in ('limit', 'state')] == [None, 'no_limit']

@@ -1,4 +1,4 @@
-"""A limits file is read whole, or refused in one line that names file, line and key."""
+"""A limits file is read completely, or refused in one line with file, line and key."""
 
 import re
 from importlib.resources import files
@@ -33,14 +33,14 @@ def test_the_packaged_file_is_read_and_every_limit_cites_a_clause():
     assert conventions == {'releases_after_lock', 'friction_work_over_least', 'judder'}
 
 
-def test_a_limit_of_some_scenarios_holds_for_no_other():
+def test_a_limit_of_some_scenarios_applies_to_no_other():
     limits = packaged_limits()
     assert limits.of('launch_gentle')['mean_negative_jerk'].value == 5.0
     assert 'mean_negative_jerk' not in limits.of('launch')
     assert limits.of('anything')['weighted_acceleration'].value == 0.315
 
 
-def test_the_strictest_of_several_limits_holds():
+def test_the_strictest_of_several_limits_applies():
     convention = f'{OF_SLIP}    convention: true\n    reason: mine\n'
     limits = limits_of_text(TEXT + convention + convention.replace('3.0', '2.0'), 'mine.yaml')
     assert limits.of('launch')['judder'].value == 2.0
@@ -48,7 +48,7 @@ def test_the_strictest_of_several_limits_holds():
     assert limits.of('thesis')['judder'].value == 6.0
 
 
-def test_what_must_not_happen_at_all_is_limited_by_zero():
+def test_the_limit_of_events_that_must_not_occur_is_zero():
     assert packaged_limits().of('launch')['releases_after_lock'].value == 0.0
 
 
@@ -139,7 +139,7 @@ def test_a_file_without_a_version_is_of_the_present_one():
         ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'unknown key more: known: rules, limits'),
     ],
 )
-def test_what_is_wrong_is_named_with_file_line_and_key(old, new, at, complaint):
+def test_an_error_is_reported_with_file_line_and_key(old, new, at, complaint):
     assert old in TEXT
     text = TEXT.replace(old, new, 1)
     with pytest.raises(DdctError) as caught:
@@ -163,7 +163,7 @@ def test_a_file_of_something_else_is_refused(text):
 
 
 @pytest.mark.parametrize('word', ['true', 'yes', '1'])
-def test_only_the_word_true_makes_a_limit_a_convention(word):
+def test_only_the_boolean_true_makes_a_limit_a_convention(word):
     text = f'{TEXT}{OF_SLIP}    convention: {word}\n    reason: mine\n'
     if word == 'true':
         assert limits_of_text(text, 'x').of('tip_in')['judder'].convention
@@ -172,7 +172,7 @@ def test_only_the_word_true_makes_a_limit_a_convention(word):
         limits_of_text(text, 'x')
 
 
-def test_the_origin_is_the_name_without_folders_and_tells_two_files_of_one_name_apart():
+def test_the_origin_is_the_name_without_folders_and_a_digest_that_distinguishes_files():
     mine = limits_of_text(TEXT, 'far/away/mine.yaml').origin
     assert list(mine) == ['name', 'digest', 'schema_version']
     assert (mine['name'], mine['schema_version']) == ('mine.yaml', 2)

@@ -1,4 +1,4 @@
-"""Runs that once read milder than they are, or could not read as well as they are."""
+"""Runs whose verdict was once too mild, or could not be as good as the run."""
 
 from functools import cache
 
@@ -39,12 +39,12 @@ def test_heating_the_plates_without_a_lock_is_nearly_engaged_and_beyond():
     found = verdict('decoupled_pid', wear_gain=0.4, changes=('duration_s=6',))
     assert (found['state'], found['limits']) == ('nearly_engaged', 'beyond')
     assert criterion(found, 'friction_energy')['value'] > 58e3
-    # Without a lock nobody knows of releases, so it could not read within either.
+    # Without a lock the number of releases is undefined, so it could not be within limits either.
     assert criterion(found, 'releases_after_lock')['value'] is None
     assert criterion(found, 'releases_after_lock')['limit'] == 0.0
 
 
-def test_plates_that_part_again_and_again_are_beyond():
+def test_plates_that_release_again_and_again_are_beyond():
     found = verdict('pi', 'launch_gentle', 1.3)
     assert (found['state'], found['limits']) == ('engaged', 'beyond')
     releases = criterion(found, 'releases_after_lock')
@@ -52,7 +52,7 @@ def test_plates_that_part_again_and_again_are_beyond():
     assert (releases['convention'], releases['state']) == (True, 'beyond')
 
 
-def test_what_the_front_wheels_cannot_carry_is_beyond():
+def test_a_driving_force_above_the_traction_of_the_front_wheels_is_beyond():
     found = verdict('mpc4', 'launch_gentle', 1.3)
     assert (found['state'], found['limits']) == ('engaged', 'beyond')
     traction = found['traction']

@@ -1,4 +1,4 @@
-"""States of runs of the closed loop, good and spoiled."""
+"""States of closed-loop runs, with intact and with degraded controllers."""
 
 import dataclasses
 
@@ -20,7 +20,7 @@ THESIS = load_scenario('thesis')
 
 
 class WrongSign(Controller):
-    """The PI of the thesis, its output added where it should be subtracted."""
+    """The PI of the thesis with the wrong sign of its output."""
 
     def __init__(self):
         self._right = make_controller('pi', RunSettings(THESIS))
@@ -33,7 +33,7 @@ class WrongSign(Controller):
 
 
 def run(controller='pi', gain=1.0, duration_s=3.0, **settings):
-    """Return a run of the thesis's scenario whose PI has its gains multiplied."""
+    """Return a run of the thesis's scenario with the gains of the PI multiplied by `gain`."""
     gains = {key: gain * value for key, value in THESIS.controllers['pi'].items()}
     scenario = dataclasses.replace(THESIS, controllers={'pi': gains}, duration_s=duration_s)
     return run_headless(RunSettings(scenario, **settings), controller)
@@ -44,7 +44,7 @@ def state(trajectory):
 
 
 def state_of(controller, settings, end_s=None, gain=1.0, delay_steps=0):
-    """Return the state of a run, of a spoiled controller on request, as if it ended at `end_s`."""
+    """Return the state of a run up to `end_s`; `gain` and `delay_steps` degrade the controller."""
     made = make_controller(controller, settings)
     whole = run_headless(settings, Spoiled(made, gain, delay_steps) if gain != 1.0 else made)
     rows = None if end_s is None else round(100 * end_s) + 1

@@ -1,14 +1,14 @@
-"""The state of a run is what a control engineer would call it by eye."""
+"""The state of a run is the one that a control engineer would give it."""
 
 import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.meeting import LOCKED, SLIPPING
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_bringup.verdict.swings import turns_of
+from ddct_bringup.verdict.zero_slip import LOCKED, SLIPPING
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 T = times()
@@ -44,7 +44,7 @@ def test_plates_that_never_part_are_engaged():
 
 
 def sticking(slip_rpm, **signals):
-    """Return the state of a clutch that sticks, locked wherever it does not slip."""
+    """Return the state of a run with a stick-slip clutch, locked wherever the slip is zero."""
     phase = np.where(slip_rpm == 0.0, float(LOCKED), float(SLIPPING))
     return state(slip_rpm, clutch_phase=phase, **signals)
 
@@ -85,12 +85,12 @@ def test_plates_that_lock_for_less_than_they_slip_in_a_cycle_oscillate():
 
 
 def test_a_slip_of_the_linear_clutch_that_comes_back_from_beyond_zero_is_engaged():
-    # It crosses zero after 1.2 s and comes back with a time constant of 1 s.
+    # It crosses zero after 1.2 s and returns with a time constant of 1 s.
     beyond = np.maximum(T - 1.2, 0.0)
     slip = falling(1000.0) - 300.0 * (np.exp(-beyond) - np.exp(-beyond / 0.2))
     assert -100.0 < slip[-1] < -40.0
     assert state(slip) == state(slip[:281]) == 'engaged'
-    assert state(slip[:151]) == 'not_engaged'  # still on its way out
+    assert state(slip[:151]) == 'not_engaged'  # its magnitude still grows
     assert sticking(slip) == 'not_engaged'
 
 
@@ -107,19 +107,19 @@ def test_one_swing_beyond_zero_before_a_slip_that_stays_is_no_oscillation():
 
 
 @pytest.mark.parametrize('end', range(250, 301, 5))
-def test_a_swinging_slip_whose_middle_grows_is_a_runaway(end):
+def test_an_oscillation_whose_mean_grows_is_a_runaway(end):
     swing = 200.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
     assert state((600.0 + 200.0 * T + swing)[: end + 1]) == 'runaway'
     assert state((600.0 + 30.0 * T + swing)[: end + 1]) == 'oscillating'
 
 
-def test_a_swinging_slip_that_the_reference_asks_for_is_no_runaway():
+def test_an_oscillation_with_a_nonzero_reference_is_no_runaway():
     reference = np.full((len(T), 1), 300.0 * RAD_S_PER_RPM)
     swing = 200.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
     assert state(600.0 + 200.0 * T + swing, slip_reference=reference) == 'oscillating'
 
 
-def held(slip_rpm, engine_rpm, cut_rpm=6500.0):
+def limited(slip_rpm, engine_rpm, cut_rpm=6500.0):
     """Return the state of a run with an engine whose limiter cuts the fuel at `cut_rpm`."""
     speeds = np.zeros((len(slip_rpm), 4))
     speeds[:, 0] = engine_rpm * RAD_S_PER_RPM
@@ -129,23 +129,23 @@ def held(slip_rpm, engine_rpm, cut_rpm=6500.0):
 
 
 @pytest.mark.parametrize('ripple_rpm', [20.0, 120.0])
-def test_a_slip_that_only_the_rev_limiter_holds_is_a_runaway(ripple_rpm):
+def test_a_slip_that_only_the_rev_limiter_limits_is_a_runaway(ripple_rpm):
     ripple = ripple_rpm * np.sin(2 * np.pi * (T - 0.6) / 0.2)
     engine = np.minimum(1000.0 + 6000.0 * np.maximum(T - 0.6, 0.0), 6400.0) + ripple
     slip = engine - np.minimum(1000.0 * T / 0.6, 1000.0)
-    assert held(slip, engine, cut_rpm=6410.0) == 'runaway'
-    # Without a limiter it stays, or goes to and fro, by itself.
+    assert limited(slip, engine, cut_rpm=6410.0) == 'runaway'
+    # Without a limiter it stays, or oscillates, by itself.
     found = 'oscillating' if ripple_rpm > 100.0 else 'not_engaged'
-    assert held(slip, engine, cut_rpm=np.inf) == found
+    assert limited(slip, engine, cut_rpm=np.inf) == found
 
 
 def test_a_slip_that_has_not_grown_is_no_runaway_though_the_engine_is_at_its_limiter():
     engine = np.full(len(T), 6450.0)
-    assert held(falling(700.0, lowest_rpm=200.0), engine, cut_rpm=6410.0) == 'not_engaged'
-    assert held(falling(700.0), engine, cut_rpm=6410.0) == 'engaged'
+    assert limited(falling(700.0, lowest_rpm=200.0), engine, cut_rpm=6410.0) == 'not_engaged'
+    assert limited(falling(700.0), engine, cut_rpm=6410.0) == 'engaged'
 
 
-def test_plates_that_meet_in_every_swing_are_not_driven_apart():
+def test_plates_with_zero_slip_in_every_swing_are_not_driven_apart():
     swing = 1500.0 * np.sin(2 * np.pi * (T - 0.6) / 0.25)
     assert state(300.0 * T + swing) == 'oscillating'
 
@@ -265,11 +265,11 @@ def test_an_oscillation_that_grows_beyond_all_before_is_a_runaway():
 
 
 STEPS = np.interp(T, [0.0, 1.8, 1.9, 2.4, 2.5, 3.0], [200, 200, 80, 80, 200, 200])
-"""A demand in N m that falls and rises again."""
+"""Driver's demand in N m that falls and rises again."""
 ANSWERS = np.interp(
     T, [0.0, 0.7, 1.2, 1.8, 1.9, 2.2, 2.4, 2.5, 2.65], [0, 600, 0, 0, 150, 0, 0, 150, 0]
 )
-"""A slip in rpm that parts with each change of that demand, and comes back."""
+"""Slip in rpm that grows after each change of `STEPS`, and returns to zero."""
 
 
 def driven(slip, **signals):
@@ -281,7 +281,7 @@ def driven(slip, **signals):
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_swings_that_changes_of_the_demand_cause_are_no_oscillation(sign):
     assert driven(sign * ANSWERS, torque_demand=STEPS) == 'engaged'
-    # The same swings by themselves are one, and so they are where nobody knows the demand.
+    # The same swings under a constant demand are an oscillation, and also without a known demand.
     assert driven(sign * ANSWERS, torque_demand=np.full(len(T), 200.0)) == 'oscillating'
     assert driven(sign * ANSWERS, torque_demand=np.full(len(T), np.nan)) == 'oscillating'
     assert driven(sign * ANSWERS) == state(sign * ANSWERS, torque_demand=STEPS) == 'oscillating'

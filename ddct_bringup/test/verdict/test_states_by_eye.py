@@ -1,4 +1,4 @@
-"""The rules agree with the eye on runs that they were not written for."""
+"""The rules agree with judgement by eye on runs that they were not written for."""
 
 import re
 from dataclasses import replace
@@ -16,13 +16,13 @@ AGREED = {
     'held_out': (77, 84),
     'rev_limiter': (39, 41),
 }
-"""Runs with the state by eye; those with it or with the second state."""
+"""Number of runs with the state by eye, and of those with it or with the second state."""
 
 
 @pytest.mark.filterwarnings('ignore::RuntimeWarning')  # a slip of 1e6 rpm
 @pytest.mark.parametrize('part', AGREED)
-def test_as_many_states_as_the_page_says_are_those_by_eye(part):
-    # A chart does not tell the eye whether plates that hardly slip are locked.
+def test_as_many_states_as_on_the_page_agree_with_those_by_eye(part):
+    # A chart does not show whether plates that hardly slip are locked.
     judged = [
         (run, state.replace(NEARLY_ENGAGED, ENGAGED))
         for run in labelled_runs(part)

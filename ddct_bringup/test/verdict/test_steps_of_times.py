@@ -1,4 +1,4 @@
-"""A time that is a step's is that step, whatever the last bit of the division says."""
+"""The time of a step is converted to that step, independent of the rounding of the division."""
 
 from ddct_bringup.verdict.judged_run import step_at
 from ddct_plant.base.timebase import PERIOD_S, time_of_step

@@ -1,4 +1,4 @@
-"""The page docs/use/verdict.md says what the code and the packaged limits say."""
+"""The page docs/use/verdict.md agrees with the code and the packaged limits."""
 
 import re
 from pathlib import Path

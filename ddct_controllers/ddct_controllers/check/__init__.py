@@ -1,1 +1,1 @@
-"""The conformance check of a controller: what `check-controller` tries and finds."""
+"""Conformance check of a controller: the trials and checks of `check-controller`."""

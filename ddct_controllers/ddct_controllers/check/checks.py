@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ddct_controllers.check import conduct, installation, loops, signals
 from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
-from ddct_controllers.check.watch import Printed
+from ddct_controllers.check.watch import OutputMonitor
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.settings import RunSettings
 
@@ -15,24 +15,24 @@ PASS, FAIL, SKIPPED = 'pass', 'fail', 'skipped'
 
 @dataclass(frozen=True)
 class Outcome:
-    """A line of the report."""
+    """Result of one check: a line of the report."""
 
     name: str
     state: str
-    """PASS, FAIL or SKIPPED."""
+    """Result: PASS, FAIL or SKIPPED."""
     detail: str
-    """What was measured; of a fail also where, and what to do."""
+    """Measured values; for a failure also the place of the error and the remedy."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """A question, by the name that the report gives it."""
+    """One check, under the name that the report gives it."""
 
     name: str
-    ask: Callable[[Subject], str]
-    """Return what was measured; raise CheckFailedError or CheckSkippedError."""
+    run: Callable[[Subject], str]
+    """Function that returns the measured values; raises CheckFailedError or CheckSkippedError."""
     after: Sequence[str] = ()
-    """The checks that must have passed."""
+    """Names of the checks that must have passed before this one runs."""
 
 
 _MADE, _RUNS, _SAME = ('constructor',), ('answers', 'update time'), ('determinism',)
@@ -61,28 +61,28 @@ CHECKS = (
 
 def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
     """Return an outcome per check of CHECKS for a controller of the registry or in a file."""
-    printed = Printed()
+    printed = OutputMonitor()
     subject = Subject(name, settings, printed)
     outcomes: dict[str, Outcome] = {}
     causes: dict[str, str] = {}
     with contextlib.redirect_stdout(printed):
         for check in CHECKS:
             missing = [each for each in check.after if outcomes[each].state != PASS]
-            if missing:  # one that was skipped itself tells of the first that was not
+            if missing:  # if that was skipped itself: the first failure
                 causes[check.name] = first = causes.get(missing[0], missing[0])
                 state, detail = SKIPPED, f'the check {first!r} must pass first'
             else:
-                state, detail = _asked(check, subject)
+                state, detail = _result(check, subject)
             outcomes[check.name] = Outcome(check.name, state, detail)
     return list(outcomes.values())
 
 
-def _asked(check: Check, subject: Subject) -> tuple[str, str]:
+def _result(check: Check, subject: Subject) -> tuple[str, str]:
     try:
-        return PASS, check.ask(subject)
+        return PASS, check.run(subject)
     except CheckSkippedError as reason:
         return SKIPPED, str(reason)
     except CheckFailedError as failure:
         return FAIL, str(failure)
     except FOREIGN_FAILURES as error:  # the controller's own, whatever it is
-        return FAIL, str(subject.what_failed(error))
+        return FAIL, str(subject.failure(error))

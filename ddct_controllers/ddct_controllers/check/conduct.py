@@ -1,4 +1,4 @@
-"""Checks that an object is a function of what it is given: answers, prints, state, reset."""
+"""Checks that torques depend on the measurements alone: answers, prints, state, reset."""
 
 import sys
 from types import FunctionType
@@ -7,23 +7,23 @@ from typing import Any
 import numpy as np
 
 from ddct_controllers.check.subject import CheckFailedError, Subject
-from ddct_controllers.check.trial import more_slip, played
+from ddct_controllers.check.trial import more_slip, replay
 from ddct_controllers.check.watch import watched
 from ddct_controllers.interface import Controller
 from ddct_controllers.places import place_of_method
 
 PLAIN = (bool, int, float, str, list, tuple, dict, set, np.ndarray, np.generic, type(None))
-"""Kinds of values that are compared by their text."""
+"""Types of values that are compared by their text."""
 
 
 def answers(subject: Subject) -> str:
-    """Check that every period has an answer that the loop can take."""
-    closed = subject.closed
+    """Check that every update returns a command that the loop can use."""
+    closed = subject.closed_loop
     return f'{len(closed.update_s)} commands, each with finite torques and a status of text'
 
 
 def prints(subject: Subject) -> str:
-    """Check that nothing goes to standard output, which is for the results of programs."""
+    """Check that nothing is written to standard output, which is for the results of programs."""
     printed = subject.printed
     if printed.text:
         lines = printed.text.splitlines()
@@ -35,9 +35,9 @@ def prints(subject: Subject) -> str:
 
 
 def own_state(subject: Subject) -> str:
-    """Check that two objects at once do not disturb each other: all state is in the object."""
+    """Check that two objects used in turn do not disturb each other: no state is shared."""
     before = _shared(subject.sample, subject.package)
-    alone = subject.answers
+    alone = subject.torques
     changed = [
         name
         for name, value in _shared(subject.sample, subject.package).items()
@@ -45,9 +45,9 @@ def own_state(subject: Subject) -> str:
     ]
     one, other = subject.make(), subject.make()
     beside = np.zeros_like(alone)
-    for row, period in zip(beside, subject.measured, strict=True):
-        row[:] = played(one, [period])[0]
-        played(other, [period], more_slip)
+    for row, period in zip(beside, subject.measurements, strict=True):
+        row[:] = replay(one, [period])[0]
+        replay(other, [period], more_slip)
     if np.array_equal(alone, beside):
         return 'a second object that runs beside it changes nothing'
     if changed:
@@ -56,7 +56,7 @@ def own_state(subject: Subject) -> str:
             f'make that an attribute of self, in __init__ or reset '
             f'({place_of_method(subject.sample, "__init__")})'
         )
-    if np.array_equal(alone, played(subject.make(), subject.measured)):
+    if np.array_equal(alone, replay(subject.make(), subject.measurements)):
         raise CheckFailedError(
             'a second object that runs beside it changes what it answers: they share an object '
             f'or a file; keep all state in the object ({place_of_method(one, "__init__")})'
@@ -65,34 +65,34 @@ def own_state(subject: Subject) -> str:
 
 
 def determinism(subject: Subject) -> str:
-    """Check that the same measurements give the same torques, whatever the clock says."""
+    """Check that the same measurements give the same torques, whatever the clock reads."""
     with watched(subject.package) as called:
-        again = played(subject.make(), subject.measured)
-    different = np.flatnonzero((again != subject.answers).any(axis=1))
+        again = replay(subject.make(), subject.measurements)
+    different = np.flatnonzero((again != subject.torques).any(axis=1))
     if not different.size:
         return f'{len(again)} answers again to the last bit, with the clock moved'
     step = int(different[0])
     places = '; '.join(f'it calls {what} in {place}' for what, place in called.items())
     raise CheckFailedError(
         f'a new object with the same measurements asks for {again[step, 0]:.6g} instead of '
-        f'{subject.answers[step, 0]:.6g} N m at step {step}: use the measurement alone '
+        f'{subject.torques[step, 0]:.6g} N m at step {step}: use the measurement alone '
         f'(its step is k, 10 ms each) and seeded random numbers; '
         f'{places or "it calls no clock and no random number that is known here"}'
     )
 
 
 def reset(subject: Subject) -> str:
-    """Check that after reset an object is as new."""
+    """Check that an object behaves after reset like a new one."""
     controller = subject.make()
-    played(controller, subject.measured)
+    replay(controller, subject.measurements)
     controller.reset()
-    again = played(controller, subject.measured)
-    different = np.flatnonzero((again != subject.answers).any(axis=1))
+    again = replay(controller, subject.measurements)
+    different = np.flatnonzero((again != subject.torques).any(axis=1))
     if different.size:
         step = int(different[0])
         raise CheckFailedError(
             f'after reset it asks for {again[step, 0]:.6g} instead of '
-            f'{subject.answers[step, 0]:.6g} N m at step {step}{_left_after_reset(subject)}: set '
+            f'{subject.torques[step, 0]:.6g} N m at step {step}{_left_after_reset(subject)}: set '
             f'all state anew in {place_of_method(controller, "reset")}'
         )
     return 'after reset it answers as a new object'
@@ -116,9 +116,9 @@ def _shared(controller: Controller, package: str) -> dict[str, str]:
 
 
 def _left_after_reset(subject: Subject) -> str:
-    """Return which plain attributes reset leaves, as a part of a sentence; '' if none is seen."""
+    """Return the plain attributes that reset does not restore, as part of a sentence, or ''."""
     used = subject.make()
-    played(used, subject.measured)
+    replay(used, subject.measurements)
     used.reset()
     left = [
         f'self.{name} is {vars(used).get(name)!r}, of a new object {value!r}'

@@ -1,4 +1,4 @@
-"""Checks before a controller runs: its entry point, its installation, its making, its options."""
+"""Checks before a controller runs: entry point, installation, constructor, options."""
 
 import importlib.metadata
 import inspect
@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlparse
 
 from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject, root_cause
-from ddct_controllers.check.watch import AskedGains
+from ddct_controllers.check.watch import RecordedGains
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.registry import ENTRY_POINT_GROUP, require_known_controllers
@@ -20,9 +20,9 @@ from ddct_plant.files.input_file import parse_json
 
 
 def entry_point(subject: Subject) -> str:
-    """Check that its name leads to code that can be imported."""
-    if len(subject.points) > 1:
-        targets = ' and '.join(point.value for point in subject.points)
+    """Check that the controller's name leads to code that can be imported."""
+    if len(subject.entry_points) > 1:
+        targets = ' and '.join(point.value for point in subject.entry_points)
         raise CheckFailedError(
             f'two packages have a controller of this name, {targets}: rename one'
         )
@@ -30,23 +30,23 @@ def entry_point(subject: Subject) -> str:
         spec = subject.spec
     except DdctError as error:
         raise CheckFailedError(f'{error}{_advice(subject, error)}') from error
-    if not subject.points:
+    if not subject.entry_points:
         return f'{spec.name} is one of ours or in a file: it needs no entry point'
-    return f'{subject.points[0].value} can be imported'
+    return f'{subject.entry_points[0].value} can be imported'
 
 
 def _advice(subject: Subject, error: DdctError) -> str:
-    """Return what more there is to say of a name that leads nowhere."""
+    """Return the remedy for a name that leads to no code, to follow the error, or ''."""
     if is_controller_file(subject.name):
         return ''
-    if not subject.points:
+    if not subject.entry_points:
         for folder, _ in _installed_from(subject.name):
             return (
                 f'; {folder}/pyproject.toml has it, but was not installed since: install it '
                 f'again, {install_command(str(folder))}'
             )
         return f'; if it is your own, install its package: {install_command("DIR")}'
-    point, cause = subject.points[0], root_cause(error)
+    point, cause = subject.entry_points[0], root_cause(error)
     module = sys.modules.get(point.module)
     if module and isinstance(cause, AttributeError):
         classes = [
@@ -65,15 +65,15 @@ def _advice(subject: Subject, error: DdctError) -> str:
 
 
 def installation(subject: Subject) -> str:
-    """Check that what is installed is what its folder holds now."""
-    if not subject.points:
+    """Check that the installed code is the code in the folder that it was installed from."""
+    if not subject.entry_points:
         raise CheckSkippedError('no package of its own')
-    spec = inspect.getmodule(subject.points[0].load())
+    spec = inspect.getmodule(subject.entry_points[0].load())
     file = Path(str(getattr(spec, '__file__', '')))
     for folder, editable in _installed_from(subject.name):
         if editable:
             return f'linked to {folder}: an edited file runs at once'
-        relative = Path(*file.parts[-subject.points[0].module.count('.') - 1 :])
+        relative = Path(*file.parts[-subject.entry_points[0].module.count('.') - 1 :])
         for source in (folder / relative, folder / 'src' / relative):
             if source.is_file() and source.read_bytes() != file.read_bytes():
                 raise CheckFailedError(
@@ -85,7 +85,7 @@ def installation(subject: Subject) -> str:
 
 
 def _installed_from(controller: str) -> Iterator[tuple[Path, bool]]:
-    """Yield the folders that have a controller and were installed, and whether they are linked."""
+    """Yield the installed folders that declare a controller, and whether each is linked."""
     for distribution in importlib.metadata.distributions():
         try:
             origin = parse_json(distribution.read_text('direct_url.json') or '{}')
@@ -99,22 +99,22 @@ def _installed_from(controller: str) -> Iterator[tuple[Path, bool]]:
 
 
 def constructor(subject: Subject) -> str:
-    """Check that an object can be made."""
+    """Check that an object can be constructed."""
     try:
         controller = subject.sample
     except DdctError as error:
-        raise subject.what_failed(error) from error
+        raise subject.failure(error) from error
     return f'{type(controller).__name__} with {len(subject.spec.options or {})} options'
 
 
 def options(subject: Subject) -> str:
-    """Check that it asks for no option that it does not declare, and none is set of nobody's."""
+    """Check that only declared options are read, and that every option set has a controller."""
     require_known_controllers(subject.settings.scenario, [subject.spec.name])
     declared = subject.spec.options or {}
     given = subject.settings.scenario.controllers.get(subject.spec.name, {})
-    gains = AskedGains(subject.spec.values(given))
+    gains = RecordedGains(subject.spec.values(given))
     subject.spec.make(ControllerContext(subject.settings, gains))
-    for name, place in gains.asked.items():
+    for name, place in gains.places.items():
         if name not in declared:
             known = close_name(name, declared) if declared else 'it declares none'
             raise CheckFailedError(

@@ -11,37 +11,37 @@ from ddct_plant.base.units import RAD_S_PER_RPM, RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace
 
 LATE_SHARE = 0.05
-"""Share of updates that may take longer than their period."""
+"""Share of updates that may take longer than their period, without unit."""
 AGAIN = 2
-"""More runs of a controller that seems slow."""
+"""Number of further runs of a controller that seems slow."""
 MOST_RATE_N_M_S = 3500.0
-"""Ten times per second from no clutch torque to all of it, 350 N m."""
+"""Largest mean rate of the request in N m/s: ten full strokes of 350 N m per second."""
 HALF = 0.5
-"""Share of a step. A loop that follows less in a second is too slow for an engagement."""
+"""Least share of a reference step followed within 1 s; with less an engagement takes too long."""
 WELL = 0.8
-"""Share of a step that a good loop follows within a second."""
+"""Share of a reference step that a well tuned loop follows within 1 s."""
 
 
 def update_time(subject: Subject) -> str:
     """
     Check that an update takes less than its period.
 
-    Another process can take the machine away for as long; so where it seems slow, each update
-    counts with the least time of three runs.
+    Another process can occupy the machine for as long. So where a controller seems slow, each
+    update counts with the least time of three runs.
     """
-    least = np.array(subject.closed.update_s)
+    least = np.array(subject.closed_loop.update_s)
     for _ in range(AGAIN):
-        if _slowest(least) < PERIOD_S and not subject.closed.too_slow:
+        if _slowest(least) < PERIOD_S and not subject.closed_loop.too_slow:
             break
-        subject.closed = closed_trial(subject.settings, subject.make())
-        updates = min(len(least), len(subject.closed.update_s))
-        least = np.minimum(least[:updates], subject.closed.update_s[:updates])
+        subject.closed_loop = closed_trial(subject.settings, subject.make())
+        updates = min(len(least), len(subject.closed_loop.update_s))
+        least = np.minimum(least[:updates], subject.closed_loop.update_s[:updates])
     slowest = _slowest(least)
     found = (
         f'median {1e3 * np.median(least):.3f} ms, {1.0 - LATE_SHARE:.0%} within '
         f'{1e3 * slowest:.3f} ms, of {len(least)} updates'
     )
-    if slowest >= PERIOD_S or subject.closed.too_slow:
+    if slowest >= PERIOD_S or subject.closed_loop.too_slow:
         raise CheckFailedError(
             f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; what can be '
             'computed before belongs where the controller is made, not in '
@@ -58,7 +58,7 @@ def _slowest(times_s: np.ndarray) -> float:
 def rate(subject: Subject) -> str:
     """Check that the request does not chatter."""
     start = subject.settings.scenario.control_start_step
-    changes = np.abs(np.diff(subject.closed.request[start:]))
+    changes = np.abs(np.diff(subject.closed_loop.request[start:]))
     per_second = float(changes.mean()) / PERIOD_S
     found = (
         f'the request moves by {changes.max():.4g} N m per period at most, {per_second:.4g} N m '
@@ -123,17 +123,17 @@ def stability(subject: Subject) -> str:
 
 
 def linear_model(subject: Subject) -> str:
-    """Check that update does what linear_model says."""
+    """Check that update computes the output of linear_model."""
     model = _linear_model(subject)
     if model is None:
         raise CheckSkippedError('linear_model returns None')
     filtered = DiscreteFilter(model)
     worst = 0.0
-    for (on, measurement), (torque, _) in zip(subject.measured, subject.answers, strict=True):
+    for (on, measurement), (torque, _) in zip(subject.measurements, subject.torques, strict=True):
         if on:
             expected = filtered.update(measurement.slip_error_rpm)
             worst = max(worst, abs(torque - expected))
-    largest = float(np.abs(subject.answers[:, 0]).max())
+    largest = float(np.abs(subject.torques[:, 0]).max())
     if worst > 1e-6 * max(largest, 1.0):
         raise CheckFailedError(
             f'its torque and that of its linear_model differ by up to {worst:.4g} of '

@@ -1,4 +1,4 @@
-"""Checks with measurements that are out of the ordinary, and of what a controller reacts to."""
+"""Checks with extraordinary measurements, and of the signals that a controller reacts to."""
 
 import math
 from dataclasses import replace
@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
-from ddct_controllers.check.trial import PROBE_RAD_S, PROBE_RPM, more_slip, played, probe_step
+from ddct_controllers.check.trial import PROBE_RAD_S, PROBE_RPM, more_slip, probe_step, replay
 from ddct_controllers.interface import Measurement
 from ddct_controllers.places import place_of_method
 from ddct_plant.base.errors import DdctError
@@ -14,10 +14,10 @@ from ddct_plant.base.timebase import PERIOD_S
 
 SPIKE_RAD_S = 200.0
 HARD_RAD_S = 300.0
-"""Slip that stays for a second: no torque of a clutch brings it down."""
+"""Additional slip in rad/s over half a second, more than any clutch torque can reduce."""
 SETTLED_N_M = 1.0
 WITHIN_STEPS = 30
-"""In which a controller must have reacted to slip."""
+"""Number of periods within which a controller must have reacted to slip."""
 
 
 def not_a_number(subject: Subject) -> str:
@@ -25,13 +25,13 @@ def not_a_number(subject: Subject) -> str:
     controller = subject.make()
     first = probe_step(subject.settings)
     try:
-        after = played(controller, subject.measured, _without_number, first, first + 1)
+        after = replay(controller, subject.measurements, _without_number, first, first + 1)
     except DdctError as error:
         found = f'it refuses NaN: {error}'
     else:
-        found = _after_nan(subject, after - subject.answers)
+        found = _after_nan(subject, after - subject.torques)
     controller.reset()
-    if not np.array_equal(played(controller, subject.measured), subject.answers):
+    if not np.array_equal(replay(controller, subject.measurements), subject.torques):
         raise CheckFailedError(
             'after a measurement of NaN and a reset it does not answer as a new object: set '
             f'all state anew in {place_of_method(controller, "reset")}'
@@ -52,8 +52,8 @@ def _after_nan(subject: Subject, change: np.ndarray) -> str:
 
 
 def spike(subject: Subject) -> str:
-    """Check that one wild speed is survived."""
-    torques = subject.played(lambda m: more_slip(m, SPIKE_RAD_S), steps=1)
+    """Check that the torques stay finite after a spike in one measured speed."""
+    torques = subject.replay(lambda m: more_slip(m, SPIKE_RAD_S), steps=1)
     change = _finite(subject, torques, f'a spike of {SPIKE_RAD_S:g} rad/s in the engine speed')
     return (
         f'a spike of {SPIKE_RAD_S:g} rad/s moves the torque by up to {np.abs(change).max():.4g} '
@@ -62,8 +62,8 @@ def spike(subject: Subject) -> str:
 
 
 def saturation(subject: Subject) -> str:
-    """Check that slip that no torque brings down is survived."""
-    torques = subject.played(lambda m: more_slip(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
+    """Check that the torques stay finite under slip that no torque reduces."""
+    torques = subject.replay(lambda m: more_slip(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
     change = _finite(subject, torques, f'{HARD_RAD_S:g} rad/s more slip over 0.5 s')
     most = float(np.abs(change).max())
     return (
@@ -73,27 +73,27 @@ def saturation(subject: Subject) -> str:
 
 
 def _finite(subject: Subject, torques: np.ndarray, what: str) -> np.ndarray:
-    """Return the change of the torques in N m; CheckFailedError where one is not finite."""
+    """Return the torques' change, (steps, 2), in N m; CheckFailedError unless finite."""
     if not np.isfinite(torques).all():
         raise CheckFailedError(
             f'{what} makes the torque infinite or NaN: limit what grows in '
             f'{place_of_method(subject.sample, "update")}'
         )
-    return torques - subject.answers
+    return torques - subject.torques
 
 
 def preview(subject: Subject) -> str:
-    """Check that the reference ahead is used if it is asked for."""
+    """Check that a controller that declares preview steps uses the reference ahead."""
     steps = subject.sample.preview_steps
     if not steps:
         raise CheckSkippedError('it declares no preview_steps')
-    changed = subject.played(_other_future)
-    if np.array_equal(changed, subject.answers):
+    changed = subject.replay(_other_future)
+    if np.array_equal(changed, subject.torques):
         raise CheckFailedError(
             f'it declares preview_steps = {steps}, but a reference that differs from the next '
             'step on changes no torque: use slip_reference[1:], or leave preview_steps out'
         )
-    most = np.abs(changed - subject.answers).max()
+    most = np.abs(changed - subject.torques).max()
     return (
         f'{steps} steps; a reference that differs from the next step on moves the torque by '
         f'{most:.4g} N m'
@@ -101,8 +101,8 @@ def preview(subject: Subject) -> str:
 
 
 def sign(subject: Subject) -> str:
-    """Check that more slip asks for more torque of the clutch, or less of the engine."""
-    change = subject.played(more_slip) - subject.answers
+    """Check that more slip raises the request to the clutch, or lowers that to the engine."""
+    change = subject.replay(more_slip) - subject.torques
     first = probe_step(subject.settings)
     clutch, engine = change[first : first + WITHIN_STEPS].mean(axis=0)
     found = f'{PROBE_RPM:g} rpm more slip changes the clutch torque by {clutch:+.4g} N m'

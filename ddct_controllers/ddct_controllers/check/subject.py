@@ -1,4 +1,4 @@
-"""The controller under check, and what several checks want to know of it."""
+"""The controller under check, with the trials and signals that several checks share."""
 
 import importlib.metadata
 from dataclasses import dataclass
@@ -8,14 +8,14 @@ import numpy as np
 
 from ddct_controllers.check.trial import (
     Change,
-    Heard,
+    ClosedLoopLog,
     StepResponse,
     closed_trial,
-    played,
     probe_step,
+    replay,
     step_response,
 )
-from ddct_controllers.check.watch import Printed
+from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.from_file.python_file import SUFFIX, module_name
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.linear import PiController
@@ -26,15 +26,15 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 class CheckFailedError(Exception):
-    """A check found an error; the text says what was measured, where, and what to do."""
+    """A check found an error; the text gives measured values, place and remedy."""
 
 
 class CheckSkippedError(Exception):
-    """A check does not apply; the text says why."""
+    """A check does not apply; the text gives the reason."""
 
 
 def root_cause(error: BaseException) -> BaseException:
-    """Return the error that an error was first raised from."""
+    """Return the error at the start of the chain of causes of `error`."""
     while error.__cause__:
         error = error.__cause__
     return error
@@ -42,73 +42,81 @@ def root_cause(error: BaseException) -> BaseException:
 
 @dataclass
 class Subject:
-    """A controller by name; every `make` is a new object."""
+    """A controller by name; every `make` returns a new object."""
 
     name: str
     settings: RunSettings
-    printed: Printed
+    printed: OutputMonitor
 
     @cached_property
-    def points(self) -> list[importlib.metadata.EntryPoint]:
-        """The entry points of its name: none for one of ours or a file."""
+    def entry_points(self) -> list[importlib.metadata.EntryPoint]:
+        """Entry points of the controller's name: none for one of ours or in a file."""
         return list(importlib.metadata.entry_points(group=ENTRY_POINT_GROUP, name=self.name))
 
     @property
     def package(self) -> str:
-        """The top-level module of its code; '' for one of ours or in YAML."""
+        """Top-level module of the controller's code; '' for one of ours or in YAML."""
         if self.name.endswith(SUFFIX):
             return module_name(self.name)
-        return self.points[0].module.partition('.')[0] if self.points else ''
+        return self.entry_points[0].module.partition('.')[0] if self.entry_points else ''
 
     @cached_property
     def spec(self) -> ControllerSpec[Controller]:
-        """How it is made."""
+        """Specification by which the controller is made."""
         return controller_spec(self.name)
 
     def make(self) -> Controller:
-        """Return a new object."""
+        """Return a new controller object."""
         return make_controller(self.name, self.settings)
 
-    def what_failed(self, error: BaseException) -> CheckFailedError:
-        """Return the failure of a check in whose course the controller raised `error`."""
+    def failure(self, error: BaseException) -> CheckFailedError:
+        """Return the failure of a check in which the controller raised `error`."""
         cause = root_cause(error)
         if isinstance(cause, DdctError) and not isinstance(error, ForeignError):
             return CheckFailedError(str(error))
         advice = 'mend it there'
         if isinstance(cause, IndexError):
             advice += ' (slip_reference has preview_steps + 1 entries)'
-        elsewhere = self.points[0].value if self.points else self.name
+        elsewhere = self.entry_points[0].value if self.entry_points else self.name
         place = place_of_error(cause, self.package) or elsewhere
         return CheckFailedError(f'it raised {type(cause).__name__}: {cause}, in {place}: {advice}')
 
     @cached_property
     def sample(self) -> Controller:
-        """An object that is only looked at."""
+        """Controller object whose attributes are read; its updates are never called."""
         return self.make()
 
     @cached_property
-    def closed(self) -> Heard:
-        """A run in the closed loop."""
+    def closed_loop(self) -> ClosedLoopLog:
+        """Log of a run in the closed loop."""
         return closed_trial(self.settings, self.make())
 
     @cached_property
-    def measured(self) -> list[tuple[bool, Measurement]]:
-        """What a PI of 0.1 N m/rpm measures: the same plain engagement for every controller."""
+    def measurements(self) -> list[tuple[bool, Measurement]]:
+        """
+        Measurements of a run with a PI of 0.1 N m/rpm, the same for every controller.
+
+        Each comes with whether feedback was on.
+        """
         pi = PiController(0.1, 0.1)
         pi.preview_steps = self.sample.preview_steps
-        return closed_trial(self.settings, pi).measured
+        return closed_trial(self.settings, pi).measurements
 
     @cached_property
-    def answers(self) -> np.ndarray:
-        """(steps, 2) what a new object answers to `measured`, in N m."""
-        return played(self.make(), self.measured)
+    def torques(self) -> np.ndarray:
+        """Torques (steps, 2) of a new object for `measurements`, in N m, of clutch and engine."""
+        return replay(self.make(), self.measurements)
 
     @cached_property
     def response(self) -> StepResponse:
-        """How slip answers a step of its reference."""
-        return step_response(self.settings, self.make, plain=self.closed)
+        """Step response of the closed loop from slip reference to slip."""
+        return step_response(self.settings, self.make, plain=self.closed_loop)
 
-    def played(self, change: Change, steps: int = 10**9) -> np.ndarray:
-        """Return what a new object answers where `steps` measurements from the probe on change."""
+    def replay(self, change: Change, steps: int = 10**9) -> np.ndarray:
+        """
+        Return a new object's torques, (steps, 2) in N m, with changed measurements.
+
+        `change` applies to `steps` measurements from the probe step on.
+        """
         first = probe_step(self.settings)
-        return played(self.make(), self.measured, change, first, first + steps)
+        return replay(self.make(), self.measurements, change, first, first + steps)

@@ -1,4 +1,4 @@
-"""Try a controller: in the closed loop on the plant, or on measurements that are played to it."""
+"""Trials of a controller: in the closed loop on the plant, or on replayed measurements."""
 
 import statistics
 import time
@@ -17,31 +17,31 @@ from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
 
 RAMP_S = 0.8
-"""From the slip speed at control start to zero."""
+"""Duration in s of the reference's descent from the slip speed at control start to zero."""
 PROBE_S, AFTER_S = 0.5, 1.05
-"""From control start to where something is changed, and from there to the end of a trial."""
+"""Times in s: from control start to the probe step, and from there to the end of a trial."""
 PROBE_RPM = 50.0
 PROBE_RAD_S = rad_s_from_rpm(PROBE_RPM)
-"""Size of what is changed: 50 rpm of slip."""
+"""Change of slip or slip reference at the probe step in rad/s: 50 rpm."""
 GROWTH = 1.05
-"""Factor from one half second to the next above which the error of a step grows."""
+"""Growth factor of a step's error per half second, above which the response diverges."""
 TIMED = 20
-"""Updates after which a controller that is slower than its period is stopped."""
+"""Number of updates after which a controller that is slower than its period is stopped."""
 Change = Callable[[Measurement], Measurement]
 
 
 @dataclass
-class Heard:
-    """What went in and out of a controller in the closed loop."""
+class ClosedLoopLog:
+    """Signals at a controller in the closed loop, step by step."""
 
     slip: list[float] = field(default_factory=list)
-    """w_d in rad/s at every step."""
-    measured: list[tuple[bool, Measurement]] = field(default_factory=list)
-    """Whether feedback was on, and what was measured."""
+    """Slip speed w_d in rad/s at every step."""
+    measurements: list[tuple[bool, Measurement]] = field(default_factory=list)
+    """Whether feedback was on, and the measurement, at every step."""
     request: list[float] = field(default_factory=list)
-    """What the clutch was asked at every step, in N m."""
+    """Clutch torque request of the architecture in N m at every step."""
     update_s: list[float] = field(default_factory=list)
-    """Wall time of each update."""
+    """Wall time of each update in s."""
 
     @property
     def too_slow(self) -> bool:
@@ -49,25 +49,25 @@ class Heard:
         return len(self.update_s) >= TIMED and statistics.median(self.update_s) > PERIOD_S
 
 
-def _listen(controller: Controller, heard: Heard, scale: float) -> None:
-    """Write down what an object hears and how long it takes, and multiply its torques."""
+def _log_calls(controller: Controller, log: ClosedLoopLog, scale: float) -> None:
+    """Wrap an object's hold and update: log inputs and times, and scale its torques."""
     hold, update = controller.hold, controller.update
 
     @wraps(hold)
-    def heard_hold(measurement: Measurement) -> None:
-        heard.measured.append((False, measurement))
+    def logged_hold(measurement: Measurement) -> None:
+        log.measurements.append((False, measurement))
         hold(measurement)
 
     @wraps(update)
-    def heard_update(measurement: Measurement) -> Command:
-        heard.measured.append((True, measurement))
+    def logged_update(measurement: Measurement) -> Command:
+        log.measurements.append((True, measurement))
         started = time.perf_counter()
         command = update(measurement)
-        heard.update_s.append(time.perf_counter() - started)
+        log.update_s.append(time.perf_counter() - started)
         return command if scale == 1.0 else _scaled(command, measurement, scale)
 
     # Wrapped in the object itself: errors still name its class and its lines.
-    vars(controller).update(hold=heard_hold, update=heard_update)
+    vars(controller).update(hold=logged_hold, update=logged_update)
 
 
 def _scaled(command: Command, measurement: Measurement, scale: float) -> Command:
@@ -78,12 +78,12 @@ def _scaled(command: Command, measurement: Measurement, scale: float) -> Command
 
 
 def more_slip(measurement: Measurement, by_rad_s: float = PROBE_RAD_S) -> Measurement:
-    """Return a measurement with more slip."""
+    """Return a measurement with the engine speed, and so the slip, higher by `by_rad_s`."""
     return replace(measurement, engine_speed=measurement.engine_speed + by_rad_s)
 
 
 def probe_step(settings: RunSettings) -> int:
-    """Return the step at which trials change something."""
+    """Return the step at which trials change a signal."""
     return settings.scenario.control_start_step + round(PROBE_S / PERIOD_S)
 
 
@@ -93,18 +93,18 @@ def closed_trial(
     *,
     reference_step: bool = False,
     scale: float = 1.0,
-) -> Heard:
+) -> ClosedLoopLog:
     """
     Run a new object, which stays wrapped, on the plant; its slip reference falls to zero.
 
     `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Sensors of the scenario
-    are left out: trials are told apart by less than their noise. Raise what the controller raises,
-    as a DdctError that names it.
+    are left out: trials differ by less than their noise. Raise what the controller raises, as a
+    DdctError with its name.
     """
-    heard = Heard()
+    log = ClosedLoopLog()
     exact = replace(settings, scenario=replace(settings.scenario, sensors=None))
     plant = WholePlant(exact, two_input=controller.commands_engine)
-    _listen(controller, heard, scale)
+    _log_calls(controller, log, scale)
     architecture = make_architecture(settings, controller)
     start, probe = settings.scenario.control_start_step, probe_step(settings)
     from_speed = 0.0
@@ -120,15 +120,15 @@ def closed_trial(
         rates = np.where((left > 0.0) & (ahead >= start), -from_speed / RAMP_S, 0.0)
         measurement = Measurement.of_plant(step, observation, speeds.tolist(), rates.tolist())
         request = architecture.update(measurement)
-        heard.slip.append(observation.true.slip_speed)
-        heard.request.append(request.torque)
-        if heard.too_slow:
+        log.slip.append(observation.true.slip_speed)
+        log.request.append(request.torque)
+        if log.too_slow:
             break
         plant.advance(plant.reply(step, observation, request.torque, request.engine_torque))
-    return heard
+    return log
 
 
-def played(
+def replay(
     controller: Controller,
     measured: Sequence[tuple[bool, Measurement]],
     change: Change = lambda measurement: measurement,
@@ -136,10 +136,10 @@ def played(
     to_step: int = 10**9,
 ) -> np.ndarray:
     """
-    Return the torques (steps, 2) in N m that are asked of clutch and engine, the latter 0 if none.
+    Return the torques (steps, 2) in N m requested of clutch and engine, the latter 0 if none.
 
-    `measured` is what the controller is given, with `change` in steps `from_step` to `to_step`
-    less 1.
+    The controller receives the measurements `measured`, with `change` applied in steps `from_step`
+    to `to_step` less 1.
     """
     torques = np.zeros((len(measured), 2))
     for row, (on, measurement) in zip(torques, measured, strict=True):
@@ -154,25 +154,25 @@ def played(
 
 @dataclass(frozen=True)
 class StepResponse:
-    """How slip answers a step of its reference in the closed loop."""
+    """Response of the slip to a step of its reference in the closed loop."""
 
     followed: float
-    """Share of the step after 1 s."""
+    """Share of the step that the slip has followed after 1 s, without unit."""
     diverges: bool
-    """Whether the run, or its answer to the step, ends further off than it began."""
+    """Whether the run, or the response to the step, ends with a larger error than at its start."""
 
 
 def step_response(
     settings: RunSettings,
     make: Callable[[], Controller],
     scale: float = 1.0,
-    plain: Heard | None = None,
+    plain: ClosedLoopLog | None = None,
 ) -> StepResponse:
     """
-    Return the difference that a step of the reference makes, with all torques times `scale`.
+    Return the response to a step of the reference, with all torques times `scale`.
 
-    `plain` is the run without the step, if it is there already. A loop that the controller itself
-    gives up, with a DdctError, counts as one that diverges.
+    `plain` is the run without the step, if it exists already. A loop that the controller itself
+    ends with a DdctError counts as one that diverges.
     """
     try:
         plain = plain or closed_trial(settings, make(), scale=scale)
@@ -184,7 +184,7 @@ def step_response(
     missing = np.abs(1.0 - response)
     half = len(missing) // 2
     grows = missing[half:].max() > GROWTH * missing[:half].max()
-    wanted = [measurement.slip_reference[0] for _, measurement in plain.measured]
+    wanted = [measurement.slip_reference[0] for _, measurement in plain.measurements]
     error = np.array(plain.slip) - wanted
     runs_away = np.abs(error[probe + half :]).max() > abs(plain.slip[start])
     return StepResponse(float(response[round(1.0 / PERIOD_S)]), bool(grows or runs_away))

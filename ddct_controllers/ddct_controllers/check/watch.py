@@ -1,4 +1,4 @@
-"""See what a controller does besides answering: print, read a clock, draw, ask for gains."""
+"""Detect side effects of a controller: output, clock reads, random numbers, gains read."""
 
 import io
 import os
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 CLOCKS = ('time', 'monotonic', 'perf_counter')
-"""Clocks of the module time; each has a twin in ns."""
+"""Names of clock functions of the module `time`; each has a twin in ns."""
 SOURCES: tuple[tuple[ModuleType, tuple[str, ...]], ...] = (
     (time, (*CLOCKS, *(f'{name}_ns' for name in CLOCKS))),
     (random, ('random', 'uniform', 'gauss', 'normalvariate', 'randint', 'choice')),
@@ -23,61 +23,61 @@ SOURCES: tuple[tuple[ModuleType, tuple[str, ...]], ...] = (
     (uuid, ('uuid4',)),
 )
 LEAP_S = 1_000_003
-"""How far the watched clocks are ahead, so that one that is read in whole days differs too."""
+"""Advance of the watched clocks in s, so large that one read in whole days differs too."""
 
 
 def place_of_caller(depth: int) -> str:
-    """Return `FILE line N` of who called the function `depth` calls above this one."""
+    """Return `FILE line N` of the caller of the function `depth` calls above this one."""
     frame = sys._getframe(depth + 1)
     return f'{frame.f_code.co_filename} line {frame.f_lineno}'
 
 
-class Printed(io.TextIOBase):
-    """Takes the place of standard output and remembers who wrote there first."""
+class OutputMonitor(io.TextIOBase):
+    """Stand-in for standard output that keeps the text and the place of the first write."""
 
     def __init__(self) -> None:
-        """Start with nothing written."""
+        """Start with no text."""
         self.text = self.place = ''
 
     def write(self, text: str) -> int:
-        """Take the text."""
+        """Append the text; return its length."""
         self.place = self.place or place_of_caller(1)
         self.text += text
         return len(text)
 
 
-class AskedGains(dict[str, Any]):
-    """The gains of a context, which remember the names that are asked for, and where."""
+class RecordedGains(dict[str, Any]):
+    """Gains of a context, with a record of the names that are read, and where."""
 
     def __init__(self, gains: Mapping[str, Any]) -> None:
-        """Hold the gains."""
+        """Copy the gains."""
         super().__init__(gains)
-        self.asked: dict[str, str] = {}
+        self.places: dict[str, str] = {}
 
     def __getitem__(self, name: str) -> Any:
-        """Return a gain."""
-        self._note(name)
+        """Return a gain and record the access."""
+        self._record(name)
         return super().__getitem__(name)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return a gain or the default."""
-        self._note(name)
+        """Return a gain or the default, and record the access."""
+        self._record(name)
         return super().get(name, default)
 
-    def _note(self, name: str) -> None:
-        self.asked.setdefault(name, place_of_caller(2))
+    def _record(self, name: str) -> None:
+        self.places.setdefault(name, place_of_caller(2))
 
 
 @contextmanager
 def watched(package: str) -> Iterator[dict[str, str]]:
-    """Let clocks leap, and yield by source, such as `time.time`, where code first called it."""
+    """Advance the clocks, and yield by source, such as `time.time`, its first caller's place."""
     called: dict[str, str] = {}
     undo: list[tuple[ModuleType, str, Any]] = []
     own = [m for name, m in list(sys.modules.items()) if name.partition('.')[0] == package]
     for module, names in SOURCES:
         for name in names:
             original = getattr(module, name)
-            stand_in = _noting(f'{module.__name__}.{name}', original, called)
+            stand_in = _recording(f'{module.__name__}.{name}', original, called)
             # `from time import time` has bound the original in a module of the controller.
             bound = [(each, key) for each in own for key, v in vars(each).items() if v is original]
             for each, key in [(module, name), *bound]:
@@ -90,7 +90,9 @@ def watched(package: str) -> Iterator[dict[str, str]]:
             setattr(each, key, original)
 
 
-def _noting(what: str, original: Callable[..., Any], called: dict[str, str]) -> Callable[..., Any]:
+def _recording(
+    what: str, original: Callable[..., Any], called: dict[str, str]
+) -> Callable[..., Any]:
     leap: Any = 0
     if what.startswith('time.'):
         leap = LEAP_S * (10**9 if what.endswith('_ns') else 1)

@@ -1,4 +1,4 @@
-"""Exact sampling of a continuous system whose input is held over a period, then delayed."""
+"""Exact sampling of a continuous system behind a zero-order hold and a delay of its input."""
 
 import numpy as np
 

@@ -14,7 +14,11 @@ from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 
 TORQUE_RATE_WEIGHT = 0.03
-"""rho, rad/s per N m/s: price of torque beyond the static law; docs/controllers/feedforward.md."""
+"""
+Weight rho in rad/s per N m/s: price of torque beyond the static law.
+
+docs/controllers/feedforward.md has the argument.
+"""
 
 _ENGINE, _CLUTCH, _LOAD = range(3)
 
@@ -66,7 +70,7 @@ class _Problem:
     """
     x_(k+1) = a x + b u + g w, w_(k+1) = s w; minimise the sum of |c x + d u + f w|^2.
 
-    w = [C_m, C_m less that of the period before, C_load]: all is known at k, nothing ahead.
+    w = [C_m, C_m less that of the period before, C_load]: all is known at k, no future values.
     """
 
     a: np.ndarray
@@ -109,7 +113,7 @@ def _relative_driveline(driveline: DrivelineParameters) -> StateSpace:
     Return x = y = [w_d, w_sr, theta_sr] for [C_m, C_f, C_load]: the driveline of Section 1.5.
 
     The drags c_m and c_prim are left out: without them the common speed acts on nothing, and with
-    them the filter would remember it for minutes (the pole of C_1 at -0.0059 rad/s).
+    them the filter would keep it for minutes (the pole of C_1 at -0.0059 rad/s).
     """
     free = driveline_matrices(replace(driveline, engine_damping=0.0, shaft_damping=0.0))
     relative = np.vstack([free.c, [0.0, 0.0, 0.0, 1.0]])

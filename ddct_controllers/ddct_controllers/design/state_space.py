@@ -16,7 +16,9 @@ from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 
 _FAR = 1e8
-"""Generalised eigenvalues beyond this, relative to the largest pole, are zeros at infinity."""
+"""
+Magnitude of an eigenvalue, relative to the largest pole, beyond which it is a zero at infinity.
+"""
 
 
 def series(*systems: StateSpace) -> StateSpace:
@@ -67,7 +69,7 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
     """
     Return the complex response, the shape of `omega`, at frequencies in rad/s.
 
-    That is at s = j omega, or at z = exp(j omega T) when the system is sampled.
+    It is evaluated at s = j omega, or at z = exp(j omega T) when the system is sampled.
     """
     _require_one_by_one(system)
     omega = np.asarray(omega, dtype=float)
@@ -78,13 +80,13 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
 
 
 def poles_rad_s(system: StateSpace) -> np.ndarray:
-    """Return the poles, (n,) complex, in rad/s; those of a sampled system as `to_s_plane` does."""
+    """Return the poles, (n,) complex, in rad/s, those of a sampled system by `to_s_plane`."""
     return to_s_plane(np.linalg.eigvals(system.a), system.period_s)
 
 
 def to_s_plane(poles: np.ndarray, period_s: float | None) -> np.ndarray:
     """
-    Return s = log(z)/T in rad/s of sampled poles, elementwise; continuous ones as they are.
+    Return s = log(z)/T in rad/s of sampled poles, elementwise; continuous ones unchanged.
 
     The imaginary part is within half the sampling rate; z = 0, a delay, gives minus infinity.
     """
@@ -120,7 +122,7 @@ def factored_form(system: StateSpace) -> FactoredTransferFunction:
 
 
 def factors_text(factors: Sequence[Factor], variable: str = 's', digits: int = 4) -> str:
-    """Return factors one beside the other, as the thesis prints them, which is with 4 digits."""
+    """Return factors side by side, as the thesis prints them, which is with 4 digits."""
     return ' '.join(_factor_text(factor, variable, digits) for factor in factors)
 
 

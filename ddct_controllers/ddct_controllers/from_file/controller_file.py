@@ -1,4 +1,4 @@
-"""A controller file as it was read: its values, their lines, and errors that name both."""
+"""Content of a controller file: its values, their lines, and errors that name both."""
 
 import hashlib
 import re
@@ -14,22 +14,22 @@ from ddct_plant.files.input_file import located, read_file, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
-"""Largest size of a library or an FMU that a controller file names."""
+"""Largest size in bytes of a library or an FMU that a controller file names."""
 SUFFIXES = ('.yaml', '.yml', '.py')
 FORMAT = 'ddct-linear-controller-1'
-"""Value of the key `format`, where one is given."""
+"""Value of the key `format`, where a file has one."""
 COMMON = ('format', 'name', 'provenance')
-"""Keys that a file of every kind may hold beside those of its kind; `name` it must."""
+"""Optional keys of a file of every kind, beside those of its kind; only `name` is required."""
 _NAME = re.compile(r'[a-z][a-z0-9_]{0,39}')
 
 
 def is_controller_file(name: str) -> bool:
-    """Say whether a controller's name is that of a file."""
+    """Return whether a controller's name is that of a file."""
     return name.endswith(SUFFIXES)
 
 
 def require_name(name: object) -> None:
-    """Raise ParameterError unless a controller can be called `name`."""
+    """Raise ParameterError unless `name` can be the name of a controller."""
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise ParameterError(
             f'controller name {name!r}: use up to 40 lower-case letters, digits and underscores, '
@@ -39,25 +39,25 @@ def require_name(name: object) -> None:
 
 @dataclass(frozen=True)
 class ControllerFile:
-    """What one file holds. A loader reads its kind's keys from it, inside of `located`."""
+    """Content of one file, from which a loader reads its kind's keys, inside of `located`."""
 
     path: Path
     content: Any
-    """As YAML has it; `keys` checks that it is a mapping."""
+    """Content as parsed from YAML; `keys` checks that it is a mapping."""
     lines: Mapping[str, int]
-    """Line numbers by dotted path, as `parse_yaml_with_lines` gives them."""
+    """Line numbers by dotted path, from `parse_yaml_with_lines`."""
     digests: dict[str, str]
     """SHA-256 of the file and of the one that it names, by their key on `run_info`."""
 
     @property
     def name(self) -> str:
-        """What the controller is called; it names the folder of the bag."""
+        """Name of the controller, which is also that of the bag's folder."""
         return str(self.content['name'])
 
     def keys(
         self, kind: str, required: Sequence[str] = (), optional: Sequence[str] = ()
     ) -> Mapping[str, Any]:
-        """Return the whole content with what every file has checked; raise ParameterError."""
+        """Return the content after a check of the keys of every file; raise ParameterError."""
         content = mapping('', self.content, ('name', kind, *required), (*COMMON, *optional))
         require_name(content['name'])
         if content.get('format', FORMAT) != FORMAT:
@@ -67,7 +67,7 @@ class ControllerFile:
 
     def named_file(self, kind: str, value: object, what: str) -> Path:
         """
-        Return the path of the file that the key `<kind>.file` names, and note its digest.
+        Return the path of the file that the key `<kind>.file` names, and store its digest.
 
         Relative paths start at the controller file. Raise ParameterError when it cannot be read.
         """
@@ -84,7 +84,7 @@ class ControllerFile:
         return path
 
     def place_of(self, kind: str) -> str:
-        """Return where its author finds what is of a kind: file, line and key."""
+        """Return file, line and key of a controller of this kind, for its author."""
         return f'{self.path} line {self.lines[kind]} ({kind})'
 
     def located(self) -> AbstractContextManager[None]:
@@ -106,9 +106,9 @@ def mapping(
     path: str, content: Any, required: Sequence[str] = (), optional: Sequence[str] = ()
 ) -> Mapping[str, Any]:
     """
-    Return what stands at `path` ('' is the whole file) when it has these keys; else complain.
+    Return the mapping at `path` ('' is the whole file) if it has these keys.
 
-    Where no key is named, any will do. Raise ParameterError that names the key.
+    Without names of keys, any keys are valid. Raise ParameterError that names the wrong key.
     """
     name = path or 'the file'
     if not isinstance(content, Mapping):

@@ -1,4 +1,4 @@
-"""What `design` writes: a continuous linear controller and where it comes from, as a file."""
+"""Files of designed controllers: a continuous linear controller with its provenance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,18 +21,18 @@ _FACTORS = ('numerator', 'denominator')
 
 @dataclass(frozen=True)
 class DesignedController:
-    """A continuous, proper G_c(s) in N m per rpm of slip error, and where it comes from."""
+    """A continuous, proper G_c(s) in N m per rpm of slip error, with its provenance."""
 
     name: str
-    """Names its bag folder: a lower-case letter, then letters, digits and underscores."""
+    """Name of its bag folder: a lower-case letter, then letters, digits and underscores."""
     transfer_function: FactoredTransferFunction
     provenance: Mapping[str, Any] = field(default_factory=dict)
-    """Plain values: method, specifications, what was verified."""
+    """Method, specifications and verified quantities, as plain values."""
     discretisation: str = HOLD
-    """HOLD or BILINEAR: a design that had hold and delay in the plant is BILINEAR."""
+    """HOLD or BILINEAR: a design with hold and delay in the plant is BILINEAR."""
 
     def __post_init__(self) -> None:
-        """Check name, properness and choice; raise ParameterError that names what is wrong."""
+        """Check name, properness and choice; raise ParameterError that names the wrong one."""
         require_name(self.name)
         self.sampled()
 
@@ -41,7 +41,7 @@ class DesignedController:
         return sampled(self.transfer_function, self.discretisation)
 
     def to_yaml(self) -> str:
-        """Return the text that `load_designed` reads back to the same controller, to the bit."""
+        """Return the text from which `load_designed` restores the same controller, to the bit."""
         content = {
             'format': FORMAT,
             'name': self.name,
@@ -60,7 +60,7 @@ class DesignedController:
 
 
 def load_designed(file: str) -> DesignedController:
-    """Read what `design` wrote; raise DdctError that names file, key and remedy."""
+    """Read the file of a design; raise DdctError that names file, key and remedy."""
     source = read_controller_file(file)
     with source.located():
         function, discretisation = linear_in(source, FACTORED)

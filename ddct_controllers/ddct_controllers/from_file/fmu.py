@@ -7,7 +7,7 @@ from operator import attrgetter
 from typing import Any
 
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
-from ddct_controllers.from_file.fmu_unit import CLUTCH, ENGINE, Fed, Fmu, FmuController
+from ddct_controllers.from_file.fmu_unit import CLUTCH, ENGINE, Fmu, FmuController, FmuInput
 from ddct_controllers.interface import (
     UNSTATED,
     Controller,
@@ -30,12 +30,16 @@ SCALARS = {
     'load_torque_n_m': 'load_torque',
     'open_loop_torque_n_m': 'open_loop_torque',
 }
-"""What an input may be given, with its unit, and the attribute of Measurement that holds it."""
+"""Attribute of Measurement by the name, with its unit, of a signal for an input."""
 AHEAD = {
     'slip_reference_rad_s': 'slip_reference',
     'slip_reference_rate_rad_s2': 'slip_reference_rate',
 }
-"""The same for what is also known i periods ahead, as `slip_reference_rad_s[i]`."""
+"""
+Attribute of Measurement by the name of a signal with preview.
+
+An index is the number of periods ahead, as in `slip_reference_rad_s[i]`.
+"""
 _UNITS = {
     '_rpm': ('rpm', 'rev/min', 'r/min', '1/min'),
     '_rad_s': ('rad/s',),
@@ -43,7 +47,7 @@ _UNITS = {
     '_m_s': ('m/s',),
     '_n_m': ('Nm',),
 }
-"""How a tool may write a unit, by the end of our name; dots, stars, hats, spaces are left out."""
+"""Spellings of a unit in tools, by the end of our name; dots, stars, hats, spaces are left out."""
 _KINDS: Mapping[str, type] = {
     'Real': float,
     'Float64': float,
@@ -54,7 +58,7 @@ _KINDS: Mapping[str, type] = {
     'Boolean': bool,
     'String': str,
 }
-"""Kinds of start values by type of variable. Inputs and outputs have the type of a float."""
+"""Python type of a start value by type of variable; inputs and outputs have that of a float."""
 
 
 def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
@@ -67,8 +71,8 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
         fmu = Fmu(path)
     except ParameterError as error:
         raise ParameterError(f'fmu.file: {error}') from error
-    fed = [
-        _fed(_variable(fmu, 'inputs', name, 'input'), ours)
+    inputs = [
+        _fmu_input(_variable(fmu, 'inputs', name, 'input'), ours)
         for name, ours in mapping('fmu.inputs', keys['inputs']).items()
     ]
     outputs = _outputs(fmu, mapping('fmu.outputs', keys['outputs']))
@@ -82,20 +86,20 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
         raise ParameterError(
             'fmu.parameters: two names differ only in their dots and brackets: keep one'
         )
-    _require_all_inputs(fmu, {each.variable.name for each in fed} | set(given))
+    _require_all_inputs(fmu, {each.variable.name for each in inputs} | set(given))
 
     def make(context: ControllerContext) -> Controller:
         starts = [
             (variable, context.gains[name])
             for variable, name in zip(started, options, strict=True)
         ]
-        return FmuController(file, fmu, fed, outputs, starts)
+        return FmuController(file, fmu, inputs, outputs, starts)
 
     return ControllerSpec(file.name, make, options, UNSTATED)
 
 
 def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
-    """Return the variable that a section names; raise ParameterError unless it suits."""
+    """Return the variable that a section names; raise ParameterError for one of another kind."""
     key = f'fmu.{section}.{name}'
     variable = fmu.variables.get(name)
     if variable is None:
@@ -117,7 +121,7 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
     return variable
 
 
-def _fed(variable: Any, ours: object) -> Fed:
+def _fmu_input(variable: Any, ours: object) -> FmuInput:
     key = f'fmu.inputs.{variable.name}'
     name, ahead = str(ours), 0
     if found := re.fullmatch(r'(\w+)\[(\d{1,3})\]', name):
@@ -127,12 +131,12 @@ def _fed(variable: Any, ours: object) -> Fed:
         raise ParameterError(f'{key} is {ours!r}: {close_name(name, known)}')
     _require_unit(key, variable, name)
     if name in SCALARS:
-        return Fed(variable, attrgetter(SCALARS[name]))
+        return FmuInput(variable, attrgetter(SCALARS[name]))
 
     def read(measurement: Measurement) -> float:
         return getattr(measurement, AHEAD[name])[ahead]
 
-    return Fed(variable, read, ahead)
+    return FmuInput(variable, read, ahead)
 
 
 def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -150,7 +154,7 @@ def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _require_unit(key: str, variable: Any, ours: str) -> None:
-    """Raise ParameterError when the FMU states another unit than that of our name."""
+    """Raise ParameterError when the FMU declares another unit than that of our name."""
     stated = variable.unit or (variable.declaredType and variable.declaredType.unit) or '1'
     end = max((end for end in _UNITS if ours.endswith(end)), key=len)
     if stated != '1' and re.sub(r'[\s.*^·]', '', stated) not in _UNITS[end]:
@@ -160,7 +164,7 @@ def _require_unit(key: str, variable: Any, ours: str) -> None:
 
 
 def _option(variable: Any, value: object) -> Option:
-    """Return a start value as an option, `value` its default; raise ParameterError."""
+    """Return an option with the start value as default; ParameterError for a wrong type."""
     key = f'fmu.parameters.{variable.name}'
     settable = variable.initial in ('exact', 'approx') and variable.variability != 'constant'
     if not settable or variable.type not in _KINDS or variable.causality == 'structuralParameter':
@@ -181,7 +185,7 @@ def _option(variable: Any, value: object) -> Option:
 
 
 def _require_all_inputs(fmu: Fmu, given: set[str]) -> None:
-    """Raise ParameterError for an input left out, but for types that can be given nothing."""
+    """Raise ParameterError for an input without a signal, but for types that can have none."""
     inputs = [each for each in fmu.variables.values() if each.causality == 'input']
     for variable in inputs:
         if variable.type in _KINDS and variable.name not in given:

@@ -19,13 +19,13 @@ from ddct_plant.base.errors import DdctError, ParameterError, require_finite
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
 CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
-"""What an output may be."""
+"""Quantities that an output may be: torque requests of clutch and engine."""
 _FATAL = 4
-"""Status after which nothing of an FMU may be called, not even to free it."""
+"""Status after which no function of an FMU may be called, not even to free it."""
 
 
 class Fmu:
-    """What a file says of the FMU in it, which is known to suit this machine and our period."""
+    """Description of the FMU in a file, checked to suit this machine and our period."""
 
     def __init__(self, path: Path) -> None:
         """Read the file; raise ParameterError, or DdctError without FMPy, with what to do."""
@@ -61,7 +61,7 @@ class Fmu:
         )
 
     def _require_period(self) -> None:
-        """Raise ParameterError when the FMU has a fixed step that does not go into our period."""
+        """Raise ParameterError when the FMU has a fixed step that does not divide our period."""
         unit, experiment = self.description.coSimulation, self.description.defaultExperiment
         stated = unit.fixedInternalStepSize or (experiment and experiment.stepSize)
         if unit.canHandleVariableCommunicationStepSize or not stated:
@@ -75,13 +75,13 @@ class Fmu:
 
 
 @dataclass(frozen=True)
-class Fed:
-    """An input: the variable, and what it is given."""
+class FmuInput:
+    """An input of the FMU: the variable, and the signal of a measurement that it receives."""
 
     variable: Any
     read: Callable[[Measurement], float]
     ahead: int = 0
-    """Periods."""
+    """Number of periods ahead for which the signal is read."""
 
 
 class FmuController(Controller):
@@ -91,36 +91,40 @@ class FmuController(Controller):
     In each period its inputs are set, it takes a step of 10 ms, and its outputs hold over that
     period. Its own time is 0 when feedback begins.
 
-    Its files live in a temporary folder. Binary and folder go with this object, at the latest when
-    Python ends. A call that fails raises DdctError with what the FMU says about it.
+    Its files are in a temporary folder. Binary and folder are removed with this object, at the
+    latest when Python ends. A call that fails raises DdctError with the FMU's last log message.
     """
 
     def __init__(
         self,
         file: ControllerFile,
         fmu: Fmu,
-        fed: Sequence[Fed],
+        inputs: Sequence[FmuInput],
         outputs: Mapping[str, Any],
         starts: Sequence[tuple[Any, Any]],
     ) -> None:
-        """Load `fmu`; `outputs` are variables by CLUTCH and ENGINE, `starts` have their values."""
-        self.preview_steps = max((each.ahead for each in fed), default=0)
+        """Load `fmu`; `outputs` are variables by CLUTCH and ENGINE, `starts` have start values."""
+        self.preview_steps = max((each.ahead for each in inputs), default=0)
         self.commands_engine = ENGINE in outputs
-        self._file, self._fmu, self._fed = file, fmu, fed
+        self._file, self._fmu, self._inputs = file, fmu, inputs
         self._outputs, self._starts = outputs, starts
-        self._held = contextlib.ExitStack()
-        weakref.finalize(self, self._held.close)
+        self._resources = contextlib.ExitStack()
+        weakref.finalize(self, self._resources.close)
         self._load()
 
     def reset(self) -> None:
-        """Go back to before the first step: not by FMI's reset, but with binary and files anew."""
+        """
+        Return to the state before the first step by loading binary and files anew.
+
+        FMI's own reset is not used.
+        """
         if self._steps:
-            self._held.close()
+            self._resources.close()
             self._load()
 
     def update(self, measurement: Measurement) -> Command:
         """Return the outputs of this period's step; raise DdctError when the FMU fails."""
-        inputs = [(each.variable, each.read(measurement)) for each in self._fed]
+        inputs = [(each.variable, each.read(measurement)) for each in self._inputs]
         with self._file.located():
             torques = self._step(inputs)
             for name, torque in torques.items():
@@ -131,7 +135,7 @@ class FmuController(Controller):
     def _step(self, inputs: Sequence[tuple[Any, float]]) -> dict[str, float]:
         """Set the inputs, go 10 ms ahead and return the outputs by CLUTCH and ENGINE."""
         time_s = time_of_step(self._steps)
-        with self._named(f'at its own time {time_s:g} s'):
+        with self._errors_named(f'at its own time {time_s:g} s'):
             if not self._steps:
                 if self._fmu.is_fmi2:
                     self._instance.setupExperiment(startTime=0.0)
@@ -140,7 +144,7 @@ class FmuController(Controller):
                 self._instance.exitInitializationMode()
             self._set(inputs)
             ended = self._instance.doStep(time_s, PERIOD_S)
-            if ended and ended[1]:  # FMI 3.0 tells so; FMI 2.0 fails
+            if ended and ended[1]:  # FMI 3.0 returns it; FMI 2.0 fails
                 raise DdctError('it asks for the end of the simulation')
             self._steps += 1
             return {
@@ -150,22 +154,25 @@ class FmuController(Controller):
 
     def _load(self) -> None:
         self._steps = 0
-        self._said: list[str] = []
+        self._messages: list[str] = []
         with (
             self._file.located(),
-            contextlib.ExitStack() as held,
-            self._named('when it is loaded'),
+            contextlib.ExitStack() as resources,
+            self._errors_named('when it is loaded'),
         ):
-            folder = held.enter_context(TemporaryDirectory(prefix='ddct_fmu_'))
+            folder = resources.enter_context(TemporaryDirectory(prefix='ddct_fmu_'))
             self._fmu.fmpy.extract(self._fmu.path, folder)
             # FMPy goes to the binary's folder, and stays there when it cannot be loaded.
             with contextlib.chdir('.'):
                 self._instance = self._fmu.fmpy.instantiate_fmu(
-                    folder, self._fmu.description, 'CoSimulation', logger=_listener(self._said)
+                    folder,
+                    self._fmu.description,
+                    'CoSimulation',
+                    logger=_log_callback(self._messages),
                 )
-            held.callback(_free, self._instance)
+            resources.callback(_free, self._instance)
             self._set(self._starts)
-            self._held.push(held.pop_all())
+            self._resources.push(resources.pop_all())
 
     def _set(self, values: Iterable[tuple[Any, Any]]) -> None:
         for variable, value in values:
@@ -175,17 +182,17 @@ class FmuController(Controller):
             getattr(self._instance, f'set{kind}')([variable.valueReference], [value])
 
     @contextlib.contextmanager
-    def _named(self, when: str) -> Iterator[None]:
+    def _errors_named(self, when: str) -> Iterator[None]:
         """Raise whatever FMPy raises as a DdctError."""
-        self._said.clear()
+        self._messages.clear()
         try:
             yield
         except Exception as error:
             if getattr(error, 'status', None) == _FATAL:
                 self._instance.component = None
-            said = f': {self._said[-1]}' if self._said else ''
+            message = f': {self._messages[-1]}' if self._messages else ''
             raise DdctError(
-                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{said}): mend the FMU'
+                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{message}): mend the FMU'
             ) from error
 
 
@@ -194,17 +201,17 @@ def _free(instance: Any) -> None:
         instance.freeInstance()
 
 
-def _listener(said: list[str]) -> Callable[..., None]:
-    """Return what an FMU calls to say something; text comes last in FMI 2.0 and 3.0."""
+def _log_callback(messages: list[str]) -> Callable[..., None]:
+    """Return the FMU's log callback; the text comes last in FMI 2.0 and 3.0."""
 
-    def listen(*message: Any) -> None:
-        said.append(_line(message[-1].decode('utf-8', 'replace')))
+    def log(*message: Any) -> None:
+        messages.append(_line(message[-1].decode('utf-8', 'replace')))
 
-    return listen
+    return log
 
 
 def _line(text: object) -> str:
-    """Return the same on one line, without a full stop."""
+    """Return the text on one line, without a full stop."""
     return ' '.join(str(text).split()).rstrip('.')
 
 

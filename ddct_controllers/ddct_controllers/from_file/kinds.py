@@ -1,4 +1,4 @@
-"""The kinds of controller files, and the one way from a file to its controller."""
+"""The kinds of controller files, and the function from a file to its controller."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -20,21 +20,21 @@ from ddct_plant.base.options import close_name
 
 Loader = Callable[[ControllerFile], ControllerSpec[Controller]]
 """
-Checks the keys of its kind and says how the controller is made.
+Function that checks the keys of its kind and returns the controller's specification.
 
-Errors name the key first, as `polynomial.den[2] is nan: ...`; `located` adds file and line. What
-is slow, such as loading a library, is left to `ControllerSpec.make`, inside of `located` too.
+Errors name the key first, as `polynomial.den[2] is nan: ...`; `located` adds file and line. Slow
+work, such as loading a library, is left to `ControllerSpec.make`, inside of `located` too.
 """
 KINDS: Mapping[str, Loader] = {
     **LINEAR,
     'c_library': c_library_spec,
     'fmu': fmu_spec,
 }
-"""The loaders, by the key that a file of the kind has."""
+"""Loaders by the key of their kind in a file."""
 
 
 def load_spec(file: str) -> ControllerSpec[Controller]:
-    """Return how the controller in a file is made; raise DdctError that names file and line."""
+    """Return the specification of the controller in a file; DdctError names file and line."""
     if file.endswith(SUFFIX):
         return python_spec(file)
     source = read_controller_file(file)

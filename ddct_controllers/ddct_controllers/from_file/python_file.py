@@ -20,7 +20,7 @@ _PAGE = 'docs/controllers/writing_a_controller.md'
 
 def python_spec(file: str) -> ControllerSpec[Controller]:
     """
-    Return how the controller in a file of Python is made; it is called as its class.
+    Return the specification of the controller in a Python file, with its class's name.
 
     Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
     define one controller.
@@ -42,7 +42,7 @@ def python_spec(file: str) -> ControllerSpec[Controller]:
 
 
 def module_name(file: str) -> str:
-    """Return what the module of a file is called: no other module has this name."""
+    """Return the name of the module of a file, which no other module has."""
     path = Path(file).resolve()
     stem, place = re.sub(r'\W', '_', path.stem), hashlib.sha256(str(path).encode()).hexdigest()
     return f'controller_file_{stem}_{place[:8]}'
@@ -50,7 +50,7 @@ def module_name(file: str) -> str:
 
 @lru_cache(maxsize=64)
 def _module(path: Path, text: str) -> ModuleType:
-    """Run the text, as often as it was edited; modules beside the file can be imported."""
+    """Run the text, anew after each edit; modules beside the file can be imported."""
     name = module_name(str(path))
     module = ModuleType(name)
     module.__file__ = str(path)

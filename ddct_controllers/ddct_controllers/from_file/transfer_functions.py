@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.linear import BILINEAR, HOLD, Given, in_z, linear_spec, sampled
+from ddct_controllers.linear import BILINEAR, HOLD, LinearSystem, in_z, linear_spec, sampled
 from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.files.input_file import line_of
@@ -18,19 +18,19 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 FACTORED = 'transfer_function'
 UNITS = {'input': 'rpm', 'output': 'N m'}
-"""Units of the slip error and the clutch torque. No others are accepted."""
+"""Required units of the slip error and the clutch torque; no others are accepted."""
 _REQUIRED, _OPTIONAL = ('units',), ('discretisation', 'sample_time_s')
 BESIDE_LINEAR = (*_REQUIRED, *_OPTIONAL)
 """Keys of a file of a linear controller, beside its kind."""
 FREQUENCY = {'frequency': 'rad/s'}
-"""Unit of zeros and poles. A file may state it too."""
+"""Unit of zeros and poles, which a file may state too."""
 
 
-def linear_in(file: ControllerFile, kind: str) -> tuple[Given, str]:
+def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
     """
-    Return the system in a file of `kind`, and how it is discretised if it is continuous.
+    Return the system in a file of `kind`, and the discretisation of a continuous one.
 
-    Raise ParameterError for what cannot run, an improper G_c included.
+    Raise ParameterError for a system that cannot run, an improper G_c included.
     """
     content = file.keys(kind, _REQUIRED, _OPTIONAL)
     if content['units'] not in (UNITS, {**UNITS, **FREQUENCY}):
@@ -100,7 +100,7 @@ def _factor(path: str, content: Any) -> Factor:
 
 
 def _polynomial(path: str, content: Any) -> FactoredTransferFunction:
-    """Read coefficients with the highest power first, as scipy.signal and MATLAB have them."""
+    """Read coefficients with the highest power first, as in scipy.signal and MATLAB."""
     parts = mapping(path, content, ('num', 'den'))
     num, den = (
         [require_number(*item) for item in _items(f'{path}.{key}', parts[key], '[1.0, 5.3]')]
@@ -158,7 +158,7 @@ def _items(path: str, content: Any, example: str) -> list[tuple[str, Any]]:
     return [(f'{path}[{i}]', item) for i, item in enumerate(content)]
 
 
-FORMS: Mapping[str, Callable[[str, Any], Given]] = {
+FORMS: Mapping[str, Callable[[str, Any], LinearSystem]] = {
     FACTORED: partial(
         _ratio,
         FactoredTransferFunction,
@@ -176,6 +176,6 @@ FORMS: Mapping[str, Callable[[str, Any], Given]] = {
     ),
     'state_space': _state_space,
 }
-"""Readers by the key in the file. Each takes the key and its value."""
+"""Readers by the key in the file; each takes the key and its value."""
 LINEAR = {kind: partial(_linear_spec, kind) for kind in FORMS}
-"""The loaders of these kinds."""
+"""Loaders of the linear kinds by their key."""

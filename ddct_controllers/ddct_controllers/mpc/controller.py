@@ -28,13 +28,14 @@ Estimator = TypeVar('Estimator', bound=Observer | WearObserver)
 
 class MpcController(Controller, Generic[Estimator]):
     """
-    Chooses the moves of its inputs that minimise the cost of `MpcSettings`.
+    Compute the moves of the inputs that minimise the cost of `MpcSettings`.
 
     It is composed of a model, an observer, the program that both make with the settings, and the
     inputs: the clutch torque request, and C_m if an engine's authority is given. C_m or the
-    driver's demand for it, C_load as far as the model has it, and the architecture's open-loop
-    torque are known now and taken as constant over the horizon. Limited is the whole clutch torque
-    request, open loop included; moves are those of the controller's own part.
+    driver's demand for it, C_load as far as it is an input of the model, and the architecture's
+    open-loop torque are measured inputs, taken as constant over the horizon. The limits are those
+    of the whole clutch torque request, open loop included; moves are those of the controller's own
+    part.
 
     The program is that of a new clutch. What drives the slip is divided by the wear gain K_usura
     that the observer estimates, limits and moves remain those of the request; so the cost is that
@@ -51,7 +52,7 @@ class MpcController(Controller, Generic[Estimator]):
         """
         Build the program; raise ParameterError when the settings do not make one.
 
-        `model` is without an engine, `authority` what limits the second input, if there is one.
+        `model` has no engine as a state, `authority` limits the second input if there is one.
         """
         self.commands_engine = authority is not None
         self._inputs = 1 + self.commands_engine
@@ -64,16 +65,16 @@ class MpcController(Controller, Generic[Estimator]):
             model = with_engine(model, authority.lag_share)
             settings = CommandedEngine.limited_by_rows(settings)
         self.observer = observer
-        """What estimates its state."""
+        """Observer of the model's state, and of the wear gain."""
         self.settings = settings
-        """What it was built from."""
+        """Cost, horizon, limits and solver from which the program was built."""
         self.authority = authority
-        """What the engine is known to do of a request; None if it is not commanded."""
+        """Limits and lag of the engine; None if the engine is not commanded."""
         self.program = condense(model, settings)
-        """What it solves at every period."""
+        """Quadratic program of every period, in the moves of the inputs."""
         self.clutch = ClutchInput(self.program, settings.inputs[CLUTCH])
         self.engine: KnownEngine | CommandedEngine = KnownEngine()
-        """The inputs."""
+        """Second input: an engine that the controller commands, or the driver's alone."""
         if authority is not None:
             rows = self.program.level_rows[ENGINE]
             self.engine = CommandedEngine(authority, rows, settings.control_steps)
@@ -83,7 +84,7 @@ class MpcController(Controller, Generic[Estimator]):
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything; the observer starts afresh from the next measurement."""
+        """Clear plan and counts; the observer starts anew with the next measurement."""
         for part in (self._solver, self.observer, self.clutch, self.engine):
             part.reset()
         self._plan = np.zeros(self.program.structure.hessian.shape[0])
@@ -98,7 +99,7 @@ class MpcController(Controller, Generic[Estimator]):
 
     def update(self, measurement: Measurement) -> Command:
         """
-        Return the first of the moves that are best over the horizon.
+        Return the first of the moves that minimise the cost over the horizon.
 
         When the solver gives no solution, the rest of the last plan is followed within the limits;
         each such step is counted and shown as `fallbacks` in `controller/status`.
@@ -132,21 +133,23 @@ class MpcController(Controller, Generic[Estimator]):
             move = clutch.nearest(level + move, level - jump) - level
         # The command, whose effect the observer predicts.
         own_torque = clutch.keep(level + move, measurement)
-        asked, delivered, said = engine.ask(engine_move, measurement, gain, solved=solved)
+        engine_request, delivered, engine_status = engine.command(
+            engine_move, measurement, gain, solved=solved
+        )
         observer.predict((max(level + move, 0.0), delivered, measurement.load_torque))
         status = (
             ('qp_status', solution.status),
             ('qp_iterations', str(solution.iterations)),
             ('fallbacks', str(self.fallbacks)),
             *estimated,
-            *said,
+            *engine_status,
         )
-        return Command(own_torque, status, asked)
+        return Command(own_torque, status, engine_request)
 
 
 def divided(measurement: Measurement, gain: float) -> Measurement:
     """
-    Return what drives the slip divided by K_usura = `gain`: C_m, C_load and the references.
+    Return a measurement with C_m, C_load and the references divided by K_usura = `gain`.
 
     Slip is linear in K_usura times the request. With these and the driveline's states divided by
     K_usura, the request obeys the equations of a new clutch.

@@ -1,4 +1,4 @@
-"""What the predictive controllers minimise: Table 4.1, Section 4.3, and what we make of them."""
+"""Costs of the predictive controllers: Table 4.1, Section 4.3, and our own variants."""
 
 import math
 from dataclasses import dataclass, replace
@@ -14,11 +14,13 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.parameters import DrivelineParameters
 
 PREDICTION_STEPS = 7
-"""T_p = 0.07 s of MPC4."""
+"""Prediction horizon of MPC4 in periods: T_p = 0.07 s."""
 SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
-"""Weights of w_d per rad/s and dw_d/dt per rad/s^2: roots, as (4.1) does not square Q."""
+"""
+Weights of w_d per rad/s and of dw_d/dt per rad/s^2: square roots, as (4.1) does not square Q.
+"""
 DEMAND_WEIGHT = 0.14
-"""Weight per N m between C_m and the demand; docs/controllers/mpc4.md has the argument."""
+"""Weight of the difference of C_m and the demand, per N m; derived in docs/controllers/mpc4.md."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +28,9 @@ class TableRow(OptionGroup):
     """One row of Table 4.1; a scenario may change all of it."""
 
     prediction_steps: int
-    """T_p in periods."""
+    """Prediction horizon T_p in periods."""
     control_steps: int
-    """T_c in periods."""
+    """Control horizon T_c in periods."""
     output_weight: float = weight(0.26, 'Q: weight per rpm of the slip error')
     final_weight: float = weight(0.0, 'P: weight per rpm of the slip error at the end')
     move_weight: float = weight(0.39, 'R: weight per N m of a move of the torque u')
@@ -36,7 +38,7 @@ class TableRow(OptionGroup):
     preview: bool = False
 
     def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
-        """Return what it means; docs/thesis/mpc_readings.md gives other readings of Q and R."""
+        """Return the row's settings; docs/thesis/mpc_readings.md has other readings of Q and R."""
         slip, at_the_end = map(rpm_from_rad_s, (self.output_weight, self.final_weight))
         return MpcSettings(
             prediction_steps=self.prediction_steps,
@@ -49,14 +51,14 @@ class TableRow(OptionGroup):
 
 TABLE_4_1 = {'mpc1': TableRow(12, 3), 'mpc2': TableRow(16, 6), 'mpc3': TableRow(22, 4)}
 BASIS = TABLE_4_1['mpc3']
-"""Whose horizon and weights our own controllers take over."""
+"""Row of Table 4.1 with the horizon and the weights of our own controllers."""
 PREVIEW = replace(BASIS, preview=True)
-"""The same with preview, as they have it."""
+"""Cost of our own controllers: `BASIS` with preview of the reference."""
 
 
 def default_torsion_weight(total_ratio: float) -> float:
     """
-    Return the weight per rpm of w_sr that prices it like slip.
+    Return the weight per rpm of w_sr at which it costs as much as slip.
 
     w_sr is a speed at the wheels; at the primary shaft, where slip is measured, it is
     `total_ratio` times as large, and there 1 rpm of either costs the same.
@@ -66,14 +68,14 @@ def default_torsion_weight(total_ratio: float) -> float:
 
 @dataclass(frozen=True)
 class TorsionCost(OptionGroup):
-    """`PREVIEW`, and w_sr as a second output."""
+    """Cost of `PREVIEW`, with w_sr as a second output."""
 
     torsion_weight: float | None = weight(
         None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`', '0.26 tau'
     )
 
     def settings(self, driveline: DrivelineParameters) -> MpcSettings:
-        """Return what its weight, or else the default for the driveline, makes of it."""
+        """Return the settings with the weight of w_sr, or the driveline's default for it."""
         per_rpm = self.torsion_weight
         if per_rpm is None:
             per_rpm = default_torsion_weight(driveline.total_ratio)
@@ -84,7 +86,7 @@ class TorsionCost(OptionGroup):
 
 @dataclass(frozen=True)
 class TwoInputCost(OptionGroup):
-    """That of MPC4: slip, its rate, and the deviation of C_m from the demand (Section 4.3)."""
+    """Cost of MPC4: slip, its rate, and the deviation of C_m from the demand (Section 4.3)."""
 
     slip_acceleration_weight: float = weight(
         SLIP_ACCELERATION_WEIGHT,
@@ -93,7 +95,7 @@ class TwoInputCost(OptionGroup):
     demand_weight: float = weight(DEMAND_WEIGHT, 'r: weight per N m between C_m and the demand')
 
     def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
-        """Return what it means; R = P = 0 and inputs are constant over the horizon."""
+        """Return the settings of this cost; R = P = 0, inputs constant over the horizon."""
         return MpcSettings(
             prediction_steps=PREDICTION_STEPS,
             control_steps=1,

@@ -25,7 +25,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 def run_start(settings: RunSettings) -> AtRest:
-    """Return how a run starts: actuator at rest, load balanced."""
+    """Return the start of a run for an observer: actuator at rest, load balanced."""
     return AtRest(
         settings.scenario.driveline.halfshaft_stiffness, initial_state(settings).torque_request
     )
@@ -51,12 +51,11 @@ def make_observer(
 
 
 @dataclass(frozen=True)
-class Knowledge(OptionGroup):
+class ObserverInputs(OptionGroup):
     """
-    What a stationary filter is told, and what its model holds.
+    Signals that a stationary filter receives, and the model that it uses.
 
-    The signals, each set with the filter that it takes, and the model; C_m and C_fOL are always
-    known.
+    Each choice of signals comes with the filter designed for it. C_m and C_fOL are always inputs.
     """
 
     measured: str = option(
@@ -78,10 +77,10 @@ class Knowledge(OptionGroup):
         self, run: RunSettings, model: TransmissionModel | None = None, *, noise_rpm: float = 1.0
     ) -> tuple[TransmissionModel, Observer]:
         """
-        Return the model that is known of, and its filter.
+        Return the model with its known inputs, and its filter.
 
-        `model` takes the place of the one that is known of; `noise_rpm` is that of w_d where it
-        is measured alone.
+        `model` replaces the model of the run's driveline; `noise_rpm` is the noise of w_d in rpm
+        where it is the only measured signal.
         """
         if model is None:
             model = transmission_model(run.scenario.driveline, delay=self.delay_in_model)
@@ -91,15 +90,15 @@ class Knowledge(OptionGroup):
         return known, make_observer(run, model, load_known=self.load_known)
 
 
-AS_DRAWN = Knowledge('slip', load_known=False, delay_in_model=False)
-"""Figure 4.2: mo is w_d, md is C_m; the plant of Section 3.2.1.3 is P_2 G_a."""
-FULL = Knowledge('speeds', load_known=True, delay_in_model=True)
-"""All that the car measures and the plant does."""
+AS_DRAWN = ObserverInputs('slip', load_known=False, delay_in_model=False)
+"""Inputs of Figure 4.2: mo is w_d, md is C_m; the plant of Section 3.2.1.3 is P_2 G_a."""
+FULL = ObserverInputs('speeds', load_known=True, delay_in_model=True)
+"""All signals that are measured in a car, and the complete model of the plant."""
 
 
 @dataclass(frozen=True)
 class DisturbanceObserver(OptionGroup):
-    """The filter that estimates constant errors of C_f and C_load too."""
+    """Filter that estimates constant errors of C_f and C_load too."""
 
     clutch_drift_n_m: float = option(
         CLUTCH_DRIFT_N_M, 'drift of the error of C_f, per period', 'N m', above=0.0, at_most=MOST
@@ -117,7 +116,7 @@ class DisturbanceObserver(OptionGroup):
 
 @dataclass(frozen=True)
 class WearEstimate(WearNoise):
-    """The filter that estimates the wear of the clutch, with the model of a new one."""
+    """Filter that estimates the wear of the clutch, with the model of a new one."""
 
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
         """Return the model with the errors of C_f and C_load, and its filter."""

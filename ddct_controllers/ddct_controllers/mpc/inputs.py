@@ -1,4 +1,4 @@
-"""What a predictive controller may ask: of the clutch, and of the engine if it commands it."""
+"""Inputs of a predictive controller: the clutch torque request, and C_m if it is commanded."""
 
 import math
 from dataclasses import replace
@@ -12,9 +12,9 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import MOST_AUTHORITY, EngineAuthority, EngineResponse
 
 CLUTCH, ENGINE = range(2)
-"""Places among the inputs."""
+"""Indices of the inputs."""
 ROOM = 1e-9
-"""Relative: levels give way by so much more than they must, or rounding may leave no request."""
+"""Additional width of levels that give way, relative: without it rounding may leave no request."""
 
 Bounds = tuple[np.ndarray, np.ndarray]
 """Lower and upper bounds of the program's rows, before their shift."""
@@ -37,12 +37,12 @@ class ClutchInput:
         self.reset()
 
     def reset(self) -> None:
-        """Ask for the open loop alone."""
+        """Start with the open loop alone."""
         self._own_torque = 0.0
         self._open_loop: float | None = None
 
     def hold(self, measurement: Measurement) -> float:
-        """Return the request in N m of the open loop alone, as the actuator is given it."""
+        """Return the request in N m of the open loop alone, cut off at 0 as in the actuator."""
         self._own_torque = 0.0
         # The rate counts from what the actuator was given.
         self._open_loop = max(measurement.open_loop_torque, 0.0)
@@ -81,22 +81,22 @@ class ClutchInput:
         return lower, upper
 
     def nearest(self, level: float, last: float) -> float:
-        """Return the request nearest to `level` in N m; `last` is the one before."""
+        """Return the allowed request nearest to `level`, N m; `last` is the request before."""
         level = min(max(level, self._lowest), self._highest)
         return min(max(level, last - self._change), last + self._change)
 
     def keep(self, request: float, measurement: Measurement) -> float:
-        """Return the controller's own part of the request in N m, and go on from it."""
+        """Return the controller's own part of the request in N m, and store the request."""
         self._own_torque = request - measurement.open_loop_torque
         self._open_loop = measurement.open_loop_torque
         return self._own_torque
 
 
 class KnownEngine:
-    """An engine that follows the driver: C_m is known, and nothing is asked of it."""
+    """An engine that follows the driver: C_m is a known input and is not commanded."""
 
     def reset(self) -> None:
-        """Do nothing."""
+        """Do nothing: there is no state."""
 
     def hold(self, measurement: Measurement) -> float:
         """Return C_m in N m over the period."""
@@ -107,27 +107,27 @@ class KnownEngine:
         return level, ahead.engine_torque, ahead.load_torque
 
     def bounds(self, bounds: Bounds, measurement: Measurement, gain: float) -> Bounds:
-        """Return the bounds as they are."""
+        """Return the bounds unchanged."""
         return bounds
 
-    def ask(
+    def command(
         self, move: list[float], measurement: Measurement, gain: float, *, solved: bool
     ) -> tuple[float | None, float, Status]:
-        """Return no request, C_m in N m, and nothing to say."""
+        """Return None for the request, C_m in N m, and no status."""
         return None, measurement.engine_torque, ()
 
 
 class CommandedEngine:
     """
-    An engine whose deviation from the driver's demand is decided.
+    An engine whose deviation from the driver's demand the program decides.
 
     The deviation's target is zero, its limits and its rate are the engine's, and the engine's lag
-    is part of the prediction. The demand is taken as constant over the horizon. What the program
-    has of these torques is divided by `gain`, which the wear gain is estimated to be.
+    is part of the prediction. The demand is taken as constant over the horizon. In the program
+    these torques are divided by `gain`, the estimated wear gain.
     """
 
     def __init__(self, authority: EngineAuthority, rows: np.ndarray, control_steps: int) -> None:
-        """Take the rows (control_steps,) of the program that limit it."""
+        """Take the rows of the program that limit the engine, (control_steps,)."""
         self._authority = authority
         self._rows = rows
         self._periods = range(1, control_steps + 1)
@@ -135,7 +135,7 @@ class CommandedEngine:
 
     @staticmethod
     def limited_by_rows(settings: MpcSettings) -> MpcSettings:
-        """Return the settings with a limit that no engine has: its rows' bounds come by period."""
+        """Return settings with limits beyond any engine's; `bounds` narrows them each period."""
         limit = 2.0 * MOST_AUTHORITY
         clutch, engine = settings.inputs
         engine = replace(engine, lowest=-limit, highest=limit, rate_n_m_s=math.inf)
@@ -145,19 +145,21 @@ class CommandedEngine:
         """Put the engine on the demand."""
         self._response = EngineResponse(self._authority)
         self.reachable = np.zeros((2, len(self._periods)))
-        """Lowest and highest deviation that may be asked in the coming periods, as divided."""
+        """
+        Lowest and highest deviation that the engine can reach by period, (2, m), N m over `gain`.
+        """
 
     def hold(self, measurement: Measurement) -> float:
-        """Return C_m in N m over the period, with the demand asked for."""
+        """Return C_m in N m over the period, with the driver's demand as the request."""
         return self._response.deliver(measurement.engine_torque, measurement.engine_torque)
 
     def known(self, level: float, ahead: Measurement, gain: float) -> tuple[float, ...]:
         """Return the demand and the deviation, both inputs before the first move, and C_load."""
-        deviation, asked = self._response.deviation / gain, self._response.requested / gain
-        return ahead.engine_torque, deviation, level, asked, ahead.load_torque
+        deviation, request = self._response.deviation / gain, self._response.requested / gain
+        return ahead.engine_torque, deviation, level, request, ahead.load_torque
 
     def bounds(self, bounds: Bounds, measurement: Measurement, gain: float) -> Bounds:
-        """Return the bounds with what the engine can reach by each period."""
+        """Return the bounds, narrowed to the deviations reachable by each period."""
         demand = measurement.engine_torque
         reachable = [self._response.reachable(demand, period) for period in self._periods]
         self.reachable = np.transpose(reachable) / gain
@@ -165,13 +167,13 @@ class CommandedEngine:
         lower[self._rows], upper[self._rows] = self.reachable
         return lower, upper
 
-    def ask(
+    def command(
         self, move: list[float], measurement: Measurement, gain: float, *, solved: bool
     ) -> tuple[float | None, float, Status]:
         """
-        Return the request for C_m, the C_m that comes, in N m, and how far this is off the demand.
+        Return the request for C_m and the C_m that follows in N m, and the deviation as status.
 
-        A move that is not of a solution is cut off at what the engine can reach.
+        A move that is not of a solution is limited to what the engine can reach.
         """
         demand, before, change = measurement.engine_torque, self._response.requested, move[0]
         if not solved:

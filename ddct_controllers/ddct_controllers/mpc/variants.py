@@ -1,4 +1,4 @@
-"""The predictive controllers by their names in the registry: what each is composed of."""
+"""The predictive controllers by their names in the registry, with cost and estimator of each."""
 
 from collections.abc import Collection
 
@@ -9,7 +9,7 @@ from ddct_controllers.mpc.estimators import (
     AS_DRAWN,
     FULL,
     DisturbanceObserver,
-    Knowledge,
+    ObserverInputs,
     WearEstimate,
 )
 from ddct_controllers.mpc.program.settings import program_options, with_options
@@ -22,15 +22,16 @@ Predictive = ControllerSpec[MpcController]
 def predictive(
     name: str,
     cost: TableRow | TorsionCost | TwoInputCost,
-    estimate: Knowledge | DisturbanceObserver | WearEstimate,
+    estimate: ObserverInputs | DisturbanceObserver | WearEstimate,
     *,
     fixed: Collection[OptionGroup] = (),
     commands_engine: bool = False,
 ) -> Predictive:
     """
-    Compose a controller: the program follows from the cost, and the model of the estimate.
+    Compose a controller: the program follows from the cost, and the model from the estimator.
 
-    A scenario may change what of both is not `fixed`, and the program.
+    A scenario may change the options of horizon, limits and solver, and those of cost and
+    estimator that are not `fixed`.
     """
 
     def make(context: ControllerContext) -> MpcController:
@@ -68,4 +69,4 @@ PREDICTIVE: dict[str, Predictive] = {
         ),
     )
 }
-"""The thesis's first."""
+"""Specifications of the predictive controllers by name, the thesis's first."""

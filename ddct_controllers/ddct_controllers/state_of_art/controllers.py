@@ -6,4 +6,4 @@ from ddct_controllers.state_of_art import lqi, pedal_mpc, two_speeds
 STATE_OF_ART: dict[str, ControllerSpec[Controller]] = {
     spec.name: spec for spec in (*two_speeds.SPECS, pedal_mpc.SPEC, lqi.SPEC)
 }
-"""[2], [3] and [4] of the thesis, then LQI."""
+"""Specifications by name: [2], [3] and [4] of the thesis, then LQI."""

@@ -26,9 +26,11 @@ OPTIONS = {
         at_most=8.0,
     ),
 }
-"""Tested to be stable at wear gains from 0.7 to 1.3."""
+"""Options of the controller; tested to be stable at wear gains from 0.7 to 1.3."""
 NOISE = NoiseLevels(engine_torque_n_m=30.0, clutch_torque_n_m=30.0)
-"""Both torques are known to a tenth of 300 N m; a filter that trusts them more is fragile."""
+"""
+Noise levels of the filter: both torques to a tenth of 300 N m; with less the loop is fragile.
+"""
 
 
 def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) -> StateSpace:
@@ -68,8 +70,8 @@ def slip_model(parameters: DrivelineParameters) -> StateSpace:
 
     u = [C_m, C_f, C_load] in N m.
 
-    c_m and c_prim are left out: they act on absolute speeds, which slip does not show, and only
-    move a pole from 0 to -0.007 1/s. What they brake is a constant torque to this model.
+    c_m and c_prim are left out: they act on absolute speeds, on which slip does not depend, and
+    only move a pole from 0 to -0.007 1/s. Their drag is a constant torque to this model.
     """
     p = parameters
     tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness

@@ -1,4 +1,4 @@
-"""Finite-horizon control of the clutch torque, as long as the pedal asks, after [4]."""
+"""Finite-horizon control of the clutch torque over a time set by the pedal, after [4]."""
 
 from dataclasses import dataclass
 
@@ -39,11 +39,11 @@ OPTIONS = {
         at_most=5.0,
     ),
 }
-"""0.3 s is seven times what delay and actuator take."""
+"""Options of the controller; 0.3 s is seven times the lag of delay and actuator."""
 SHORTEST_SHARE = 3
-"""The horizon shrinks to this part of the engagement time and then stays."""
+"""Share of the engagement time at which the shrinking horizon stays, without unit."""
 MOVES = 10
-"""Spread evenly over the horizon, with a constant request between them."""
+"""Number of moves, spread evenly over the horizon, with a constant request between them."""
 SLIP_WEIGHT = 100.0
 """Weight of the slip at the end, in N m per rad/s: 0.1 rad/s costs as much as 10 N m."""
 ACCELERATION_WEIGHT = 5.0
@@ -52,13 +52,13 @@ ACCELERATION_WEIGHT = 5.0
 
 class PedalMpc(Controller):
     """
-    The request that engages within the pedal's time with the least squared moves.
+    Request that engages within the pedal's time with the least squared moves.
 
-    The horizon t_r begins as the engagement time t_f(x_p), shrinks with the time that is left
-    down to t_f/3, and then recedes. At its end slip and its rate shall be zero. C_m is known and
-    left alone; it, C_load and two estimated disturbances are taken as constant. Until control
-    starts the slip wanted is the reference's, over the shortest horizon; then the reference has no
-    say.
+    The horizon t_r begins as the engagement time t_f(x_p), shrinks with the time that is left down
+    to t_f/3, and then recedes. At its end slip and its rate shall be zero. C_m is a known input
+    and not commanded; it, C_load and two estimated disturbances are taken as constant. Until
+    control starts the desired slip is the reference's, over the shortest horizon; from then on the
+    reference has no effect.
     """
 
     def __init__(self, context: ControllerContext) -> None:
@@ -73,7 +73,7 @@ class PedalMpc(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Forget the estimate, the last request and every warm start."""
+        """Clear the estimate, the last request and every warm start."""
         self._observer.reset()
         self._request: float | None = None
         self._fallbacks = 0
@@ -86,7 +86,7 @@ class PedalMpc(Controller):
         self._advance(measurement, max(measurement.open_loop_torque, 0.0))
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the first move of the best request."""
+        """Return the first move of the optimal request."""
         state = self._observer.correct(measured_speeds(measurement), measurement.load_torque)
         horizon, slip = self._horizon_and_slip(measurement)
         before = self._request
@@ -116,7 +116,7 @@ class PedalMpc(Controller):
         )
 
     def _horizon_and_slip(self, measurement: Measurement) -> tuple[int, float]:
-        """Return t_r in periods and the slip wanted at its end in rad/s."""
+        """Return t_r in periods and the desired slip at its end in rad/s."""
         since_start = measurement.step - self._start_step
         if since_start < 0:
             return self._shortest, measurement.slip_reference[0]
@@ -131,8 +131,8 @@ def engagement_time_s(context: ControllerContext) -> float:
     """
     Return t_f(x_p) = slowest + x_p (fastest - slowest) in s, x_p the scenario's pedal position.
 
-    The thesis says that t_r is a function of the engagement time and this of the pedal, and gives
-    neither: this line, and t_r above, are assumptions.
+    In the thesis t_r is a function of the engagement time and this of the pedal, both without a
+    formula: this line, and t_r above, are assumptions.
     """
     slowest, fastest = SPEC.values(context.gains).values()
     if fastest > slowest:
@@ -148,13 +148,13 @@ class EngagementProgram:
     """
     Minimise the squared moves of the request plus the squared weighted deviations at the end.
 
-    The deviations are those of the slip from what is wanted and of its rate over the last period
-    from zero. With v = (state, request before, C_m, C_load, slip wanted), f = gradient @ v; the
+    The deviations are those of the slip from the desired one and of its rate over the last period
+    from zero. With v = (state, request before, C_m, C_load, desired slip), f = gradient @ v; the
     constrained rows are the request's levels less the request before.
     """
 
     gradient: np.ndarray
-    """(MOVES, states + 4)."""
+    """Map from v to the linear cost f, (MOVES, states + 4)."""
     solver: QpBackend
 
 

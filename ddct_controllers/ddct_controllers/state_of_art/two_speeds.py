@@ -25,7 +25,7 @@ class TwoSpeeds(Controller):
         self._engine = EngineShare(self._clutch.transmission, authority, fast_rad_s)
 
     def reset(self) -> None:
-        """Forget the plan, empty both integrals, put actuator and engine to rest."""
+        """Clear the plan, empty both integrals, put actuator and engine at rest."""
         self._clutch.reset()
         self._engine.reset()
 
@@ -35,10 +35,10 @@ class TorqueEstimatorControl(TwoSpeeds):
     Clutch and engine speed follow references, each with a torque of its own.
 
     The shaft follows w_p* = w_m* - w_d*: C_f = C_load/tau + J_eq (dw_p*/dt + PID(w_p* - w_p)),
-    less what the clutch is estimated to transmit beyond the actuator's model, as far as
-    `SlowClutch` passes it. The engine follows w_p + w_d*: its loop gives the difference
-    C_m - C_f = J_m (dw_p/dt + dw_d*/dt + PID(w_p + w_d* - w_m)), which is added to the estimated
-    C_f; dw_p/dt is that of the rigid transmission with this C_f. The shaft's loop waits while the
+    less the torque that the clutch is estimated to transmit beyond the actuator's model, as far as
+    `SlowClutch` passes it. The engine follows w_p + w_d*: its loop gives the difference C_m - C_f
+    = J_m (dw_p/dt + dw_d*/dt + PID(w_p + w_d* - w_m)), which is added to the estimated C_f;
+    dw_p/dt is that of the rigid transmission with this C_f. The shaft's loop waits while the
     engine is at its limit.
     """
 
@@ -53,7 +53,7 @@ class TorqueEstimatorControl(TwoSpeeds):
         )
 
     def reset(self) -> None:
-        """Forget the estimate too."""
+        """Reset both loops and clear the estimate."""
         super().reset()
         self._estimator.reset()
 
@@ -98,11 +98,11 @@ class DecoupledPid(TwoSpeeds):
     Two PIDs whose outputs are the accelerations of engine and slip, and a decoupler.
 
     a_m = dw_m*/dt + PID(w_m* - w_m) and a_d = dw_d*/dt + PID(w_d* - w_d). The clutch gives the
-    shaft a_m - dw_d*/dt, as far as `SlowClutch` passes it, and the engine gives the slip a_d:
-    C_m = C_f + J_m ((C_f - C_load/tau)/J_eq + a_d), with the C_f that the actuator's model gives
-    for the period. So the first PID does not move the slip, and the lag of the clutch neither.
-    What the second does to the engine speed the first makes good; it waits while the engine is at
-    its limit.
+    shaft a_m - dw_d*/dt, as far as `SlowClutch` passes it, and the engine gives the slip a_d: C_m
+    = C_f + J_m ((C_f - C_load/tau)/J_eq + a_d), with the C_f of the actuator's model for the
+    period. So neither the first PID nor the lag of the clutch moves the slip. The first PID
+    compensates the effect of the second on the engine speed; it waits while the engine is at its
+    limit.
     """
 
     def __init__(self, context: ControllerContext) -> None:
@@ -185,7 +185,8 @@ SPECS = (
     ),
 )
 """
-[2] and [3] of the thesis.
+Specifications of [2] and [3] of the thesis by name.
 
-Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md says why.
+Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md has the
+reasons.
 """

@@ -1,1 +1,1 @@
-"""A package for a controller of one's own: what `new-controller` writes."""
+"""Template of a package for a controller of one's own, as `new-controller` writes it."""

@@ -21,7 +21,7 @@ FILES = {
     'src/{name}.py': 'controller.py.in',
     'test_{name}.py': 'test_controller.py.in',
 }
-"""What is written, by its name, and the template of it."""
+"""Templates by the name of the file that is written."""
 _EPILOG = """\
 examples:
   ddct new-controller my_slip --out my_slip
@@ -69,7 +69,7 @@ def require_free_name(name: str) -> None:
 
 
 def _is_module(name: str) -> bool:
-    """Say whether Python finds a module of that name, other than a mere folder."""
+    """Return whether Python finds a module of that name, other than a mere folder."""
     found = find_spec(name)
     return found is not None and found.origin is not None
 
@@ -78,9 +78,9 @@ def install_command(folder: str) -> str:
     """
     Return the line that installs `folder` linked, so that an edited file runs at once.
 
-    Nothing is fetched: the build uses the environment's own setuptools. uv is taken where it is in
-    the environment, as on the wheel path, or where that has no pip; Ubuntu's Python wants to be
-    told that it may be added to.
+    Nothing is fetched: the build uses the environment's own setuptools. uv is used where it is in
+    the environment, as on the wheel path, or where that has no pip; pip needs an option to install
+    into Ubuntu's Python.
     """
     linked = f'--no-build-isolation -e {folder}'
     uv = Path(sys.prefix) / 'bin' / 'uv'

@@ -1,1 +1,1 @@
-"""Program `design`: from specifications to a verified controller, and what it can bear."""
+"""Program `design`: from specifications to a verified controller, and its robustness."""

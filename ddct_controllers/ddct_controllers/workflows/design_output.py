@@ -1,4 +1,4 @@
-"""What both design methods share: options, a name that is free, tables, JSON, and the files."""
+"""Common parts of both design methods: options, a free name, tables, JSON, and the files."""
 
 import argparse
 from collections.abc import Iterable, Mapping
@@ -16,7 +16,7 @@ from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.table import Table, print_tables
 
 OptionTable = Mapping[str, Mapping[str, Any]]
-"""What `add_argument` takes, by the option's name."""
+"""Arguments of `add_argument` by the option's name."""
 _OPTIONS: OptionTable = {
     '--rise-time': {'type': float, 'metavar': 'S', 'help': 'longest rise time'},
     '--overshoot': {'type': float, 'metavar': 'PERCENT', 'help': 'largest overshoot'},
@@ -32,16 +32,16 @@ _OPTIONS: OptionTable = {
 
 
 def add_design_options(parser: argparse.ArgumentParser, own: OptionTable) -> None:
-    """Add a method's own options, specifications, and what to write; None is what is not given."""
+    """Add a method's own options, specifications, and outputs; None is an option not set."""
     for name, settings in {**own, **_OPTIONS}.items():
         parser.add_argument(name, **settings)
 
 
 def free_name(options: argparse.Namespace) -> str:
     """
-    Return the design's name, checked before the work; raise DdctError when it cannot be kept.
+    Return the design's name, checked before the work; raise DdctError when it is taken.
 
-    `--overwrite` replaces only a file that holds a designed controller.
+    `--overwrite` replaces only a file of a designed controller.
     """
     name: str = 'mine' if options.name is None else options.name
     require_name(name)
@@ -56,14 +56,14 @@ def free_name(options: argparse.Namespace) -> str:
 
 
 def show(options: argparse.Namespace, tables: Iterable[Table], record: Mapping[str, Any]) -> None:
-    """Print the tables unless standard output is for the JSON, and write that if asked for."""
+    """Print the tables unless standard output is for the JSON, and write that if requested."""
     show_and_write(options.json, record, partial(print_tables, tables))
 
 
 def write_design(
     options: argparse.Namespace, designed: DesignedController, specifications: TimeSpecifications
 ) -> None:
-    """Write charts and, last, the controller, if asked for; raise DdctError on failure."""
+    """Write charts and, last, the controller, if requested; raise DdctError on failure."""
     path = _path(options, designed.name)
     if not path:
         return

@@ -1,7 +1,7 @@
 """
-What the sampled loops of controllers can bear: plain values for JSON, and lines before a run.
+Robustness of the sampled loops of controllers: values for JSON, and lines before a run.
 
-The lines also tell what a linear controller in a file is.
+The lines also describe a linear controller in a file.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
 Evidence = dict[str, Any]
-"""None where nothing limits a margin, or where the loop is unstable and has none."""
+"""Plain values by name; a margin is None where nothing limits it, or the loop is unstable."""
 _DIGITS = 6
 _MARGINS = (
     ('gain margin', LOOP_FIGURE_OF['gain_margin_db']),
@@ -47,8 +47,8 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     Return `conditions` and one entry per controller, in their order.
 
     Driveline and actuator are the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3.
-    A controller that is not linear has an entry that says so. Raise DdctError for one that cannot
-    be built or whose `linear_model` cannot be used.
+    A controller that is not linear has an entry with that reason. Raise DdctError for one that
+    cannot be built or whose `linear_model` cannot be used.
     """
     scenario = settings.scenario
     corners = PlantCorners(scenario.driveline, scenario.actuator)
@@ -68,7 +68,7 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
 
 
 def actuator_conditions(actuator: ActuatorParameters) -> Evidence:
-    """Return which of the `conditions` are those of the actuator."""
+    """Return the entries of `conditions` that describe the actuator."""
     return {'delay_s': actuator.delay_s, 'bandwidth_factor': actuator.bandwidth_factor}
 
 
@@ -97,7 +97,7 @@ def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCo
 
 
 def _linear_model(name: str, controller: Controller) -> StateSpace | None:
-    """Return the model; raise DdctError for what no loop can be closed with."""
+    """Return the model; raise DdctError for one with which no loop can be closed."""
     try:
         model: object = controller.linear_model()
     except FOREIGN_FAILURES as error:
@@ -195,12 +195,12 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
             '(the run goes on)'
         )
     margins = loop_margins(loop).plain()
-    told = (f'{words} {figure.cell(margins)} {figure.unit}' for words, figure in _MARGINS)
-    return f'{where} is stable: {", ".join(told)}'
+    texts = (f'{words} {figure.cell(margins)} {figure.unit}' for words, figure in _MARGINS)
+    return f'{where} is stable: {", ".join(texts)}'
 
 
 def formula(function: FactoredTransferFunction, variable: str) -> str:
-    """Return a transfer function as a reader writes it."""
+    """Return a transfer function as text for a reader."""
     numerator, denominator = (
         factors_text(side, variable, _DIGITS)
         for side in (function.numerator, function.denominator)

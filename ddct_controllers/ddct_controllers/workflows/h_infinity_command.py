@@ -12,8 +12,8 @@ from ddct_controllers.design.h_infinity.recipes import (
 )
 from ddct_controllers.design.h_infinity.report import (
     design_record,
-    lacks,
     provenance,
+    shortfalls,
     uncertainty_record,
 )
 from ddct_controllers.design.h_infinity.tables import design_tables
@@ -99,11 +99,11 @@ def run(options: argparse.Namespace) -> int:
     design = design_h_infinity(weights, method=options.method)
     uncertainty = uncertainty_record()
     record = design_record(name, options.weights, specifications, design, PlantCorners())
-    missing = lacks(record)
+    missing = shortfalls(record)
     tables = design_tables([record], uncertainty)
     show(options, tables.values(), record | {'uncertainty': uncertainty, 'lacks': missing})
     if missing:
-        _tell(options, name, '; '.join(missing))
+        _report_shortfall(options, name, '; '.join(missing))
     origin = provenance(options.weights, specifications, design) | {'lacks': missing}
     discretisation = BILINEAR if weights.sampled else HOLD
     designed = DesignedController(name, design.cleaned, origin, discretisation)
@@ -111,10 +111,10 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _tell(options: argparse.Namespace, name: str, missing: str) -> None:
-    """Say how a design falls short; raise DdctError if the user has asked for that design."""
-    asked = (options.rise_time, options.overshoot, options.out)
-    if any(each is not None for each in asked) and not options.write_anyway:
+def _report_shortfall(options: argparse.Namespace, name: str, missing: str) -> None:
+    """Print how a design falls short; raise DdctError if the user requested that design."""
+    requested = (options.rise_time, options.overshoot, options.out)
+    if any(each is not None for each in requested) and not options.write_anyway:
         raise DdctError(
             f'{name} falls short: {missing}: ask for less, choose other weights, or add '
             '--write-anyway'

@@ -39,7 +39,7 @@ examples:
   ddct design loop-shaping --rise-time 0.3 --overshoot 10 --name quick --out designs
   ddct compare --controllers ls8,designs/quick.yaml --headless --out runs/quick"""
 _DISTURBANCES = {'none': None, 'step': 0, 'ramp': 1}
-"""h_p of the engine torque that must leave no error; without one G_c gets no integrator."""
+"""Order h_p of the engine torque that must leave no error; without one G_c has no integrator."""
 _OPTIONS: OptionTable = {
     '--disturbance': {
         'choices': _DISTURBANCES,

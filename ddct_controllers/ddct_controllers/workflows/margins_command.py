@@ -53,8 +53,8 @@ def run(options: argparse.Namespace) -> int:
     every = options.controller == 'all'
     labels = [] if every else [controller_label(options.controller)]
     require_known_controllers(settings.scenario, labels)
-    tell = partial(complain, 'ddct design')
-    names = working_controllers(settings, tell) if every else [options.controller]
+    report = partial(complain, 'ddct design')
+    names = working_controllers(settings, report) if every else [options.controller]
     evidence = frequency_evidence(names, settings)
     if not any(entry['linear'] for entry in evidence['controllers']):
         raise DdctError(
@@ -73,7 +73,7 @@ def _show(evidence: Evidence, settings: RunSettings) -> None:
 
 
 def margins_table(evidence: Evidence, settings: RunSettings) -> Table:
-    """Return a row of figures for each linear controller of `frequency_evidence`."""
+    """Return a row of quantities for each linear controller of `frequency_evidence`."""
     scenario = settings.scenario
     changed = scenario_title(scenario.name, changed_values(scenario))
     headers = (

@@ -31,7 +31,7 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
     Return the linear plant with its names and units, plain enough for JSON.
 
     `transfer_functions` have the factors that the thesis prints, and polynomials with the highest
-    power first. `c_fol` holds the factors of the static torque: C_fOL is their sum of products.
+    power first. `c_fol` has the factors of the static torque: C_fOL is their sum of products.
     """
     driveline = scenario.driveline
     model = driveline_matrices(driveline)

@@ -31,7 +31,7 @@ STATIC_GAINS = [constant_slip_torque(DRIVELINE, *unit) for unit in ((1.0, 0.0), 
 STATIC = StateSpace(
     np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([STATIC_GAINS]), PERIOD_S
 )
-"""The static controller's C_fOL, which knows of no actuator."""
+"""Static controller with its torque C_fOL, without a model of the actuator."""
 HORIZON_STEPS = 200
 CORNERS = [
     replace(DRIVELINE, **{name: factor * getattr(DRIVELINE, name)})
@@ -48,7 +48,7 @@ def response(model: StateSpace, inputs: np.ndarray, state: np.ndarray | float = 
 
 
 def slip(model: StateSpace, inputs: np.ndarray) -> np.ndarray:
-    """Return w_d in rad/s that the filter leaves of [C_m, C_load] (N, 2), without drags."""
+    """Return w_d in rad/s that remains with the filter for [C_m, C_load] (N, 2), without drags."""
     paths = (engine_to_slip(WITHOUT_DRAGS), load_to_slip(WITHOUT_DRAGS))
     disturbed = sum(
         response(discretise_zoh(path.to_state_space(), PERIOD_S), inputs[:, [column]])
@@ -59,7 +59,7 @@ def slip(model: StateSpace, inputs: np.ndarray) -> np.ndarray:
 
 
 def ramp_and_step() -> dict[str, np.ndarray]:
-    """Return [C_m, C_load] of an engine torque that starts to rise, and of a load that comes."""
+    """Return [C_m, C_load] with an engine torque that starts to rise, and a step of the load."""
     steps = np.arange(HORIZON_STEPS)
     nothing = np.zeros(HORIZON_STEPS)
     return {
@@ -88,7 +88,7 @@ def least_squares_request(inputs: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize('case', ['engine ramp', 'load step'])
-def test_it_gives_the_least_squares_request_although_it_sees_nothing_ahead(case):
+def test_it_gives_the_least_squares_request_without_future_values(case):
     inputs = ramp_and_step()[case]
     request, best = response(FILTER, inputs), least_squares_request(inputs)
     scale = np.abs(best[:60]).max()
@@ -147,8 +147,8 @@ def test_a_run_under_constant_torque_starts_as_if_the_torque_had_never_risen():
     """
     Its first request is the direct gain of the level alone, without that of a rise.
 
-    A filter from zero would take the first torque for a step of 250 N m within a period and ask
-    for more; the settled request is the static one in both cases.
+    A filter from zero would take the first torque for a step of 250 N m within a period and
+    request more; the settled request is the static one in both cases.
     """
     feedforward = Feedforward(DRIVELINE)
     requests = [feedforward.update(250.0, 60.0) for _ in range(400)]

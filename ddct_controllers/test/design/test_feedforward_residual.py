@@ -1,4 +1,4 @@
-"""What effect of a disturbance on the slip the feedforward leaves, and what the page says."""
+"""The effect of disturbances on the slip with feedforward, and the page's table of it."""
 
 from dataclasses import replace
 
@@ -39,6 +39,6 @@ def test_without_a_filter_the_residual_is_one():
 
 
 def test_the_table_of_residuals():
-    """After a change: make docs KINDS=feedforward."""
+    """Update it by: make docs KINDS=feedforward."""
     computed = as_markdown({'residual': residuals()})
     assert shown_tables('feedforward')['residual'] == computed['residual']

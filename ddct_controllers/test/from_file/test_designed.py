@@ -74,7 +74,7 @@ def test_it_may_not_take_the_name_of_another_controller(write):
         ('method: by hand', 'a: ' + '9' * 5000, 'a number of 5000 digits'),
     ],
 )
-def test_what_cannot_be_used_is_named_with_its_file(write, old, new, complaint):
+def test_an_unusable_content_is_named_with_its_file(write, old, new, complaint):
     assert old in TEXT
     file = write(TEXT.replace(old, new))
     with pytest.raises(DdctError, match=f'controller file {file}: .*{complaint}'):

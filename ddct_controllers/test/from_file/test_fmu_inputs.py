@@ -1,4 +1,4 @@
-"""Each input of an FMU is given the signal that its file names; no FMU is needed to see it."""
+"""Each input of an FMU receives the signal that its file names; no FMU is needed."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from ddct_controllers.from_file import fmu
-from ddct_controllers.from_file.fmu_unit import Fed
+from ddct_controllers.from_file.fmu_unit import FmuInput
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
@@ -27,8 +27,8 @@ NOW = Measurement(
     load_torque=64.0,
     open_loop_torque=105.0,
 )
-"""No two of its numbers are alike."""
-GIVEN = {
+"""A measurement of which no two numbers are equal."""
+SIGNALS = {
     'slip_error_rpm': rpm_from_rad_s(31.0 - (211.0 - 173.0)),
     'slip_speed_rad_s': 38.0,
     'engine_speed_rad_s': 211.0,
@@ -45,27 +45,27 @@ GIVEN = {
     'slip_reference_rate_rad_s2': -200.0,
     'slip_reference_rate_rad_s2[2]': -400.0,
 }
-"""What each name of a file stands for in that measurement."""
+"""Value of each signal in that measurement, by its name in a file."""
 
 
 @pytest.fixture
-def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Return a function that gives what the inputs in a file become."""
+def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return a function that returns the inputs of an FMU for the signals in a file."""
 
     def variable(name: str, causality: str) -> SimpleNamespace:
         return SimpleNamespace(
             name=name, causality=causality, type='Real', unit=None, declaredType=None, shape=()
         )
 
-    def inputs(*names: str) -> list[Fed]:
-        taken: list[Fed] = []
+    def inputs(*names: str) -> list[FmuInput]:
+        found_inputs: list[FmuInput] = []
         known = {f'x{i}': variable(f'x{i}', 'input') for i in range(len(names))}
         known['u'] = variable('u', 'output')
         unit = SimpleNamespace(path=tmp_path / 'mine.fmu', variables=known)
         monkeypatch.setattr(fmu, 'Fmu', lambda path: unit)
 
-        def controller(file: object, unit: object, fed: list[Fed], *_: object) -> Any:
-            taken.extend(fed)
+        def controller(file: object, unit: object, inputs: list[FmuInput], *_: object) -> Any:
+            found_inputs.extend(inputs)
             return SimpleNamespace()
 
         monkeypatch.setattr(fmu, 'FmuController', controller)
@@ -77,20 +77,20 @@ def fed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             'outputs: {u: clutch_torque_n_m}}\n'
         )
         make_controller(str(file), SETTINGS)
-        return taken
+        return found_inputs
 
     return inputs
 
 
-def test_every_name_is_known_here() -> None:
-    assert {name.partition('[')[0] for name in GIVEN} == {*fmu.SCALARS, *fmu.AHEAD}
+def test_the_names_above_are_all_the_names() -> None:
+    assert {name.partition('[')[0] for name in SIGNALS} == {*fmu.SCALARS, *fmu.AHEAD}
 
 
-def test_each_input_is_given_what_its_name_says(fed: Any) -> None:
-    taken = fed(*GIVEN)
-    assert [each.variable.name for each in taken] == [f'x{i}' for i in range(len(GIVEN))]
-    found = dict(zip(GIVEN, (each.read(NOW) for each in taken), strict=True))
-    assert found == pytest.approx(GIVEN)
+def test_each_input_receives_the_signal_of_its_name(inputs_in_file: Any) -> None:
+    found_inputs = inputs_in_file(*SIGNALS)
+    assert [each.variable.name for each in found_inputs] == [f'x{i}' for i in range(len(SIGNALS))]
+    found = dict(zip(SIGNALS, (each.read(NOW) for each in found_inputs), strict=True))
+    assert found == pytest.approx(SIGNALS)
 
 
 @pytest.mark.parametrize(
@@ -102,5 +102,5 @@ def test_each_input_is_given_what_its_name_says(fed: Any) -> None:
         ('open_loop_torque_n_m', 0),
     ],
 )
-def test_the_preview_is_as_long_as_the_index_says(fed: Any, name: str, ahead: int) -> None:
-    assert [each.ahead for each in fed(name)] == [ahead]
+def test_the_preview_is_as_long_as_the_index(inputs_in_file: Any, name: str, ahead: int) -> None:
+    assert [each.ahead for each in inputs_in_file(name)] == [ahead]

@@ -1,4 +1,4 @@
-"""One table decides what a controller file is."""
+"""One table defines the kinds of controller files."""
 
 import hashlib
 import re
@@ -42,7 +42,7 @@ CHOICES = ', '.join(KINDS)
         ),
     ],
 )
-def test_a_file_of_none_or_two_kinds_says_the_line_and_the_choices(tmp_path, text, complaint):
+def test_the_error_for_a_file_of_no_or_two_kinds_has_line_and_choices(tmp_path, text, complaint):
     path = tmp_path / 'mine.yaml'
     path.write_text(text)
     with pytest.raises(ParameterError, match=re.escape(f'controller file {path}: {complaint}')):
@@ -53,20 +53,20 @@ def sha256(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def test_a_linear_controller_is_known_by_the_digest_of_its_file(tmp_path):
+def test_a_linear_controller_is_identified_by_the_digest_of_its_file(tmp_path):
     path = tmp_path / 'mine.yaml'
     path.write_bytes(
         b'name: mine\r\nunits: {input: rpm, output: N m}\r\n'
         b'polynomial: {num: [-0.1, -1.0], den: [1.0, 0.0]}  # \xc3\xa9\n'
     )
-    told = make_controller(str(path), SETTINGS).info('mine')
-    assert told['controller_file_sha256'] == sha256(path)
+    info = make_controller(str(path), SETTINGS).info('mine')
+    assert info['controller_file_sha256'] == sha256(path)
     path.write_text(path.read_text().replace('-0.1', '-0.2'))
     again = make_controller(str(path), SETTINGS).info('mine')
-    assert again['controller_file_sha256'] == sha256(path) != told['controller_file_sha256']
+    assert again['controller_file_sha256'] == sha256(path) != info['controller_file_sha256']
 
 
-def test_a_library_is_known_by_its_digest_beside_that_of_the_file_that_names_it(tmp_path):
+def test_a_library_is_identified_by_its_digest_beside_that_of_its_file(tmp_path):
     path, library = tmp_path / 'mine.yaml', tmp_path / 'mine.so'
     path.write_text('name: mine\nc_library: {file: mine.so}\n')
     library.write_bytes(b'\x7fELF\x00\xff')

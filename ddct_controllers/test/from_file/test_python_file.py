@@ -54,7 +54,7 @@ def test_it_is_called_as_its_class_and_takes_its_options(file: Path) -> None:
         )
 
 
-def test_it_is_known_by_the_digest_of_its_file_and_an_edit_counts_at_once(file: Path) -> None:
+def test_it_is_identified_by_the_digest_of_its_file_and_an_edit_counts_at_once(file: Path) -> None:
     for text in (HEAD + CLASS, (HEAD + CLASS).replace('0.1', '0.2')):
         file.write_bytes(text.replace('\n', '\r\n').encode())
         made = make_controller(str(file), SETTINGS)
@@ -100,7 +100,9 @@ def test_the_class_is_the_one_controller_that_the_file_defines(file: Path, more:
         ('raise SystemExit(3)\n', 'it cannot be loaded (SystemExit: 3, in '),
     ],
 )
-def test_what_is_no_controller_says_why_in_one_line(file: Path, text: str, complaint: str) -> None:
+def test_a_file_without_a_controller_is_an_error_of_one_line(
+    file: Path, text: str, complaint: str
+) -> None:
     file.write_text(text)
     with pytest.raises(DdctError) as caught:
         controller_spec(str(file))
@@ -119,7 +121,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
         controller_spec(str(tmp_path / 'mine.py'))
 
 
-def test_what_it_does_wrong_is_found_with_its_line(file: Path) -> None:
+def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
     assert {each.state for each in check_controller(str(file), SETTINGS)} <= {PASS, 'skipped'}
     file.write_text((HEAD + CLASS).replace('-self.gain', 'self.gain'))
     found = {each.name: each.detail for each in check_controller(str(file), SETTINGS)}

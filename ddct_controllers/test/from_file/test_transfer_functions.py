@@ -1,4 +1,4 @@
-"""Four forms of one controller are one controller; what cannot run names its line."""
+"""Four forms of one controller are one controller; errors name the line."""
 
 import re
 
@@ -65,7 +65,7 @@ def test_every_form_is_the_same_controller_as_scipy_samples_it(model, kind, meth
     np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
-def test_hold_is_what_runs_where_the_file_does_not_say(model):
+def test_zero_order_hold_is_the_default_discretisation(model):
     text = forms(LS8.zeros, LS8.poles, LS8.gain)['polynomial']
     held = model(f'{text}discretisation: hold\n')
     for name in 'abcd':
@@ -148,7 +148,9 @@ STATES = 'state_space:\n  a: [[0, 1], [-2, -3]]\n  b: [0, 1]\n  c: [4, 5]\n  d: 
         (STATES, 'd: 0', 'd: .inf', 7, 'state_space.d is inf'),
     ],
 )
-def test_what_cannot_run_is_named_with_file_and_line(write, text, old, new, line, complaint):
+def test_a_controller_that_cannot_run_is_named_with_file_and_line(
+    write, text, old, new, line, complaint
+):
     assert old in text
     file = write(HEAD + text.replace(old, new))
     with pytest.raises(ParameterError, match=re.escape(complaint)) as caught:
@@ -158,7 +160,7 @@ def test_what_cannot_run_is_named_with_file_and_line(write, text, old, new, line
 
 
 @pytest.mark.parametrize('units', ['{input: rad/s, output: N m}', '{input: rpm}', 'rpm', ''])
-def test_a_file_says_the_units_of_the_loop_or_is_refused(write, units):
+def test_a_file_states_the_units_of_the_loop_or_is_refused(write, units):
     text = f'name: mine\nunits: {units}\n{POLYNOMIAL}'
     with pytest.raises(DdctError, match='line 2: units are .* convert the controller to'):
         make_controller(write(text), SETTINGS)

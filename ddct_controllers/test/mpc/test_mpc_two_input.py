@@ -1,4 +1,4 @@
-"""Two inputs: predicted with the engine, within its limits, and told to the filter."""
+"""Two inputs: prediction with the engine, its limits, and its torque as input of the filter."""
 
 import math
 from dataclasses import replace
@@ -35,7 +35,7 @@ FREE = EngineAuthority()
 START = RUN.scenario.control_start_step
 STIFFNESS = RUN.scenario.driveline.halfshaft_stiffness
 DEMAND = RUN.scenario.engine.torque_n_m[-1]
-"""From before control start on."""
+"""Driver's demand in N m, from before control start on."""
 FACTORIES = {'mpc4': PREDICTIVE['mpc4'], 'mpc4_wear': PREDICTIVE['mpc4_wear']}
 
 
@@ -44,7 +44,7 @@ def controller(authority=FREE, settings=MPC4):
 
 
 class Vehicle:
-    """The thesis's vehicle as far as its sampled model goes, at control start after `drive_to`."""
+    """The thesis's vehicle by its sampled model, at control start after `drive_to`."""
 
     def __init__(self, authority=FREE):
         scenario = RUN.scenario
@@ -57,7 +57,7 @@ class Vehicle:
         self.start_slip = 0.0
 
     def measure(self, rate=-110.0, length=8):
-        """Return the measurement of now; the reference falls from the slip at control start."""
+        """Return the present measurement; the reference falls from the slip at control start."""
         w_m, w_p, w_r = self.state[:3]
         demand = self.demand_at(self.step)
         ahead = 0.01 * (max(self.step - START, 0) + np.arange(length))
@@ -100,7 +100,7 @@ class Vehicle:
 
 
 def answers(mpc, authority=FREE, steps=12):
-    """Return the first answers after control start, engaged in the loop."""
+    """Return the first commands after control start, engaged in the loop."""
     vehicle = Vehicle(authority)
     vehicle.drive_to_control_start(mpc)
     return [vehicle.answer(mpc) for _ in range(steps)]
@@ -128,11 +128,11 @@ def test_the_model_with_an_engine_is_the_engine_before_the_model(lag_s):
     for request in rng.normal(270.0, 30.0, 20):
         torque = engine.deliver(300.0, request)
         inputs = np.array([250.0, torque, 60.0])
-        asked = np.array([250.0, request - 300.0, 60.0])
+        requested = np.array([250.0, request - 300.0, 60.0])
         np.testing.assert_allclose(
-            model.c @ state + model.d @ asked, MODEL.c @ x + MODEL.d @ inputs, rtol=1e-12
+            model.c @ state + model.d @ requested, MODEL.c @ x + MODEL.d @ inputs, rtol=1e-12
         )
-        x, state = MODEL.a @ x + MODEL.b @ inputs, model.a @ state + model.b @ asked
+        x, state = MODEL.a @ x + MODEL.b @ inputs, model.a @ state + model.b @ requested
         np.testing.assert_allclose(state[:STATES], x, rtol=1e-9, atol=1e-9)
         assert state[STATES:] == pytest.approx([300.0, engine.deviation])
 
@@ -184,20 +184,20 @@ def test_with_preview_it_follows_the_coming_reference():
         EngineAuthority(slew_n_m_s=0.0),
     ],
 )
-def test_it_asks_for_nothing_that_the_engine_cannot_do(authority, settings):
+def test_it_requests_nothing_that_the_engine_cannot_deliver(authority, settings):
     mpc, engine = controller(authority, settings), EngineResponse(authority)
     for command in answers(mpc, authority):
         lowest, highest = engine.reachable(DEMAND, 1)
-        asked = command.engine_torque - DEMAND
-        assert lowest - 1e-6 <= asked <= highest + 1e-6
+        requested = command.engine_torque - DEMAND
+        assert lowest - 1e-6 <= requested <= highest + 1e-6
         engine.deliver(DEMAND, command.engine_torque)
     assert mpc.fallbacks == 0
     free = deviations(controller(settings=settings))
     assert max(np.abs(np.subtract(free, deviations(mpc, authority)))) > 5.0, 'a limit binds'
 
 
-def test_each_move_ahead_has_what_the_engine_can_reach_by_then():
-    """From the demand at 300 N m/s: 3, 6 and 9 N m either way."""
+def test_each_move_ahead_has_the_limits_that_the_engine_can_reach_by_then():
+    """They are 3, 6 and 9 N m either way, from the demand at 300 N m/s."""
     mpc = controller(EngineAuthority(slew_n_m_s=300.0), replace(MPC4, control_steps=3))
     vehicle = Vehicle()
     vehicle.drive_to_control_start(mpc)
@@ -205,7 +205,7 @@ def test_each_move_ahead_has_what_the_engine_can_reach_by_then():
     assert mpc.engine.reachable == pytest.approx(np.array([[-3.0, -6.0, -9.0], [3.0, 6.0, 9.0]]))
 
 
-def test_the_clutch_makes_up_for_what_the_engine_may_not_do():
+def test_the_clutch_supplies_the_torque_beyond_the_engines_authority():
     authority = EngineAuthority(deviation_n_m=10.0)
     free, limited = answers(controller()), answers(controller(authority), authority)
     assert sum(each.clutch_torque for each in limited) > 5.0 + sum(
@@ -213,21 +213,21 @@ def test_the_clutch_makes_up_for_what_the_engine_may_not_do():
     )
 
 
-def test_the_filter_is_told_what_the_engine_delivers():
-    heard = []
+def test_the_filter_receives_the_torque_that_the_engine_delivers():
+    engine_torques = []
 
-    class Listening(Observer):
+    class InputRecorder(Observer):
         def predict(self, inputs):
-            heard.append(inputs[ENGINE_TORQUE])
+            engine_torques.append(inputs[ENGINE_TORQUE])
             super().predict(inputs)
 
     gain = kalman_gain(MODEL, NoiseLevels())
-    observer = Listening(MODEL, gain, AtRest(STIFFNESS, initial_request=0.0))
+    observer = InputRecorder(MODEL, gain, AtRest(STIFFNESS, initial_request=0.0))
     authority = EngineAuthority(lag_s=0.05, slew_n_m_s=400.0)
     mpc = MpcController(MODEL, observer, MPC4, authority)
     commands, engine = answers(mpc, authority), EngineResponse(authority)
     delivered = [engine.deliver(DEMAND, command.engine_torque) for command in commands]
-    assert heard[START:] == delivered
+    assert engine_torques[START:] == delivered
     shown = [dict(command.status)['engine_torque_deviation_n_m'] for command in commands]
     assert shown == [repr(torque - DEMAND) for torque in delivered]
 
@@ -269,7 +269,7 @@ def test_one_input_is_refused():
 
 @pytest.mark.parametrize('iteration_limit', [None, 1])
 def test_the_rate_of_the_clutch_goes_before_its_level(iteration_limit):
-    """With the engine limited too, and whether or not the solver gets there."""
+    """The engine is limited too; with and without a solution."""
     clutch = replace(MPC4.inputs[0], highest=200.0, rate_n_m_s=400.0)
     authority = EngineAuthority(deviation_n_m=12.0, slew_n_m_s=300.0)
     settings = replace(
@@ -290,9 +290,9 @@ def test_without_a_solution_the_plan_is_followed_within_the_limits_and_counted()
     authority = EngineAuthority(deviation_n_m=12.0)
     settings = replace(MPC4, iteration_limit=1, control_steps=3)
     mpc = controller(authority, settings)
-    asked = deviations(mpc, authority)
+    requested = deviations(mpc, authority)
     assert mpc.fallbacks > 0
-    assert max(map(abs, asked)) <= 12.0 + 1e-9
+    assert max(map(abs, requested)) <= 12.0 + 1e-9
 
 
 @pytest.mark.parametrize('name', FACTORIES)

@@ -68,7 +68,7 @@ def measurement(step, speed=170.0):
     )
 
 
-def test_what_drives_the_slip_is_divided_and_what_the_actuator_is_asked_is_not():
+def test_torques_that_drive_the_slip_are_divided_and_the_request_is_not():
     given, scaled = measurement(7), divided(measurement(7), 0.8)
     assert scaled.engine_torque == 250.0
     assert scaled.load_torque == 75.0
@@ -79,7 +79,7 @@ def test_what_drives_the_slip_is_divided_and_what_the_actuator_is_asked_is_not()
 
 
 class Solved:
-    """A solver with the same answer to every program."""
+    """A solver with the same solution for every program."""
 
     def __init__(self, *moves):
         self._moves = np.array(moves)

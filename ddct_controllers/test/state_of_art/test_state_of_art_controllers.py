@@ -50,7 +50,7 @@ def test_a_reset_controller_is_a_new_one_to_the_bit(name):
 
 @pytest.mark.parametrize('name', TWO_INPUTS)
 def test_the_engine_makes_the_slip_fall(name):
-    """At once, by J_m times the rate that is asked for; the clutch follows slowly."""
+    """It does at once, by J_m times the requested rate; the clutch follows slowly."""
     commands = {}
     for rate in (0.0, -100.0):
         controller = make_controller(name, SETTINGS)

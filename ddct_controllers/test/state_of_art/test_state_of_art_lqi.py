@@ -42,7 +42,7 @@ def test_the_slip_model_is_the_driveline_but_for_the_drag(column):
     assert np.abs(ours / whole - 1.0).max() < 0.02
 
 
-def test_it_is_linear_and_says_so():
+def test_it_is_linear_and_has_a_linear_model():
     model = make_controller('lqi', SETTINGS).linear_model()
     assert np.array_equal(model.a, MODEL.a)
     assert np.linalg.matrix_rank(MODEL.a) <= len(MODEL.a) == 9
@@ -77,7 +77,7 @@ def test_the_predictor_is_exact():
     plant = lqi._plant(DRIVELINE)
     states = len(plant.a)
     gain = lqi._feedback_gain(plant, DRIVELINE, 5.0)
-    # x, integral of the error, delayed request; the cost sees x and the integral one step later.
+    # x, integral of the error, delayed request; the cost has x and the integral one step later.
     a = np.zeros((states + 2, states + 2))
     a[:states, :states], a[:states, -1] = plant.a, plant.b[:, 0]
     a[states, states], a[states, :states] = 1.0, -PERIOD_S * plant.c[0]

@@ -49,7 +49,7 @@ def test_the_json_has_every_figure(capsys):
 
 @pytest.mark.parametrize('weights', ['fitted', 'sampled'])
 def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
-    """The same G_c(z) as the registry's to the last bit, and three charts."""
+    """It has the G_c(z) of the registry to the last bit, and three charts."""
     options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(tmp_path)]
     assert main([*options, '--write-anyway']) == 0
     path = tmp_path / 'mine.yaml'
@@ -72,7 +72,7 @@ def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
         (['--weights', 'sampled'], ['it rises in ', 'it overshoots by 21.8 %, 8 % are allowed']),
     ],
 )
-def test_a_design_that_lacks_something_is_not_written_and_says_what(
+def test_a_design_that_falls_short_is_not_written_and_the_error_has_the_reason(
     tmp_path, capsys, options, lacking
 ):
     command = ['h-infinity', *options, '--out', str(tmp_path / 'designs')]

@@ -1,4 +1,4 @@
-"""The page docs/controllers/h_infinity.md says what the program computes."""
+"""The page docs/controllers/h_infinity.md has the numbers that the program computes."""
 
 from pathlib import Path
 
@@ -15,11 +15,11 @@ pytestmark = pytest.mark.slow
 PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'h_infinity.md'
 HINF_SAMPLED = PAGE.with_name('hinf_sampled.md')
 NOT_TO_THE_DIGIT = {'cleaning', 'controllers'}
-"""Where the fast pole at the optimum is, and how double roots split, is up to rounding."""
+"""Tables that depend on rounding: the fast pole at the optimum, and how double roots split."""
 
 
 def test_its_tables_are_those_of_the_program():
-    """After a change: make docs KINDS=h-infinity."""
+    """Update them by: make docs KINDS=h-infinity."""
     written, computed = shown_tables('h-infinity'), as_markdown(h_infinity_tables())
     assert written.keys() == computed.keys()
     for name in written.keys() - NOT_TO_THE_DIGIT:
@@ -28,7 +28,7 @@ def test_its_tables_are_those_of_the_program():
         assert written[name].count('hinf_') == computed[name].count('hinf_')
 
 
-def test_hinf1_has_the_worst_sensitivity_that_the_page_says():
+def test_hinf1_has_the_worst_sensitivity_of_the_page():
     sampled = discretise_zoh(H_INFINITY_CONTROLLERS['hinf1'].to_state_space(), 0.01)
     worst = worst_corner(sampled, PlantCorners()).sensitivity_peak
     lines = HINF_SAMPLED.read_text('utf-8').split('\n')

@@ -1,4 +1,4 @@
-"""`design loop-shaping`: the thesis's workflow, a controller of one's own, and what it refuses."""
+"""`design loop-shaping`: the thesis's workflow, a controller of one's own, and its errors."""
 
 import argparse
 import json
@@ -61,7 +61,7 @@ def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
     make_controller(str(path), RunSettings(load_scenario('thesis')))
 
 
-def test_an_earlier_design_is_replaced_only_when_asked(tmp_path, capsys):
+def test_an_earlier_design_is_replaced_only_with_overwrite(tmp_path, capsys):
     pytest.importorskip('matplotlib')
     command = [*OWN, '--out', str(tmp_path)]
     assert main(command) == 0
@@ -70,7 +70,7 @@ def test_an_earlier_design_is_replaced_only_when_asked(tmp_path, capsys):
     assert main([*command, '--overwrite']) == 0
 
 
-def test_overwrite_does_not_touch_what_is_no_controller(tmp_path, capsys):
+def test_overwrite_keeps_a_file_that_is_no_controller(tmp_path, capsys):
     (tmp_path / 'mine.yaml').write_text('something: else\n', encoding='utf-8')
     assert main([*OWN, '--out', str(tmp_path), '--overwrite']) == 1
     assert 'key name is missing' in capsys.readouterr().err
@@ -106,7 +106,7 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path, capsys):
     assert 'cannot be made (Not a directory)' in capsys.readouterr().err
 
 
-def test_a_ramp_disturbance_asks_for_two_integrators_and_none_for_none(capsys):
+def test_a_ramp_disturbance_needs_two_integrators_and_none_needs_none(capsys):
     for disturbance, integrators in (('ramp', 2), ('none', 0)):
         assert main([*OWN, '--disturbance', disturbance, '--json', '-']) == 0
         record = json.loads(capsys.readouterr().out)

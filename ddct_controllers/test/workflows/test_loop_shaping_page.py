@@ -1,4 +1,4 @@
-"""The page docs/controllers/loop_shaping.md says what the program computes."""
+"""The page docs/controllers/loop_shaping.md has the numbers that the program computes."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def page() -> str:
 
 
 def test_its_tables_are_those_of_the_program():
-    """After a change: make docs KINDS=loop-shaping."""
+    """Update them by: make docs KINDS=loop-shaping."""
     assert shown_tables('loop-shaping') == as_markdown(thesis_tables(thesis_record()))
 
 

@@ -1,4 +1,4 @@
-"""Before it runs, a controller's file says what it holds and whether its loop is stable."""
+"""Before a run the content of a controller's file and the stability of its loop are printed."""
 
 import pytest
 
@@ -66,7 +66,7 @@ def test_a_stable_loop_has_the_margins_of_the_evidence(summary, tmp_path, wear_g
     assert f'phase margin {margins["phase_margin_deg"]:.0f} deg' in stability
 
 
-def test_an_unstable_loop_is_said_loudly_and_a_wrong_sign_is_suspected(summary):
+def test_an_unstable_loop_is_printed_in_capitals_and_a_wrong_sign_is_suspected(summary):
     assert 'UNSTABLE: ' in summary('polynomial: {num: [-50], den: [1, 0]}\n')[-1]
     stability = summary('polynomial: {num: [0.035, 0.8, 1.1], den: [1, 8, 0]}\n')[-1]
     assert (
@@ -80,5 +80,5 @@ def test_the_loop_has_the_actuator_of_the_scenario(summary):
     assert 'UNSTABLE: ' in summary(POLYNOMIAL, slow)[-1]
 
 
-def test_what_is_no_transfer_function_has_no_summary():
+def test_a_controller_that_is_not_linear_has_no_summary():
     assert loop_summary('mpc3', SETTINGS) == []

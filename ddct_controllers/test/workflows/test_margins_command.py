@@ -1,4 +1,4 @@
-"""Program `design margins`: its table, its JSON, its page, and how it refuses."""
+"""Program `design margins`: its table, its JSON, its page, and its errors."""
 
 import argparse
 import json
@@ -37,7 +37,7 @@ def rows(text: str) -> dict[str, list[str]]:
 
 @pytest.fixture
 def stub(monkeypatch):
-    """Put a controller with the given linear model in the place of every other."""
+    """Return a function that replaces every controller by one with the given linear model."""
 
     def install(model: StateSpace | None) -> None:
         class Stub(Controller):
@@ -56,7 +56,7 @@ def stub(monkeypatch):
 
 
 def test_the_page_shows_what_the_program_prints(capsys):
-    """To one unit of the last digit shown; after a change: make docs KINDS=margins."""
+    """The page agrees to one unit of the last digit; update it by: make docs KINDS=margins."""
     assert run() == 0
     kept = rows(shown_tables('margins')['sampled_loops'].replace('|', ' '))
     printed = rows(capsys.readouterr().out)
@@ -71,7 +71,7 @@ def test_the_page_shows_what_the_program_prints(capsys):
                 assert float(shown) == pytest.approx(float(found), abs=1.01 * unit)
 
 
-def test_json_has_nominal_wear_and_corner_figures_and_stands_alone(capsys):
+def test_json_has_nominal_wear_and_corner_quantities_and_is_alone(capsys):
     assert run('--controller', 'ls8', '--wear-gain', '0.9', '--json', '-') == 0
     document = json.loads(capsys.readouterr().out)
     (entry,) = document['controllers']
@@ -86,7 +86,7 @@ def test_json_has_nominal_wear_and_corner_figures_and_stands_alone(capsys):
 
 
 def test_the_stable_wear_gains_end_where_the_loop_becomes_unstable(capsys):
-    """Hinf2: 1.45; printed with the table of a wear gain on either side."""
+    """For Hinf2 that is 1.45; printed with the table of a wear gain on either side."""
     run('--controller', 'hinf2', '--json', '-')
     stable = json.loads(capsys.readouterr().out)['controllers'][0]['stable_wear_gain']
     assert stable['lowest'] == 0.0
@@ -135,7 +135,7 @@ def test_the_actuator_is_the_scenarios(capsys):
 
 
 @pytest.mark.parametrize('delay_ms', [23, 25])
-def test_the_delay_margin_says_at_which_delay_of_the_actuator_a_loop_ends(delay_ms, capsys):
+def test_the_delay_margin_is_the_additional_delay_that_makes_a_loop_unstable(delay_ms, capsys):
     run('--controller', 'hinf2', '--json', '-')
     margin = json.loads(capsys.readouterr().out)['controllers'][0]['nominal']['delay_margin_s']
     assert 0.013 < margin < 0.015

@@ -110,6 +110,6 @@ def test_a_bad_file_is_refused_before_anything_is_printed(
 
 
 def test_the_page_shows_todays_numbers() -> None:
-    """After a change: make docs KINDS=plant."""
+    """Update them by: make docs KINDS=plant."""
     computed = paper_tables(plant_on_paper(load_scenario('thesis')))
     assert shown_tables('plant') == as_markdown(computed)

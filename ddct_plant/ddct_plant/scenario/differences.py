@@ -5,6 +5,7 @@ from functools import cache
 from typing import Any
 
 from ddct_plant.scenario.file import flat, load_scenario, scenario_content, scenario_names
+from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.scenario import Scenario
 
 SHOWN = 6
@@ -23,10 +24,11 @@ def changed_values(scenario: Scenario) -> tuple[str, ...]:
         return ()
     values, packaged = values_by_key(scenario), _packaged_values(scenario.name)
     keys = [*values, *(key for key in packaged if key not in values)]
+    before = _unwritten_defaults(scenario.name) | packaged
     return tuple(
         f'{key}={_text(values[key])}' if key in values else f'{key} left out'
         for key in keys
-        if key not in _NOT_COMPARED and values.get(key) != packaged.get(key)
+        if key not in _NOT_COMPARED and values.get(key) != before.get(key)
     )
 
 
@@ -48,6 +50,17 @@ def values_by_key(scenario: Scenario) -> dict[str, Any]:
 @cache
 def _packaged_values(name: str) -> dict[str, Any]:
     return values_by_key(load_scenario(name))
+
+
+@cache
+def _unwritten_defaults(name: str) -> dict[str, Any]:
+    """Return the defaults of the sections that a packaged scenario has; it may not write them."""
+    scenario = load_scenario(name)
+    return {
+        key: option.default
+        for key, option in scenario_options().items()
+        if getattr(scenario, key.partition('.')[0]) is not None
+    }
 
 
 def _text(value: Any) -> str:

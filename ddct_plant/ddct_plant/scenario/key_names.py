@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import fields
 from functools import cache
 
@@ -12,6 +12,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 MOST_MEANT = 3
 """Largest number of keys in a hint."""
+_ALIKE = 0.8
+"""Least similarity of two keys; a common section alone gives about half."""
 _PAGE = 'docs/use/scenario.md'
 
 
@@ -30,9 +32,9 @@ def key_hint(key: str, known: Options) -> str:
     return f'did you mean {", ".join(others)} or {last}?' if others else f'did you mean {last}?'
 
 
-def scenario_key_hint(name: str, section: Iterable[str], prefix: str) -> str:
+def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
     """Return a hint for an unknown key: a key of its section, an option of the run, or any key."""
-    if close := difflib.get_close_matches(name, list(section), n=1):
+    if close := difflib.get_close_matches(name, section, n=1):
         return f'did you mean {prefix}{close[0]}?'
     of_run = options_of(RunSettings)
     known = {**scenario_options(), **of_run}
@@ -40,6 +42,8 @@ def scenario_key_hint(name: str, section: Iterable[str], prefix: str) -> str:
         if meant in of_run:
             option = f'--{meant.replace("_", "-")}'
             return f'{meant} stands beside the scenario: give it to the program, as {option}'
+    if prefix and not any(each.startswith(prefix) for each in _meant(f'{prefix}{name}', known)):
+        return f'known: {", ".join(section)}'
     return key_hint(f'{prefix}{name}', known)
 
 
@@ -57,7 +61,7 @@ def _meant(key: str, known: Options) -> list[str]:
     words = name.lower().split('_')
     rules: Iterable[Iterable[str]] = (
         (each for each, option in known.items() if symbol.match(option.description)),
-        difflib.get_close_matches(key, known, n=1),
+        difflib.get_close_matches(key, known, n=1, cutoff=_ALIKE),
         (each for each in known if _has_words(each, words)),
         (each for each, option in known.items() if symbol.search(option.description)),
     )

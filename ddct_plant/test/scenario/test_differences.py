@@ -44,3 +44,8 @@ def test_a_title_counts_what_it_does_not_show() -> None:
     many = [f'k{index}=0' for index in range(9)]
     title = scenario_title('thesis', many)
     assert title.startswith('thesis, 9 values changed: k0=0, ') and title.endswith(' and 3 more')
+
+
+def test_the_other_keys_of_a_changed_section_are_not_changed_by_their_defaults():
+    scenario = load_scenario('thesis', ['actuator.delay_s=0.05'])
+    assert changed_values(scenario) == ('actuator.delay_s=0.05',)

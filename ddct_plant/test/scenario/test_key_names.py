@@ -65,3 +65,10 @@ def test_in_a_section_its_own_keys_come_first_and_symbols_count_too():
     }.items():
         with pytest.raises(ParameterError, match=f'did you mean {key}\\?'):
             load_scenario('thesis', [f'{wrong}=0.7'])
+
+
+def test_a_name_unlike_any_key_of_its_section_is_answered_with_the_keys_of_the_section():
+    with pytest.raises(
+        ParameterError, match='unknown key closing.zebra: known: slip_band_rad_s, dwell_s'
+    ):
+        load_scenario('launch', ['closing.zebra=0.7'])

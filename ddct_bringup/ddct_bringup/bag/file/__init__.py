@@ -1,1 +1,1 @@
-"""The bytes of a bag: MCAP records, CDR, rosbag2's metadata and message definitions."""
+"""Bytes of a bag: MCAP records, CDR, rosbag2's metadata and message definitions."""

@@ -1,8 +1,8 @@
 """
 Read the stamp of serialised messages, and make them reproducible to the byte.
 
-CDR aligns numbers with bytes that the ROS serialiser leaves as it finds them in memory, and
-`rclpy.serialization` may also leave such bytes behind the end. Both would differ from run to run.
+CDR aligns numbers with bytes that the ROS serialiser does not set, and `rclpy.serialization` may
+leave such bytes behind the end. Both would differ from run to run.
 """
 
 import struct
@@ -17,10 +17,10 @@ _HEADER = b'\x00\x01'
 """First bytes of plain little-endian CDR; two option bytes follow, then the body."""
 _BODY = 4
 _STAMP = struct.Struct('<iI')
-"""With it every recorded type begins, right behind the header."""
+"""Layout of the stamp, with which every recorded type begins, right behind the header."""
 
 _LAYOUTS_KEPT = 32
-"""Layouts remembered per message size; numbers written as text have a few lengths each."""
+"""Number of layouts cached per message size; numbers as text have a few lengths each."""
 
 
 def stamp_of_cdr(cdr: bytes) -> int:
@@ -31,18 +31,18 @@ def stamp_of_cdr(cdr: bytes) -> int:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Masks over the whole message, read as one little-endian integer."""
+    """Masks over a whole message, each read as one little-endian integer."""
 
     size: int
     keep: int
-    """Ones over every byte that carries a value."""
+    """Mask with ones over every byte that carries a value."""
     lengths: int
-    """Ones over every byte that the layout depends on: the header and the lengths."""
+    """Mask with ones over the header and the lengths, on which the layout depends."""
     length_values: int
 
 
 class _Walk:
-    """Passes over a message; notes bytes without a value and those that tell its layout."""
+    """Parser of a message; collects the bytes without a value and those that decide the layout."""
 
     def __init__(self, definition: MessageDefinition, cdr: bytes) -> None:
         self._fields = definition.fields
@@ -52,7 +52,7 @@ class _Walk:
         self.lengths = [range(len(_HEADER))]
 
     def message(self, type_name: str) -> None:
-        """Pass a message; raise ValueError or struct.error where the body holds none."""
+        """Parse a message of a type; raise ValueError or struct.error where the body has none."""
         for field in self._fields[type_name]:
             count = self._length() if field.count is None else field.count
             if field.kind in PRIMITIVES:
@@ -71,7 +71,7 @@ class _Walk:
             self.at += size * count
 
     def _length(self) -> int:
-        """Pass the length of a string or sequence and return it; raise ValueError if too long."""
+        """Parse and return a string's or sequence's length; raise ValueError if it is too long."""
         self._numbers(4, 1)
         self.lengths.append(range(self.at - 4, self.at))
         (count,) = struct.unpack_from('<I', self._cdr, self.at - 4)
@@ -80,7 +80,7 @@ class _Walk:
         return count
 
     def _string(self) -> None:
-        """Pass a string, whose length counts the zero byte at its end."""
+        """Parse a string, whose length includes the zero byte at its end."""
         count = self._length()
         self._numbers(1, count)
         if count:
@@ -88,14 +88,14 @@ class _Walk:
 
 
 class CdrNormaliser:
-    """Set the alignment bytes of one message type to zero and cut what follows the message."""
+    """Normaliser of one message type: sets alignment bytes to zero and cuts trailing bytes."""
 
     def __init__(self, definition: MessageDefinition) -> None:
         self._definition = definition
         self._layouts: dict[int, list[_Layout]] = {}
 
     def normalise(self, cdr: bytes) -> bytes:
-        """Return the message with zeros between its values; raise DdctError if it is no such."""
+        """Return the message with zeros between its values; raise DdctError for another type."""
         value = int.from_bytes(cdr, 'little')
         known = self._layouts.setdefault(len(cdr), [])
         # Equal lengths at the same places mean the same layout, so a walk is seldom needed. With

@@ -1,4 +1,4 @@
-"""Message definitions, without ROS: schema text, hash and fields of each type on the graph."""
+"""Message definitions without ROS: schema text, type hash and fields of each type on the graph."""
 
 import re
 from collections.abc import Mapping
@@ -20,11 +20,11 @@ PRIMITIVES = {
     **dict.fromkeys(('int32', 'uint32', 'float32'), 4),
     **dict.fromkeys(('int64', 'uint64', 'float64'), 8),
 }
-"""Size of each in bytes."""
+"""Size in bytes of each primitive type, by name."""
 
 _SEPARATOR = '=' * 80
 _FIELD = re.compile(r'(?P<kind>[\w/]+)(?:<=\d+)?(?P<many>\[(?:<=\d+|(?P<count>\d*))\])? \w+')
-"""A line of a definition that is no constant."""
+"""Pattern of a line of a definition that declares a field; constants do not match."""
 
 
 @dataclass(frozen=True)
@@ -32,23 +32,23 @@ class Field:
     """One field of a message type."""
 
     kind: str
-    """One of PRIMITIVES, STRING, or a type such as 'std_msgs/msg/Header'."""
+    """Type of its values: one of PRIMITIVES, STRING, or a type such as 'std_msgs/msg/Header'."""
     count: int | None
-    """How many values it has; None where each message has a number of its own."""
+    """Number of its values; None where it differs from message to message."""
 
 
 @dataclass(frozen=True)
 class MessageDefinition:
-    """What a bag says about a message type."""
+    """Definition of a message type as a bag stores it."""
 
     type_name: str
-    """Such as 'std_msgs/msg/Header'."""
+    """Name of the type, such as 'std_msgs/msg/Header'."""
     schema_text: str
-    """Its definition, then that of each type inside it, once, depth first."""
+    """Definition of the type, then that of each nested type, once, depth first."""
     type_hash: str
     """RIHS01 hash of the type."""
     fields: Mapping[str, list[Field]]
-    """Fields of the type and of each type inside it, by type name."""
+    """Fields of the type and of each nested type, by type name."""
 
 
 @cache
@@ -59,12 +59,16 @@ def load_definition(type_name: str) -> MessageDefinition:
 
 @cache
 def message_types() -> Mapping[str, Any]:
-    """Return the content of TYPES_FILE: by type name its hash, and its fields as text."""
+    """Return the content of TYPES_FILE: hash and fields as text, by type name."""
     return parse_yaml(read_text_file(TYPES_FILE))
 
 
 def definition_in(types: Mapping[str, Any], type_name: str) -> MessageDefinition:
-    """Return a definition out of such a content; raise DdctError where a type is not in it."""
+    """
+    Return the definition of a type from a mapping as `message_types` returns it.
+
+    Raise DdctError where the type, or a nested one, is not in it.
+    """
     fields: dict[str, list[Field]] = {}
     text: list[str] = []
 

@@ -1,4 +1,4 @@
-"""What rosbag2 writes about a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP."""
+"""rosbag2's metadata of a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP file."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 
 METADATA_FILE = 'metadata.yaml'
 ADVICE = 'free some space or choose another output folder'
-"""Where something of a bag cannot be written."""
+"""Advice in the error messages of a bag that cannot be written."""
 
 ROOT_KEY = 'rosbag2_bagfile_information'
 RECORD_NAME = 'rosbag2'
@@ -23,26 +23,29 @@ SERIALIZATION = 'cdr'
 _VERSION = 9
 _DISTRO = 'jazzy'
 _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
-"""2^63 - 1 ns, how rosbag2 writes a duration without limit."""
+"""Duration without limit as rosbag2 writes it, 2^63 - 1 ns."""
 
 
 @dataclass(frozen=True)
 class Channel:
-    """One topic of a bag and what readers need to know of it."""
+    """Channel of a bag: one topic, its type, schema and QoS profile."""
 
     topic: str
-    """Resolved name, with its leading slash."""
+    """Resolved name of the topic, with its leading slash."""
     type_name: str
     schema_text: str
     type_hash: str
     qos: str
-    """As `offered_qos` gives it."""
+    """QoS profiles as YAML text, from `offered_qos`."""
     normalise: Callable[[bytes], bytes] = bytes
-    """What makes its serialised messages reproducible; they are taken as they are without."""
+    """
+    Function that makes its serialised messages reproducible; the default leaves them as they
+    are.
+    """
 
 
 def offered_qos(*, latched: bool) -> str:
-    """Return the YAML list with the profile that a topic is published with."""
+    """Return the YAML list with the QoS profile of a topic's publisher."""
     profile = {
         'history': 'keep_last',
         'depth': 1 if latched else 10,
@@ -66,9 +69,9 @@ def bag_information(
     custom_data: Mapping[str, str],
 ) -> dict[str, Any]:
     """
-    Return every key of version 9 for a bag of one MCAP file, in rosbag2's order.
+    Return the metadata, version 9, of a bag with one MCAP file, its keys in rosbag2's order.
 
-    `counts` are the messages per channel.
+    `counts` are the numbers of messages by channel, in the order of `channels`.
     """
     count = sum(counts)
     duration = {'nanoseconds': last_ns - first_ns}
@@ -114,12 +117,12 @@ def metadata_record(information: Mapping[str, Any]) -> dict[str, str]:
 
 
 def write_metadata(folder: Path, information: Mapping[str, Any]) -> None:
-    """Write `metadata.yaml` whole or not at all; raise DdctError when it fails."""
+    """Write `metadata.yaml` completely or not at all; raise DdctError when that fails."""
     write_text(str(folder / METADATA_FILE), _dump({ROOT_KEY: dict(information)}), ADVICE)
 
 
 def information_of(record: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of a `rosbag2` metadata record; empty when it cannot be understood."""
+    """Return the content of a `rosbag2` metadata record; empty where it cannot be parsed."""
     try:
         information = parse_yaml(record.get(RECORD_KEY, ''))
     except ParameterError:

@@ -20,9 +20,9 @@ from ddct_plant.files.input_file import read_file
 
 MAGIC = b'\x89MCAP0\r\n'
 MOST_BYTES = 1_000_000_000
-"""Of a bag's file; an hour's run has a quarter of that."""
+"""Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
 MOST_CHUNK_BYTES = 64_000_000
-"""Of one chunk unpacked; recorders make chunks of about 1 MB."""
+"""Largest size of an unpacked chunk in bytes; recorders make chunks of about 1 MB."""
 
 _READ_ERRORS = (
     McapError,
@@ -34,38 +34,38 @@ _READ_ERRORS = (
     OverflowError,
     MemoryError,
 )
-"""What the MCAP library raises on damaged bytes; checksum errors are ValueErrors."""
+"""Exceptions of the MCAP library for damaged bytes; its checksum errors are ValueErrors."""
 
 _FOOTER = struct.Struct('<BQQQI8s')
 
 
 @dataclass
 class BagRecords:
-    """Everything of an MCAP file that counts here, still serialised."""
+    """Records of an MCAP file that readers use; messages are still serialised."""
 
     path: Path
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
     messages: list[tuple[str, int, bytes]] = field(default_factory=list)
-    """(topic, log time in ns, data) in the order of the file."""
+    """Messages as (topic, log time in ns, data), in the order of the file."""
     information: dict[str, Any] = field(default_factory=dict)
-    """What the last readable `rosbag2` metadata record says."""
+    """Content of the last readable `rosbag2` metadata record."""
 
     @property
     def topics(self) -> set[str]:
-        """Resolved names of the topics that it was opened for."""
+        """Resolved names of the topics that have a channel."""
         return {channel.topic for channel in self.channels.values()}
 
     @property
     def custom_data(self) -> dict[str, str]:
-        """What the recorder said about the run."""
+        """Custom data of the bag: the recorder's description of the run."""
         custom = self.information.get('custom_data')
         if not isinstance(custom, dict):
             return {}
         return {str(key): str(value) for key, value in custom.items()}
 
     def add(self, records: Iterator[McapRecord]) -> None:
-        """Take over records; a schema or channel that is said again does not replace the first."""
+        """Add records; a repeated schema or channel does not replace the first one."""
         for record in records:
             if isinstance(record, Message):
                 topic = self.channels[record.channel_id].topic
@@ -80,7 +80,7 @@ class BagRecords:
 
 def read_records(path: Path) -> BagRecords:
     """
-    Read a whole MCAP file and verify every checksum.
+    Read a complete MCAP file and verify every checksum.
 
     Raise DdctError when the file cannot be read, is no MCAP file, is unfinished or is damaged.
     """
@@ -117,7 +117,7 @@ def salvage_records(path: Path) -> BagRecords:
 
 
 def _unpacked(data: bytes, *, validate_crcs: bool) -> Iterator[McapRecord]:
-    """Yield the records, those in chunks too; the checksums of chunks always count."""
+    """Yield the records, also those in chunks; the checksums of chunks are always verified."""
     reader = StreamReader(
         io.BytesIO(data),
         emit_chunks=True,
@@ -133,7 +133,7 @@ def _unpacked(data: bytes, *, validate_crcs: bool) -> Iterator[McapRecord]:
 
 
 def _require_bounded(chunk: Chunk) -> None:
-    """Raise ValueError for a small chunk that would fill the memory when it is unpacked."""
+    """Raise ValueError for a chunk that would fill the memory when it is unpacked."""
     size = chunk.uncompressed_size
     if chunk.compression == 'zstd':
         size = max(size, frame_content_size(chunk.data))
@@ -153,7 +153,7 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _verify_summary(data: bytes) -> None:
-    """Raise ValueError unless the footer's checksum over the summary holds, or is absent."""
+    """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
     opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
     covered = data[start : -len(MAGIC) - 4]
     if opcode != 2 or (checksum and zlib.crc32(covered) != checksum):

@@ -1,4 +1,4 @@
-"""What the nine numbers say about the fitted parameters, and what the fit predicts by itself."""
+"""Identifiability of the fitted parameters from the nine numbers, and predictions of the fit."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from ddct_bringup.reproduction.calibration.parameters import (
     Values,
     residual_rows,
 )
-from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_figures
+from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_values
 from ddct_bringup.reproduction.calibration.search import STARTS, Progress
 from ddct_plant.scenario.scenario import Scenario
 
 FITTED_NUMBERS = len(PARAMETERS) + 1
-"""p: the parameters and the end of the score window."""
+"""Number p of fitted numbers: the parameters and the end of the score window."""
 
 
 @dataclass(frozen=True)
@@ -37,35 +37,38 @@ class Identifiability:
     degrees_of_freedom: int
     residual_std: float
     coverage_95: float
-    """Student's t: how many std make a 95 % interval with so few degrees of freedom."""
+    """Half-width of a 95 % interval in std, from Student's t with these degrees of freedom."""
     singular_values: np.ndarray
-    """(6,) of J, largest first."""
+    """Singular values of J, (6,), largest first."""
     directions: np.ndarray
-    """(6, 6), row i belongs to singular value i, in shares of the ranges."""
+    """Right singular vectors, (6, 6), in shares of the ranges; row i has singular value i."""
     std: np.ndarray
-    """(6,) in the parameters' units."""
+    """Standard deviations of the parameters, (6,), in their units."""
     std_given_start: np.ndarray
-    """(6,) with C_m start held, which has 0."""
+    """
+    Standard deviations for a fixed C_m start, (6,), in the parameters' units; that of C_m start is
+    0.
+    """
     correlation_given_start: np.ndarray
-    """(5, 5) of all but C_m start, which is held."""
+    """Correlations of all parameters but C_m start for a fixed C_m start, (5, 5)."""
     covariance_root: np.ndarray
-    """(6, 6) R with R R^T the covariance in the parameters' units."""
+    """Root R of the covariance R R^T of the parameters, (6, 6), in their units."""
     covariance_root_given_start: np.ndarray
-    """(6, 5) the same with C_m start held."""
+    """Root of the covariance for a fixed C_m start, (6, 5), in the parameters' units."""
 
     def std_of(self, gradient: ArrayLike) -> tuple[float, float]:
         """
-        Return the std of a function of the parameters, free and with C_m start held.
+        Return the std of a function of the parameters, with C_m start free and fixed.
 
-        `gradient` (6,) is that of the function, per unit of each parameter.
+        `gradient` (6,) is the gradient of the function, per unit of each parameter.
         """
         roots = (self.covariance_root, self.covariance_root_given_start)
-        free, held = (float(np.linalg.norm(np.asarray(gradient) @ root)) for root in roots)
-        return free, held
+        free, fixed = (float(np.linalg.norm(np.asarray(gradient) @ root)) for root in roots)
+        return free, fixed
 
     @property
     def weakest(self) -> np.ndarray:
-        """(6,) change of the parameters, in their units, that the residuals show least."""
+        """Change of the parameters with the least effect on residuals, (6,), in their units."""
         change = self.directions[-1] * RANGE
         return change / change[np.argmax(np.abs(self.directions[-1]))]
 
@@ -76,12 +79,12 @@ def identifiability(optimum: Fit) -> Identifiability:
     degrees = len(optimum.residuals) - FITTED_NUMBERS
     variance = float(np.sum(optimum.residuals**2)) / degrees
     _, singular_values, directions = np.linalg.svd(jacobian)
-    held = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
-    held_std = np.sqrt(np.diag(held))
-    # By the SVD: J^T J would lose the digits of the weakest direction.
+    fixed = np.linalg.inv(jacobian[:, 1:].T @ jacobian[:, 1:]) * variance
+    fixed_std = np.sqrt(np.diag(fixed))
+    # The SVD keeps the digits of the weakest direction, which J^T J would lose.
     root = np.sqrt(variance) * directions.T / singular_values
     std = np.sqrt(np.sum(root**2, axis=1))
-    held_root = np.vstack([np.zeros(len(held)), np.linalg.cholesky(held)])
+    fixed_root = np.vstack([np.zeros(len(fixed)), np.linalg.cholesky(fixed)])
     return Identifiability(
         degrees_of_freedom=degrees,
         residual_std=float(np.sqrt(variance)),
@@ -89,19 +92,19 @@ def identifiability(optimum: Fit) -> Identifiability:
         singular_values=singular_values,
         directions=directions,
         std=std * RANGE,
-        std_given_start=np.array([0.0, *(held_std * RANGE[1:])]),
-        correlation_given_start=held / np.outer(held_std, held_std),
+        std_given_start=np.array([0.0, *(fixed_std * RANGE[1:])]),
+        correlation_given_start=fixed / np.outer(fixed_std, fixed_std),
         covariance_root=RANGE[:, None] * root,
-        covariance_root_given_start=RANGE[:, None] * held_root,
+        covariance_root_given_start=RANGE[:, None] * fixed_root,
     )
 
 
 def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
     """
-    Fit each two rows, for the window that all three chose, and return what they say of the third.
+    Fit each two rows, with the window of the fit to all three; return predictions of the third.
 
-    No row but that of the PI depends on its gains: they are fitted to the row itself, which is
-    marked as `gains_from_row`.
+    Only the row of the PI depends on its gains: where it is left out they are fitted to the row
+    itself, which is marked as `gains_from_row`.
     """
     results = []
     for row in ROWS:
@@ -117,7 +120,7 @@ def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
             alone = dataclasses.replace(problem, rows=('pi',))
             gains = _best_fit(alone, best.values, PI_ONLY)
             best = dataclasses.replace(best, values=gains.values)
-        figures = row_figures(problem.scenario(best.values), row)
+        figures = row_values(problem.scenario(best.values), row)
         results.append(
             {
                 'row': row,
@@ -137,7 +140,7 @@ def _best_fit(problem: Problem, values: Values, free: tuple[int, ...]) -> Fit:
 
 
 def changed_assumptions() -> dict[str, Scenario]:
-    """Return other values of what the calibration assumes, by what is changed."""
+    """Return scenarios with one changed assumption of the calibration each, by name."""
     load, initial = BASE.load, BASE.initial
     return {
         f'road load times {factor:g}': dataclasses.replace(

@@ -68,7 +68,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Fit, print and write what is asked for; raise DdctError when no scenario fits."""
+    """Fit, print and write as the options request; raise DdctError when no scenario fits."""
     parser = options.parser
     if options.quick and options.write:
         parser.error('--quick finds nothing to write: leave out --write')
@@ -99,7 +99,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _make_ensemble(folder: Path, *, search: bool) -> None:
-    """Write the admissible scenarios, or keep those in the folder, and what they predict."""
+    """Write the admissible scenarios, or keep those in the folder, and their predictions."""
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise DdctError(f'{folder} is no folder that can be written: make it first')
     frozen = load_scenario('thesis')
@@ -111,7 +111,7 @@ def _make_ensemble(folder: Path, *, search: bool) -> None:
 
 
 def _require_success(record: Record) -> None:
-    """Raise DdctError unless all is within tolerance; of a check, unless it is the optimum too."""
+    """Raise DdctError unless all values are within tolerance and, for a check, optimal."""
     outside = outside_tolerance(record['residuals'])
     if outside:
         raise DdctError(f'no scenario fits: {", ".join(outside)} is outside the tolerance')

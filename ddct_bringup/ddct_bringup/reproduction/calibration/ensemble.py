@@ -1,18 +1,18 @@
 """
-Which scenarios the calibration admits, and those that are kept: by the nine fitted figures alone.
+Scenarios that the nine fitted values admit, and the ensemble of those that are kept.
 
 A scenario is admissible when
-- w_d reaches zero with each of the three fitted controllers, and each of the nine figures (rows
+- w_d reaches zero with each of the three fitted controllers, and each of the nine values (rows
   LS8, Hinf1 and PI of Table 5.1), of its whole run in its own score window, is within the
   calibration's tolerance of the print: 5 % for t_a, 10 % for both sigmas,
 - the PI loop is stable,
 - every fitted value is within the bounds of the calibration.
 
-The tolerances are the unit of the calibration's residuals and decide whether it has succeeded, so
-the frozen scenario and every other that passes are equally good answers to it. No wider limit has
-a reason of its own. Rows of a predictive controller are not looked at.
+The calibration scales its residuals by the tolerances and requires them for success, so
+the frozen scenario and every other that passes are equally good solutions. No wider limit has
+a justification. Rows of a predictive controller are not used.
 
-Kept are centres and rims of the region of the admissible, with other assumptions too;
+The ensemble has centres and rims of the admissible region, also with other assumptions;
 docs/thesis/predictions.md states the choice.
 """
 
@@ -50,7 +50,7 @@ QUANTITIES = {
     'rise_end': ('end of the rise', (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)),
     'slope': ('slope of the reference', (0.0, 0.0, 0.0, 1.0, 0.0, 0.0)),
 }
-"""What is taken to its extremes, with its direction in shares of the parameters' ranges."""
+"""Quantities taken to their extremes, with directions in shares of the parameters' ranges."""
 _DECIMALS = (2, 2, 4, 2, 5, 5)
 """Decimals of the values in the files, in the order of PARAMETERS."""
 
@@ -62,13 +62,13 @@ def members() -> tuple[Scenario, ...]:
 
 
 def members_in(folder: Path) -> tuple[Scenario, ...]:
-    """Return the scenarios that a folder has, in the order of their names."""
+    """Return the scenarios in a folder in the order of their names."""
     return tuple(load_scenario(str(file)) for file in sorted(folder.glob('*.yaml')))
 
 
 def why_not_admissible(scenario: Scenario) -> list[str]:
     """
-    Return in words what the rule holds against a scenario; nothing for an admissible one.
+    Return the violations of the rule by a scenario as text; none for an admissible one.
 
     Raise ParameterError for a scenario that is not of the calibrated kind.
     """
@@ -81,7 +81,7 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
     growth = pi_growth_rate(scenario.driveline, *values[4:])
     if growth >= 0.0:
         against.append(f'the PI loop grows by {growth:.2g}/s')
-    figures = _figures(scenario)
+    figures = _row_values(scenario)
     for row, found in figures.items():
         missing = [name for name, value in found.items() if value is None]
         if missing:
@@ -91,34 +91,34 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
 
 
 def fitted_rows(scenario: Scenario) -> list[Record]:
-    """Return the nine figures of the whole run, as in the record of the calibration."""
-    return residual_rows(_figures(scenario))
+    """Return the nine values of the whole run, as in the record of the calibration."""
+    return residual_rows(_row_values(scenario))
 
 
-def _figures(scenario: Scenario) -> dict[str, dict[str, float]]:
-    """Return the figures of the fitted rows by name; None for what is undefined."""
-    return {row: headless_run(RunSettings(scenario), row).figures for row in ROWS}
+def _row_values(scenario: Scenario) -> dict[str, dict[str, float]]:
+    """Return the values of the fitted rows by name; None where one is undefined."""
+    return {row: headless_run(RunSettings(scenario), row).table_values for row in ROWS}
 
 
 def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:
     """
-    Search the ensemble from a calibrated scenario; every member is held against the rule.
+    Search the ensemble from a calibrated scenario, and check every member against the rule.
 
-    Raise DdctError for one that the search found and the rule does not admit.
+    Raise DdctError for a member that the search found and the rule does not admit.
     """
     found: dict[str, Scenario] = {}
     for scenario in _search(frozen, progress):
         against = why_not_admissible(scenario)
         if against:
             raise DdctError(f'{scenario.name} is not admissible: {", ".join(against)}')
-        # What tells two members apart, whatever their names.
+        # Two members are equal when they differ only in name and description.
         content = scenario_digest(dataclasses.replace(scenario, name=frozen.name, description=''))
         found.setdefault(content, scenario)
     return list(found.values())
 
 
 def write_members(scenarios: list[Scenario], folder: Path) -> None:
-    """Write one file per scenario and remove those that the folder had before."""
+    """Write one file per scenario, and remove the files of earlier members."""
     for file in folder.glob('*.yaml'):
         file.unlink()
     for scenario in scenarios:
@@ -159,7 +159,7 @@ def _search(frozen: Scenario, progress: Progress) -> Iterator[Scenario]:
 
 
 def _centres(frozen: Scenario, progress: Progress) -> dict[float, tuple[float, ...]]:
-    """Return the centre for each end of the window that has an admissible one, from the frozen."""
+    """Return the centre for each window end with an admissible one, starting from `frozen`."""
     start = frozen.score_window_s[1]
     before = [end for end in reversed(WINDOW_ENDS_S) if end < start]
     centres: dict[float, tuple[float, ...]] = {}

@@ -1,4 +1,4 @@
-"""Tables of what a calibration fitted, and the cells that all of its tables are made of."""
+"""Tables of the result of a calibration, and cells that all of its tables use."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from ddct_bringup.reproduction.calibration.parameters import NAMES, Record
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_plant.program.table import Table
 
-_FIGURE_LABELS = {
+_METRIC_LABELS = {
     'engagement_time_s': 't_a, s',
     'torsion_speed_std_rpm': 'sigma w_sr, rpm',
     'acceleration_std_m_s2': 'sigma A_x, m/s^2',
@@ -20,7 +20,7 @@ def residual_table(record: Record) -> Table:
     return Table(
         'Fit residuals of the frozen scenario (not reproductions: these numbers were fitted)',
         ('row', 'figure', 'printed', 'fitted', 'residual, %', 'tolerance, %'),
-        [figure_cells(entry) for entry in record['residuals']],
+        [value_cells(entry) for entry in record['residuals']],
     )
 
 
@@ -96,7 +96,7 @@ def optima_table(title: str, optima: Sequence[Record]) -> Table:
 
 
 def fit_table(record: Record) -> Table:
-    """Return what the fit as a whole is like."""
+    """Return the table of the overall quality of the fit."""
     objective, analysis = record['objective'], record['identifiability']
     weakest = [
         f'{entry["symbol"]} {analysis["weakest"][entry["name"]]:+.2f} {entry["unit"]}'
@@ -125,11 +125,11 @@ def fit_table(record: Record) -> Table:
     )
 
 
-def figure_cells(entry: Record) -> tuple[str, ...]:
-    """Return a printed figure beside ours, with the deviation and what it may be."""
+def value_cells(entry: Record) -> tuple[str, ...]:
+    """Return a printed value, the computed one, the deviation and its tolerance."""
     return (
         ROW_OF[entry['row']].label,
-        _FIGURE_LABELS[entry['figure']],
+        _METRIC_LABELS[entry['figure']],
         f'{entry["printed"]:.2f}',
         f'{entry["computed"]:.3f}',
         signed(100.0 * entry['deviation'], 1),
@@ -138,7 +138,7 @@ def figure_cells(entry: Record) -> tuple[str, ...]:
 
 
 def fit_cells(one: Record) -> tuple[str, ...]:
-    """Return how well a fit does, and its values below VALUE_HEADERS."""
+    """Return the quality of a fit, and its values in the order of VALUE_HEADERS."""
     forms = ('{:.1f}', '{:.1f}', '{:.3f}', '{:.1f}', '{:.3f}', '{:.4f}')
     return (
         f'{one["objective"]:.3f}',

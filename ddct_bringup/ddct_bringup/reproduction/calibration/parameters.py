@@ -1,4 +1,4 @@
-"""What the calibration fits, within which bounds, with which PI, to which numbers."""
+"""Fitted parameters of the calibration, their bounds, the PI, and the printed numbers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.thesis.table_5_1 import CALIBRATED, FIGURES, THESIS_TABLE, TOLERANCES
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, TABLE_METRICS, THESIS_TABLE, TOLERANCES
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S
@@ -17,8 +17,8 @@ from ddct_plant.scenario.scenario import Scenario
 Record = dict[str, Any]
 """Plain JSON content."""
 Values = Sequence[float] | np.ndarray
-"""(6,) in the order of PARAMETERS."""
-TARGETS = {row.controller: row.figures() for row in THESIS_TABLE if row.use == CALIBRATED}
+"""Values of the parameters, (6,), in the order of PARAMETERS."""
+TARGETS = {row.controller: row.printed_values() for row in THESIS_TABLE if row.use == CALIBRATED}
 ROWS = tuple(TARGETS)
 """Controllers whose rows are fitted."""
 
@@ -58,12 +58,12 @@ PARAMETERS = (
 )
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
 PI_ONLY = (4, 5)
-"""Indices of the parameters that no row but that of the PI depends on."""
+"""Indices of the parameters that only the row of the PI depends on."""
 LOWER = np.array([parameter.lower for parameter in PARAMETERS])
 RANGE = np.array([parameter.upper for parameter in PARAMETERS]) - LOWER
 
 DURATION_S = 3.0
-"""Length of the thesis run; a score window cannot be longer."""
+"""Length of the thesis run in s; a score window cannot be longer."""
 BASE = Scenario(
     name='thesis',
     description='Slip phase of Table 5.1, calibrated on its LS8, Hinf1 and PI rows',
@@ -72,7 +72,7 @@ BASE = Scenario(
     score_window_s=(0.6, DURATION_S),
     engine=TorqueProfile((0.0,), (0.0,)),
 )
-"""The fixed assumptions: both plates at 160 rad/s and the default road load among them."""
+"""Fixed assumptions, among them both plates at 160 rad/s and the default road load."""
 
 
 def values_of(scenario: Scenario) -> tuple[float, ...]:
@@ -103,7 +103,7 @@ def pi_growth_rate(
     parameters: DrivelineParameters, proportional_gain: float, integral_gain: float
 ) -> float:
     """
-    Return the growth rate in 1/s of the loop's slowest-decaying motion; positive is unstable.
+    Return the growth rate in 1/s of the loop's slowest-decaying mode; positive is unstable.
 
     State: request after its delay, actuator and driveline sampled at 10 ms, the integral of e.
     Load constant, clutch new, no saturation; u = -(K_p e + K_i integral of e), e = -w_d in rpm.
@@ -129,7 +129,7 @@ def require_stable_pi(values: Values) -> None:
 
 
 def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[Record]:
-    """Return one entry per figure of each row: printed, computed, deviation and tolerance."""
+    """Return one entry per value of each row: printed, computed, deviation and tolerance."""
     return [
         {
             'row': row,
@@ -140,12 +140,12 @@ def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[Record]:
             'tolerance': TOLERANCES[name],
         }
         for row, computed in figures.items()
-        for name in FIGURES
+        for name in TABLE_METRICS
     ]
 
 
 def outside_tolerance(rows: Sequence[Record]) -> list[str]:
-    """Return what lies outside its tolerance, in words."""
+    """Return the entries outside their tolerance as text."""
     return [
         f'{entry["row"]} {entry["figure"]} {100.0 * entry["deviation"]:+.1f} %'
         for entry in rows

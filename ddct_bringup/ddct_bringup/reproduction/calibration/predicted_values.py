@@ -1,8 +1,8 @@
 """
-What a scenario predicts of the thesis's other results, by the ids that the thesis gate gives them.
+Predictions of a scenario for the thesis's other results, by the ids of the thesis gate.
 
-These took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2, of which the
-numbers behind the words are given too. Of a word, whether it is a hit or a miss.
+They took no part in the fit: the MPC rows of Table 5.1 and the whole of Table 5.2. For a
+qualitative rating of Table 5.2 the prediction is hit or miss, with the numbers behind it.
 """
 
 from collections.abc import Iterable
@@ -10,24 +10,26 @@ from collections.abc import Iterable
 from ddct_bringup.reproduction.calibration.search import Progress
 from ddct_bringup.reproduction.runs import StaticControllerAlone, headless_run
 from ddct_bringup.reproduction.values.orders import (
-    SLIP_WORDS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     judge_table_5_2,
     rows_of_table_5_2,
 )
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
-from ddct_bringup.thesis.table_5_1 import FIGURES, PREDICTED_ROWS
+from ddct_bringup.thesis.table_5_1 import PREDICTED_ROWS, TABLE_METRICS
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 OPEN_LOOP = 'C_fOL alone'
-"""In the place of a controller: the clutch left to C_fOL and the engine to the driver."""
+"""
+Name in place of a controller: the clutch has C_fOL alone, and the engine the driver's demand.
+"""
 
 
 def predict(frozen: Scenario, members: Iterable[Scenario], progress: Progress) -> Predictions:
-    """Return every prediction of the frozen scenario, with its values in the members."""
+    """Return every prediction for the frozen scenario, with its values in the members."""
     progress(f'predictions of {frozen.name}')
     of_frozen = predicted_values(frozen)
     found: dict[str, dict[str, Value]] = {}
@@ -58,13 +60,13 @@ def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     return {
         f'5.1 {name} {figure}': value
         for name, run in runs.items()
-        for figure, value in run.figures.items()
+        for figure, value in run.table_values.items()
     }
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
     rows = rows_of_table_5_2(runs)
     found: dict[str, Value] = {
         name: 'hit' if finding.holds else 'miss'
@@ -72,5 +74,8 @@ def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     }
     for name, run in runs.items():
         found[f'5.2 {name} slip_rad_s {wear_gain:g}'] = rows[0][name]
-        found |= {f'5.2 {name} {what} {wear_gain:g}': run.figures[what] for what in FIGURES[1:]}
+        found |= {
+            f'5.2 {name} {what} {wear_gain:g}': run.table_values[what]
+            for what in TABLE_METRICS[1:]
+        }
     return found

@@ -2,8 +2,8 @@
 The calibration of the thesis scenario as a least-squares problem.
 
 The thesis prints no engine torque profile, no reference slope and no PI gains. They are fitted
-to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1; the MPC rows take no part.
-`parameters` has the parameters with their bounds, and the numbers.
+to nine numbers, the LS8, Hinf1 and PI rows of its Table 5.1, without the MPC rows.
+Parameters, bounds and numbers are in the module `parameters`.
 """
 
 import dataclasses
@@ -28,7 +28,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     residual_rows,
 )
 from ddct_bringup.reproduction.runs import headless_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
@@ -47,7 +47,7 @@ class Problem:
     """Residuals of some rows of the table for one score window."""
 
     window_end_s: float
-    """The window starts with control."""
+    """End of the score window in s; it starts with control."""
     rows: tuple[str, ...] = ROWS
     base: Scenario = BASE
 
@@ -62,14 +62,14 @@ class Problem:
             controllers={'pi': {'proportional_gain': proportional, 'integral_gain': integral}},
         )
 
-    def figures(self, values: Values) -> dict[str, dict[str, float]]:
-        """Return our figures by row, then metric name."""
+    def computed_values(self, values: Values) -> dict[str, dict[str, float]]:
+        """Return the computed values by row, then metric name."""
         scenario = self.scenario(values)
-        return {row: row_figures(scenario, row) for row in self.rows}
+        return {row: row_values(scenario, row) for row in self.rows}
 
     def residuals(self, values: Values) -> np.ndarray:
-        """Return (computed / printed - 1) / tolerance, (3 rows,), three figures a row."""
-        rows = residual_rows(self.figures(values))
+        """Return (computed / printed - 1) / tolerance, (3 rows,), three values a row."""
+        rows = residual_rows(self.computed_values(values))
         return np.array([row['deviation'] / row['tolerance'] for row in rows])
 
     def objective(self, values: Values) -> float:
@@ -79,7 +79,7 @@ class Problem:
     def jacobian(self, values: Values) -> np.ndarray:
         """Return d residuals / d (value / range) by one-sided differences, (3 rows, 6)."""
         origin = np.asarray(values, dtype=float)
-        before = self.residuals(origin).reshape(-1, len(FIGURES))
+        before = self.residuals(origin).reshape(-1, len(TABLE_METRICS))
         columns = []
         for index, parameter in enumerate(PARAMETERS):
             step = _STEP * RANGE[index]
@@ -102,9 +102,9 @@ class Fit:
 
     problem: Problem
     values: tuple[float, ...]
-    """(6,) in the order of PARAMETERS."""
+    """Values of the parameters, (6,), in the order of PARAMETERS."""
     residuals: np.ndarray
-    """(3 rows,) scaled."""
+    """Scaled residuals, (3 rows,)."""
 
     @property
     def objective(self) -> float:
@@ -123,12 +123,12 @@ class Fit:
 
     @property
     def pi_kind(self) -> str:
-        """'P' or 'I': the part that moves the torque more in the about 1 s of an engagement."""
+        """Part of the PI that moves the torque more in an engagement of about 1 s: 'P' or 'I'."""
         proportional, integral = self.values[4:]
         return 'P' if proportional >= integral else 'I'
 
     def as_record(self) -> Record:
-        """Return what the record of a calibration has of every fit."""
+        """Return the entry of the fit in the record of a calibration."""
         return {
             'objective': self.objective,
             'worst_residual': float(self.residuals[np.argmax(np.abs(self.residuals))]),
@@ -136,18 +136,18 @@ class Fit:
         }
 
 
-def row_figures(scenario: Scenario, controller: str) -> dict[str, float]:
+def row_values(scenario: Scenario, controller: str) -> dict[str, float]:
     """
-    Return the three figures of one controller, simulated to the end of the score window.
+    Return the three values of one controller, simulated to the end of the score window.
 
-    Where w_d does not reach zero by then, t_a is the time simulated since control start plus what
-    the reference's slope would need for the slip that is left: defined everywhere, continuous,
-    and the larger the worse. Raise DdctError for a run that is not finite.
+    Where w_d does not reach zero by then, t_a is the time simulated since control start plus the
+    time that the slope of the reference needs for the remaining slip: defined everywhere,
+    continuous, and larger for a worse run. Raise DdctError for a run that is not finite.
     """
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
     run = headless_run(RunSettings(shortened), controller)
-    figures, final_rpm = run.figures, run.metrics.slip_final_rpm
+    figures, final_rpm = run.table_values, run.metrics.slip_final_rpm
     if figures['engagement_time_s'] is None and final_rpm is not None:
         left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2
         figures['engagement_time_s'] = end - scenario.control_start_s + left
@@ -163,7 +163,7 @@ def fit(
     """
     Return the local optimum from (6,) start values; parameters not in `free` keep theirs.
 
-    A trust-region method within the bounds, each parameter measured by its range.
+    A trust-region method within the bounds, each parameter scaled by its range.
     """
     free = list(free)
     origin = np.asarray(start, dtype=float)

@@ -1,4 +1,4 @@
-"""The whole calibration: its result as plain JSON content, and the scenario file made of it."""
+"""The whole calibration: its result as plain JSON content, and the scenario file made from it."""
 
 from collections.abc import Sequence
 
@@ -29,9 +29,9 @@ from ddct_bringup.thesis.table_5_1 import TOLERANCES
 from ddct_plant.scenario.scenario import Scenario
 
 RETURN_TOLERANCE = 0.01
-"""How far, in shares of a parameter's range, a refit may move from the frozen scenario."""
+"""Largest change of a parameter in a refit of the frozen scenario, as a share of its range."""
 MOVES = ('torque_rise_n_m', *NAMES[2:])
-"""What a refit is compared in: C_m end less C_m start, as the two alone are not determined."""
+"""Quantities in which a refit is compared; C_m end minus C_m start, as both are not determined."""
 _SCENARIO_HEAD = (
     '# The slip phase behind Table 5.1 of the thesis, which does not print it.',
     '# Written by `ddct reproduce calibration --write FILE`: docs/thesis/calibration.md.',
@@ -57,7 +57,7 @@ def calibrate(progress: Progress) -> Record:
         'score_window_s': [BASE.control_start_s, optimum.problem.window_end_s],
         'parameters': _parameters(optimum.values, frozen, analysis),
         'torque_and_slopes': _torque_and_slopes(optimum.values, analysis),
-        'residuals': residual_rows(optimum.problem.figures(frozen)),
+        'residuals': residual_rows(optimum.problem.computed_values(frozen)),
         'frozen_objective': optimum.problem.objective(frozen),
         'windows': [_optimum(one) for one in windows],
         'starts': [_optimum(one) for one in starts],
@@ -77,7 +77,7 @@ def calibrate(progress: Progress) -> Record:
 
 def check_frozen(scenario: Scenario, progress: Progress) -> Record:
     """
-    Return the residuals of a calibrated scenario and where a local refit moves it.
+    Return the residuals of a calibrated scenario, and its changes by a local refit.
 
     Raise DdctError when its PI does not stabilise the slip speed.
     """
@@ -90,7 +90,7 @@ def check_frozen(scenario: Scenario, progress: Progress) -> Record:
     moved = [float(change[1] - change[0]) / RANGE[1], *(change[2:] / RANGE[2:]).tolist()]
     return {
         'score_window_s': list(scenario.score_window_s),
-        'residuals': residual_rows(problem.figures(frozen)),
+        'residuals': residual_rows(problem.computed_values(frozen)),
         'frozen_objective': problem.objective(frozen),
         'refit': refit.as_record(),
         'moved': dict(zip(MOVES, moved, strict=True)),
@@ -154,7 +154,7 @@ def _optimum(one: Fit) -> Record:
 
 
 def scenario_text(record: Record) -> str:
-    """Return the calibrated scenario as YAML, with comments on where each value comes from."""
+    """Return the calibrated scenario as YAML, with comments on the source of each value."""
     values = [entry['frozen'] for entry in record['parameters']]
     return annotated_yaml(Problem(record['score_window_s'][1]).scenario(values), _SCENARIO_HEAD)
 

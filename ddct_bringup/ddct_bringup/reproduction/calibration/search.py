@@ -1,9 +1,9 @@
 """
-The searches of the calibration.
+Searches of the calibration.
 
-One is for the best fit, over the end of the score window, the two kinds of PI, and starts. The
-others are in the region of the parameters in which the nine figures are within tolerance: for its
-centre and its rim.
+The first is for the best fit, over the end of the score window, the two kinds of PI, and starts.
+The others are for the centre and the rim of the region of the parameters in which the nine values
+are within tolerance.
 """
 
 import itertools
@@ -32,7 +32,10 @@ _SLOWEST_S = BASE.control_start_s + max(row['engagement_time_s'] for row in TARG
 WINDOW_ENDS_S = tuple(
     tenths / 10.0 for tenths in range(math.ceil(10.0 * _SLOWEST_S), round(10.0 * DURATION_S) + 1)
 )
-"""Tenths of a second from the end of the slowest printed engagement to the end of the run."""
+"""
+Ends of the score window in s: tenths from the end of the slowest printed engagement to the end of
+the run.
+"""
 
 STARTS = tuple(
     (*torques, rise_end, 105.0, *gains)
@@ -44,18 +47,18 @@ STARTS = tuple(
 )
 """Start values, all with one slope, for the chosen window; the first two serve every window."""
 RIM = 0.98
-"""Largest scaled residual on the rim: rounding of the values and curvature may take the rest."""
+"""Largest scaled residual on the rim; the rest is a margin for rounded values and curvature."""
 _STEPS = 40
 _PRECISION = 1e-3
-"""Change of what is sought, in tolerances or in shares of a range, at which a search ends."""
+"""Change of the objective, in tolerances or in shares of a range, at which a search ends."""
 
 
 def search(progress: Progress) -> tuple[list[Fit], list[Fit]]:
     """
     Return the best optimum of each kind of PI for each window end, and one from each of STARTS.
 
-    First over the window ends, each from two starts; then from all starts for the window of the
-    lowest objective of any stable PI loop.
+    The window ends are searched from two starts each; then all starts are used for the window with
+    the lowest objective of a stable PI loop.
     """
     windows: list[Fit] = []
     for end in WINDOW_ENDS_S:
@@ -70,7 +73,7 @@ def search(progress: Progress) -> tuple[list[Fit], list[Fit]]:
 
 
 def lowest_stable(optima: Sequence[Fit]) -> Fit:
-    """Return that of the lowest objective among stable PI loops; raise DdctError without one."""
+    """Return the fit with the lowest objective and a stable PI; raise DdctError without one."""
     stable = [one for one in optima if one.pi_stable]
     if not stable:
         raise DdctError(f'none of {len(optima)} fits has a stable PI loop: narrow the bounds')
@@ -86,9 +89,9 @@ def _one_of_each_kind(optima: Sequence[Fit]) -> list[Fit]:
 
 def centre(problem: Problem, start: Values) -> tuple[float, ...]:
     """
-    Return the (6,) values near (6,) start values whose largest scaled residual t is the least.
+    Return the (6,) values near (6,) start values with the smallest largest scaled residual t.
 
-    Sequential quadratic programming: least t with |residuals| <= t.
+    Sequential quadratic programming: minimise t with |residuals| <= t.
     """
     both_signs, jacobian = _both_signs(problem)
     shares = _shares(start)
@@ -105,7 +108,7 @@ def centre(problem: Problem, start: Values) -> tuple[float, ...]:
 
 def rim(problem: Problem, start: Values, direction: Sequence[float]) -> tuple[float, ...]:
     """
-    Return the (6,) values with all |residuals| <= RIM that goes the farthest along a direction.
+    Return the (6,) values with all |residuals| <= RIM that are farthest along a direction.
 
     `start` (6,) is a point of the region, `direction` (6,) is in shares of the ranges.
     """
@@ -121,8 +124,8 @@ def _both_signs(problem: Problem) -> tuple[_Function, _Function]:
     """
     Return (-r, r), (18,), of the scaled residuals r and its derivatives, (18, 6).
 
-    They are functions of the parameters' (6,) shares of their ranges, and keep what they computed:
-    each is asked for twice at a point.
+    They are functions of the parameters' (6,) shares of their ranges, and cache their values: the
+    solver evaluates each twice at a point.
     """
 
     @lru_cache
@@ -143,7 +146,7 @@ def _shares(values: Values) -> np.ndarray:
 
 
 def _values(shares: np.ndarray) -> tuple[float, ...]:
-    """Return the values; SLSQP leaves the bounds by the last digits."""
+    """Return the values within the bounds, which SLSQP exceeds by the last digits."""
     return tuple((LOWER + np.clip(shares, 0.0, 1.0) * RANGE).tolist())
 
 
@@ -151,9 +154,10 @@ def _least(
     gain: np.ndarray, start: np.ndarray, limits: _Function, limits_jacobian: _Function
 ) -> np.ndarray:
     """
-    Return where gain @ at is least with all `limits` at least zero, by SLSQP.
+    Return the minimiser of gain @ x with all `limits` at least zero, by SLSQP.
 
-    The first of `at` are shares of the parameters' ranges, from 0 to 1; what follows is positive.
+    The first elements of x are shares of the parameters' ranges, from 0 to 1; the others are
+    positive.
     """
     further = len(start) - len(PARAMETERS)
     answer = scipy.optimize.minimize(

@@ -1,8 +1,7 @@
-"""Tables of a calibration record, the same for the terminal and for the page of documentation."""
+"""Tables of a calibration record, for the terminal and the page of documentation."""
 
 from ddct_bringup.reproduction.calibration.fit_tables import (
     VALUE_HEADERS,
-    figure_cells,
     fit_cells,
     fit_table,
     number,
@@ -11,6 +10,7 @@ from ddct_bringup.reproduction.calibration.fit_tables import (
     residual_table,
     signed,
     torque_table,
+    value_cells,
 )
 from ddct_bringup.reproduction.calibration.parameters import Record
 from ddct_plant.program.table import Table
@@ -59,7 +59,7 @@ def direction_table(record: Record) -> Table:
 
 
 def correlation_table(record: Record) -> Table:
-    """Return the correlations of the parameters with C_m start held."""
+    """Return the correlations of the parameters for a fixed C_m start."""
     return Table(
         'Correlation of the parameters, C_m start held',
         ('', *VALUE_HEADERS[1:]),
@@ -75,13 +75,13 @@ def correlation_table(record: Record) -> Table:
 
 
 def left_out_table(record: Record) -> Table:
-    """Return what the fits to two rows say about the third."""
+    """Return the predictions of the third row by fits to two rows."""
     return Table(
         'One row left out',
         ('row', 'figure', 'printed', 'computed', 'deviation, %', 'tolerance, %', 'what it is'),
         [
             (
-                *figure_cells(entry),
+                *value_cells(entry),
                 'not predictable: gains fitted to it' if one['gains_from_row'] else 'prediction',
             )
             for one in record['left_out']

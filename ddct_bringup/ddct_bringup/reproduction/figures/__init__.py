@@ -1,1 +1,1 @@
-"""The thesis's figures that can be computed, by number, and the gallery that shows them."""
+"""Figures of the thesis that can be computed, by number, and the gallery that shows them."""

@@ -19,7 +19,7 @@ from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import complain
 
 FIGURES = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES, *SCENARIO_FIGURES)
-"""Those without runs of a controller that can be chosen."""
+"""Figures that do not depend on further controllers."""
 _PICTURE = 'a photograph or a scheme: nothing to compute'
 _DIAGRAM = 'a block diagram: nothing to compute'
 NOT_DRAWN: Mapping[str, str] = {
@@ -32,7 +32,7 @@ NOT_DRAWN: Mapping[str, str] = {
     '4.1': 'explains the horizons: nothing to compute',
     '4.2': _DIAGRAM,
 }
-"""For every figure that cannot be drawn the reason by its number, in order."""
+"""Reasons for every figure that cannot be drawn, by its number, in order."""
 _DESCRIPTION = """\
 Draw the figures of the thesis that can be computed, as figure_<chapter>_<number>.png and
 .svg, with their data in .csv. The page index.html shows them in order. It says what agrees
@@ -96,7 +96,7 @@ def collect_figures(own: Sequence[str] = ()) -> list[ThesisFigure]:
     """
     Return every figure that can be drawn, in order.
 
-    `own` are further controllers, names or files, in those of runs.
+    `own` are further controllers, names or files, for the figures of runs.
     """
     figures = (*FIGURES, *run_figures(own))
     return sorted(figures, key=lambda figure: figure_order(figure.number))
@@ -124,20 +124,20 @@ def _wanted(only: str, numbers: set[str]) -> set[str]:
 
 
 def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:
-    """Create the folder; raise DdctError when a file in it would be lost."""
+    """Create the folder; raise DdctError when a file in it would be overwritten."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         taken = [path for path in files if path.exists()]
     except OSError as error:
         raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
     page = folder / _PAGE
-    if page.exists() and not _is_ours(page):
+    if page.exists() and not _is_own_page(page):
         raise DdctError(f'{page} is not a page of ours: choose another --out')
     if taken and not overwrite:
         raise DdctError(f'{taken[0]} exists: choose another --out or add --overwrite')
 
 
-def _is_ours(page: Path) -> bool:
+def _is_own_page(page: Path) -> bool:
     try:
         return gallery.GENERATOR in read_text_file(page)
     except OSError:

@@ -1,4 +1,4 @@
-"""The page that shows the figures in the order of the thesis, with reasons for what is missing."""
+"""Gallery of the figures in the order of the thesis, with reasons for missing ones."""
 
 import html
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,7 +8,7 @@ from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure
 from ddct_controllers.design.drawing.chart_style import INDEXED_SYMBOL
 
 GENERATOR = '<meta name="generator" content="reproduce figures">'
-"""Marks a page as written here, so that it may be replaced."""
+"""Tag of a page written by this program, which it may replace."""
 CHAPTERS = {
     1: 'The transmission and its models',
     2: 'Loop shaping',
@@ -52,7 +52,7 @@ sub, sup { line-height: 0; font-size: .75em; }
   h2, .absent { break-after: avoid; }
 }
 """
-"""How it looks: on a light and on a dark screen, on a phone and on paper."""
+"""Style of the page, for a light and a dark screen, a phone and paper."""
 _INTRODUCTION = (
     'Drawn from the identified driveline and the calibrated scenario. Below each figure stands '
     'what agrees with the thesis and what does not. The thesis prints few numbers beside its '
@@ -61,7 +61,7 @@ _INTRODUCTION = (
 
 
 def file_name(number: str) -> str:
-    """Return the name of a figure's files without the ending, such as figure_2_10."""
+    """Return the name of a figure's files without the extension, such as figure_2_10."""
     return f'figure_{number.replace(".", "_")}'
 
 
@@ -69,8 +69,8 @@ def gallery_page(drawn: Mapping[ThesisFigure, str], not_drawn: Mapping[str, str]
     """
     Return the HTML of the gallery; pictures are linked relative to it.
 
-    `drawn` has a remark by figure, `not_drawn` a reason by number. The page shows what is in
-    either, in order.
+    `drawn` has a remark by figure, `not_drawn` a reason by number. The page shows the figures of
+    both, in order.
     """
     entries = {figure.number: _picture(figure, remark) for figure, remark in drawn.items()}
     numbers = sorted((*entries, *not_drawn), key=figure_order)

@@ -37,10 +37,10 @@ _ERROR_LINES: tuple[dict[str, Any], ...] = (
     {'color': SKY, 'linestyle': '-', 'linewidth': 4.0},
     {'color': BLACK, 'linestyle': ':'},
 )
-"""For the two ends of the wear, of which one lies on the other."""
+"""Line styles for the two ends of the wear, whose lines overlap."""
 _PRINTED_SENSITIVITY_NORM = 0.97
 _NORMS = {'W_s': 'sensitivity', 'W_t': 'complementary', 'W_u': 'uncertainty'}
-"""Which of `WeightedNorms` is the peak of the weight times its function."""
+"""Fields of `WeightedNorms` by weight: the peak of the weight times its function."""
 
 
 def _loop(factor: float) -> ContinuousLoop:
@@ -54,7 +54,7 @@ def _norms(factor: float) -> WeightedNorms:
 
 @cache
 def _gain_of_the_printed_norms() -> float:
-    """Return the least factor on the gain that gives the printed norm of W_s S_n."""
+    """Return the smallest factor on the gain that gives the printed norm of W_s S_n."""
     return scipy.optimize.brentq(
         lambda factor: _norms(factor).sensitivity - _PRINTED_SENSITIVITY_NORM, 1.0, 3.0, xtol=1e-6
     )
@@ -127,7 +127,7 @@ H_INFINITY_FIGURES = (
         controller=_G_C,
         styled_as='hinf1',
         specifications=THESIS_SPECIFICATIONS,
-        thesis_says='the requirements are met',
+        thesis_claim='the requirements are met',
     ),
 )
-"""Those of Section 3.2."""
+"""Figures of Section 3.2."""

@@ -31,14 +31,14 @@ from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 _PRINTED_PRODUCT = 2.02
-"""t_r w_c that Section 2.2 reads off the curve for its zeta."""
+"""Product t_r w_c that Section 2.2 reads off the curve for its zeta."""
 _G_C1 = LOOP_SHAPING_CONTROLLERS['ls2']
 _G_C2 = LOOP_SHAPING_CONTROLLERS['ls7']
 _RATIOS = (2.0, 3.0, 4.0, 6.0, 10.0, 16.0)
-"""m_d and m_i of the normalised networks; the thesis's G_c1 has 16."""
+"""Ratios m_d and m_i of the normalised networks; G_c1 of the thesis has 16."""
 _SLOWEST_RAD_S, _FASTEST_RAD_S = 1e-3, 1e4
 _INDENTATION = np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, 200))
-"""s / radius on the quarter circle that passes the poles at 0 on the right."""
+"""Values of s / radius on the quarter circle that passes the poles at 0 on the right."""
 
 
 def _draw_rise_time_crossover(axes: Axes) -> str:
@@ -99,7 +99,7 @@ def _draw_nyquist(whole: Axes, zoom: Axes, gain: float, printed_encirclements: i
 
 
 def _compressed(values: np.ndarray) -> np.ndarray:
-    """Return the values with their size replaced by log10(1 + size), so that all is in sight."""
+    """Return the values with magnitude log10(1 + magnitude), so that all are visible."""
     size = np.abs(values)
     return values / size * np.log10(1.0 + size)
 
@@ -159,7 +159,7 @@ LOOP_SHAPING_FIGURES = (
         name='L with G_c = -1/s',
         controller=integrators(-1.0, 1),
         specifications=NETWORK_SPECIFICATIONS,
-        thesis_says='very close to -1, and 70° of phase are missing',
+        thesis_claim='very close to -1, and 70° of phase are missing',
     ),
     nichols_figure(
         *('2.8', 'Nichols chart with G_c1(s)'),
@@ -167,7 +167,7 @@ LOOP_SHAPING_FIGURES = (
         controller=_G_C1,
         styled_as='ls2',
         specifications=NETWORK_SPECIFICATIONS,
-        thesis_says='far from -1, but crosses the circle',
+        thesis_claim='far from -1, but crosses the circle',
     ),
     nichols_figure(
         *('2.9', 'Nichols chart with G_c2(s)'),
@@ -175,7 +175,7 @@ LOOP_SHAPING_FIGURES = (
         controller=_G_C2,
         styled_as='ls7',
         specifications=PLACEMENT_SPECIFICATIONS,
-        thesis_says='the specifications are met; it does not mention the curve',
+        thesis_claim='the specifications are met; it does not mention the curve',
     ),
     step_figure(
         *('2.10', 'Step response with G_c2(s)'),
@@ -185,4 +185,4 @@ LOOP_SHAPING_FIGURES = (
         printed=(0.52, 0.13),
     ),
 )
-"""Those of Section 2.2."""
+"""Figures of Section 2.2."""

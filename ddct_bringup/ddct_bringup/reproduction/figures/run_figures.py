@@ -17,7 +17,7 @@ from ddct_controllers.registry import controller_label
 from ddct_plant.base.units import rpm_from_rad_s
 
 _FIRST_S = 0.5
-"""Start of the time axis: "before 0.6 seconds" (Section 2.3)."""
+"""Start of the time axis in s: "before 0.6 seconds" (Section 2.3)."""
 _LABELS = {'w_d': 'w_d, rpm', 'w_sr': 'w_sr, rpm', 'A_x': 'A_x, m/s²'}
 _SCORES = {
     'w_d': (
@@ -27,7 +27,7 @@ _SCORES = {
     'w_sr': (('σ in rpm', 'torsion_speed_std_rpm', '.2f'),),
     'A_x': (('σ in m/s²', 'acceleration_std_m_s2', '.2f'),),
 }
-"""Name, metric and format of what the score makes of a quantity."""
+"""Name, metric and format of the score of each quantity."""
 _ARCHITECTURES = {
     'base': 'Base',
     'feedforward': 'Feedforward',
@@ -72,13 +72,13 @@ def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str
     end_s = max(time[-1] for time, _ in lines.values())
     draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, styles)
     return (
-        f'Thesis: {group.thesis_says}. {group.verdict}. {_scores(group, runs, quantity)}.'
+        f'Thesis: {group.thesis_claim}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)
     )
 
 
 def _scores(group: RunGroup, runs: dict[str, HeadlessRun], quantity: str) -> str:
-    """Return the score of the quantity, run by run."""
+    """Return the score of the quantity for each run as text."""
     beside = {
         thesis_label(name): thesis_run(name, group.architecture, 1.0) for name in group.compared
     }
@@ -100,13 +100,13 @@ def _texts(runs: dict[str, HeadlessRun], metric: str, form: str) -> str:
 
 
 def _table_5_1(group: RunGroup, quantity: str) -> str:
-    """Return what Table 5.1 prints of these runs, which are those of the detailed model."""
+    """Return the values of Table 5.1 for these runs in the detailed architecture as text."""
     metric = _SCORES[quantity][0][1]
     rows = [thesis_row(name) for name in group.controllers if group.architecture == 'detailed']
     found = ''
     for use, kind in ((CALIBRATED, 'used'), (PREDICTED, 'not used')):
         printed = [
-            f'{thesis_label(row.controller)} {row.figures()[metric]:.2f}'
+            f'{thesis_label(row.controller)} {row.printed_values()[metric]:.2f}'
             for row in rows
             if row and row.use == use
         ]

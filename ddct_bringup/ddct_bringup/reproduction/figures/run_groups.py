@@ -1,4 +1,4 @@
-"""Which controllers the thesis shows together, in which loop, and what it says of them."""
+"""Groups of controllers that the thesis shows together: the loop, and the thesis's claims."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,17 @@ class RunGroup:
     """Figures of the same runs."""
 
     numbers: tuple[str, ...]
-    """Figures of w_d, w_sr and A_x, or of w_d alone."""
+    """Numbers of the figures of w_d, w_sr and A_x, or of w_d alone."""
     architecture: str
     controllers: tuple[str, ...]
-    """Registry names."""
-    thesis_says: str
-    """What its text says of these figures."""
+    """Registry names of the controllers."""
+    thesis_claim: str
+    """Claim of the thesis about these figures."""
     verdict: str
-    """How far ours agree."""
+    """Agreement of the computed figures with the claim."""
     wear_gains: tuple[float, ...] = (1.0,)
     compared: tuple[str, ...] = ()
-    """Registry names of runs that are scored beside these and not drawn."""
+    """Registry names of runs that are scored for comparison and not drawn."""
 
 
 _OSCILLATING = 'w_d good, but oscillations in w_sr and A_x'
@@ -60,29 +60,29 @@ RUN_GROUPS = (
     ),
     RunGroup(
         *(('3.11', '3.12', '3.13'), 'feedforward', _H_INFINITY),
-        thesis_says='the faster to zero, the larger the oscillations',
+        thesis_claim='the faster to zero, the larger the oscillations',
         verdict='Ours agree',
     ),
     RunGroup(
         *(('3.14', '3.15', '3.16'), 'feedforward_tanh', _H_INFINITY),
-        thesis_says='no better with this reference',
+        thesis_claim='no better with this reference',
         verdict='Ours agree for H∞1 and H∞3; H∞2 oscillates half as much in w_sr',
     ),
     RunGroup(
         *(('3.17', '3.18', '3.19'), 'detailed', (*_H_INFINITY, 'pi')),
-        thesis_says='oscillations reduced, only H∞2 very bad in w_sr and A_x',
+        thesis_claim='oscillations reduced, only H∞2 very bad in w_sr and A_x',
         verdict='Ours agree',
     ),
     RunGroup(
         *(('4.3', '4.4', '4.5'), 'detailed', ('mpc1', 'mpc2', 'mpc3')),
-        thesis_says='oscillations smaller than in the previous chapters',
+        thesis_claim='oscillations smaller than in the previous chapters',
         verdict='Ours do not agree: w_d is nearer to the reference, and the oscillations are '
         'larger; in Table 5.1 itself MPC3 oscillates more than H∞1',
         compared=('ls8', 'hinf1'),
     ),
     RunGroup(
         *(('4.6', '4.7', '4.8'), 'detailed', ('mpc4',)),
-        thesis_says='excellent, no oscillations in w_sr and A_x',
+        thesis_claim='excellent, no oscillations in w_sr and A_x',
         verdict='Ours agree: oscillations nearly vanish. w_d is within 10 rpm of zero after '
         '0.46 s, but stays above it, so t_a is not defined',
         compared=('mpc3',),
@@ -93,4 +93,4 @@ RUN_GROUPS = (
         wear_gains=(0.7, 1.3),
     ),
 )
-"""Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
+"""Groups for Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""

@@ -1,4 +1,4 @@
-"""Figures of Chapter 1 that can be computed: references, engine torque, plants that agree."""
+"""Figures of Chapter 1 that can be computed: references, engine torque, comparison of plants."""
 
 import dataclasses
 
@@ -26,19 +26,19 @@ from ddct_plant.simplified.plants import printed_lti_slip
 
 _LAST_S = 2.2
 _SHOWN = steps_in('time shown', _LAST_S) + 1
-"""Steps of a run until then."""
+"""Number of samples of a run up to `_LAST_S`."""
 _END_TIMES_S = (1.2, 1.6, 2.0)
 _PRINTED_PLANT = 'LTI, coefficients as printed'
 
 
 def _reference_rpm(run: HeadlessRun) -> tuple[np.ndarray, np.ndarray]:
-    """Return time in s, until _LAST_S, and the slip reference of a run in rpm."""
+    """Return time in s, up to _LAST_S, and the slip reference of a run in rpm."""
     reference = rpm_from_rad_s(run.trajectory.slip_reference[:, 0])
     return run.trajectory.time_s[:_SHOWN], reference[:_SHOWN]
 
 
 def _tanh_run(end_s: float) -> HeadlessRun:
-    """Return a run after the tanh reference that ends at `end_s` seconds."""
+    """Return a run with the tanh reference that ends at `end_s` seconds."""
     reference = dataclasses.replace(THESIS_SCENARIO.reference, reference_end_s=end_s)
     scenario = dataclasses.replace(THESIS_SCENARIO, reference=reference)
     return headless_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')

@@ -1,4 +1,4 @@
-"""What a figure of the thesis is here, and the kinds of figure that several chapters have."""
+"""Figure of the thesis that can be computed, and kinds of figure that several chapters have."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -31,26 +31,29 @@ class ThesisFigure:
     """One figure of the thesis that can be computed."""
 
     number: str
-    """As the thesis has it, such as '2.10'."""
+    """Number as in the thesis, such as '2.10'."""
     title: str
-    """What it shows."""
+    """Subject of the figure."""
     draw_on: Callable[..., str]
-    """Draws on one axes per panel; returns what agrees with the thesis and what does not."""
+    """
+    Function that draws on one axes per panel and returns a remark on the agreement with the
+    thesis.
+    """
     panels: int = 1
 
     @property
     def heading(self) -> str:
-        """The title with the figure's number."""
+        """Title with the figure's number."""
         return f'Figure {self.number}: {self.title}'
 
     def draw(self) -> tuple[Figure, str]:
-        """Return the chart and the line about it."""
+        """Return the drawing and the remark."""
         figure, axes = new_chart(self.heading, self.panels)
         return figure, self.draw_on(*axes)
 
 
 def figure_order(number: str) -> tuple[int, int]:
-    """Return the chapter and the place of a number such as '2.10'."""
+    """Return the chapter and the position of a number such as '2.10'."""
     chapter, _, place = number.partition('.')
     return int(chapter), int(place)
 
@@ -63,9 +66,9 @@ def draw_over_time(
     styles: Mapping[str, dict[str, Any]],
 ) -> None:
     """
-    Draw (time, values) by name; lines without a style in `styles` get one after the other.
+    Draw (time, values) by name; lines without a style in `styles` get the next free one.
 
-    Where two lines share a colour or a dash, one of them gets another.
+    Where two lines would share a colour or a dash, one of them gets another.
     """
     others = line_styles()
     apart = told_apart({name: styles.get(name) or next(others) for name in lines})
@@ -75,7 +78,7 @@ def draw_over_time(
 
 
 def _solid(controller: str) -> dict[str, Any]:
-    """Return the style of the only loop of a chart: its bounds and references are dashed."""
+    """Return a solid style for the only loop of a chart; bounds and references are dashed."""
     return {**controller_style(controller), 'linestyle': '-'}
 
 
@@ -86,11 +89,11 @@ def nichols_figure(
     name: str,
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
-    thesis_says: str,
+    thesis_claim: str,
     styled_as: str | None = None,
 ) -> ThesisFigure:
     """
-    Return L of one controller, without hold and delay, with the bounds it was made for.
+    Return the Nichols chart of L, without hold and delay, with the bounds of its design.
 
     `styled_as` is the controller's registry name, None for one that has none.
     """
@@ -102,7 +105,7 @@ def nichols_figure(
         draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
         margins = loop_margins(loop)
         if not margins.stable:
-            return f'The closed loop is unstable. Thesis: {thesis_says}.'
+            return f'The closed loop is unstable. Thesis: {thesis_claim}.'
         crossed = [
             f'enters the {found.name} curve (peak {found.peak:.2f}, allowed {found.level:.2f})'
             for found in contours(curve, specifications)
@@ -111,7 +114,7 @@ def nichols_figure(
         return (
             f'Crossover {margins.crossover_rad_s:.2f} rad/s, phase margin '
             f'{margins.phase_margin_deg:.0f}°, gain margin {margins.gain_margin_db:.0f} dB; L '
-            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_says}.'
+            f'{" and ".join(crossed) or "stays out of both curves"}. Thesis: {thesis_claim}.'
         )
 
     return ThesisFigure(number, title, draw)

@@ -1,1 +1,1 @@
-"""The gate: every number and claim of the thesis beside what is computed."""
+"""Thesis gate: comparison of every number and claim of the thesis with a computed one."""

@@ -1,4 +1,4 @@
-"""Subcommand `reproduce numbers`: every number that the thesis prints, beside ours."""
+"""Subcommand `reproduce numbers`: comparison of every printed number with a computed one."""
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +29,7 @@ from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.table import print_tables
 
 Source = Callable[[], Mapping[str, Value | None]]
-"""Returns values by the ids of the gate's file, None for what has no value."""
+"""Function that returns values by the ids of the gate's files, None for an undefined one."""
 SOURCES: Mapping[str, Source] = {
     'plant': plant_values,
     'loop shaping': loop_shaping_values,
@@ -37,7 +37,7 @@ SOURCES: Mapping[str, Source] = {
     'predictive control': predictive_values,
     'closed loop': closed_loop_values,
 }
-"""What computes the numbers of the gate's files, chapter by chapter."""
+"""Functions that compute the numbers of the gate's files, by chapter."""
 _DESCRIPTION = """\
 Compute every number that the thesis prints and hold it against the print:
 reproduced, erratum (the thesis's own numbers lead to another value), calibrated
@@ -70,7 +70,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the tables, write what is asked for; raise DdctError when the gate does not hold."""
+    """Print and write the tables as requested; raise DdctError when a claim of the gate fails."""
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
@@ -90,7 +90,7 @@ def compute(
     sources: Mapping[str, Source], progress: Callable[[str], None] = lambda name: None
 ) -> dict[str, Value | None]:
     """
-    Return what all sources compute; `progress` is called with the name of each one first.
+    Return the values of all sources; `progress` is called with the name of each one first.
 
     Raise ParameterError when two of them compute the same number.
     """

@@ -1,4 +1,4 @@
-"""The gate: read the claims about printed numbers, `chapters/`, and hold them against ours."""
+"""Thesis gate: read the claims about printed numbers in `chapters/`, and check them."""
 
 import importlib.resources
 import math
@@ -24,44 +24,44 @@ _KEYS = frozenset(field.name for field in fields(ThesisNumber))
 _ROUNDING = Tolerance(half_units=1.0)
 LEAST_OF_ERRATUM = 2.0
 """
-How many tolerances an erratum lies from the print at least.
+Smallest distance of an erratum from the print, in tolerances.
 
-What is nearer is a miss: a tolerance that is chosen a little wider would have let it through.
+A smaller deviation is a miss: a slightly wider tolerance would have accepted it.
 """
 OUTCOMES = (
     *('reproduced', 'erratum', 'calibrated hit', 'calibrated miss'),
     *('predicted hit', 'predicted miss', 'given', 'not_reproducible'),
 )
-"""The verdicts, with hit or miss where both can be."""
+"""Possible outcomes: the verdicts, with hit or miss where both can occur."""
 
 
 @dataclass(frozen=True)
 class GateRow:
-    """One printed number beside the computed one."""
+    """One printed number with the computed one."""
 
     number: ThesisNumber
     computed: Value | None
     complaint: str | None
-    """Why the claim does not hold, None when it does."""
+    """Reason why the claim fails, None when it holds."""
     hit: bool | None
-    """Whether computed and printed agree; None when nothing computes it."""
+    """Whether computed and printed value agree; None without a computed value."""
 
     @property
     def outcome(self) -> str:
-        """One of OUTCOMES."""
+        """Outcome of the claim: one of OUTCOMES."""
         verdict = self.number.verdict
         if verdict not in (CALIBRATED, PREDICTED):
             return verdict
         return f'{verdict} {"hit" if self.hit else "miss"}'
 
     def as_dict(self) -> dict[str, Any]:
-        """Return what `ddct reproduce numbers --json` writes for it; what is not there is None."""
+        """Return the entry in `ddct reproduce numbers --json`; missing values are None."""
         number, value = self.number, self.computed
         return {
             'section': number.section,
             'item': number.item,
             'printed': float(number.printed) if number.is_number else number.printed,
-            'computed': value.figures if isinstance(value, Finding) else value,
+            'computed': value.evidence if isinstance(value, Finding) else value,
             'unit': number.unit,
             'tolerance': number.absolute_tolerance,
             'verdict': number.verdict,
@@ -80,11 +80,11 @@ def thesis_numbers() -> tuple[ThesisNumber, ...]:
 
 def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
     """
-    Return the numbers that the YAML text lists, in the order of the sections.
+    Return the numbers in the YAML text, in the order of the sections.
 
-    It is a list of blocks; each has a list `numbers` of entries, and any other key as default of
-    all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated one,
-    and for a group that does not treat its numbers alike.
+    It is a list of blocks; each has a list `numbers` of entries, and any other key is a default
+    for all of them. Raise ParameterError for an unknown key, an incomplete claim or a repeated
+    one, and for a group whose numbers have different rules.
     """
     numbers = [
         _number(entry, defaults=block) for block in parse_yaml(text) for entry in block['numbers']
@@ -98,7 +98,7 @@ def parse_numbers(text: str) -> tuple[ThesisNumber, ...]:
 
 
 def _place(number: ThesisNumber) -> tuple[int, ...]:
-    """Return the section as numbers, without what follows a comma in it, such as a table."""
+    """Return the section as numbers, without a suffix after a comma, such as a table."""
     digits = number.section.partition(',')[0]
     try:
         return tuple(int(part) for part in digits.split('.'))
@@ -125,10 +125,10 @@ def _number(own: Mapping[str, Any], defaults: Mapping[str, Any]) -> ThesisNumber
 
 def _require_one_rule(numbers: Iterable[ThesisNumber]) -> None:
     """
-    Raise ParameterError for a group that does not treat its numbers alike.
+    Raise ParameterError for a group whose numbers have different rules.
 
-    All numbers of a group come from one kind of source, so that none can stand without a computed
-    value beside others that have one, and those of one unit have one tolerance.
+    All numbers of a group have one kind of source, so that none is without a computed value while
+    others have one; those of one unit have one tolerance.
     """
     found: dict[str, set[str | Tolerance]] = defaultdict(set)
     for number in numbers:
@@ -147,10 +147,9 @@ def judge(
     numbers: Sequence[ThesisNumber], values: Mapping[str, Value | None]
 ) -> tuple[GateRow, ...]:
     """
-    Return a row per number; `values` has what was computed, by the numbers' ids.
+    Return a row per number; `values` are the computed values, by the numbers' ids.
 
-    Raise ParameterError for a value that no number of the file asks for: what a computation
-    yields is listed whole.
+    Raise ParameterError for a value without a number in the file: every computed value is listed.
     """
     unknown = sorted(values.keys() - {number.id for number in numbers})
     if unknown:
@@ -194,16 +193,16 @@ def _misses_closely(value: Value, number: ThesisNumber) -> bool:
 
 
 def _agrees(value: Value, stated: str, tolerance: Tolerance | None) -> bool:
-    """Return whether a word is the stated one, a number near it, or a claim holds."""
+    """Return whether text is equal to the stated text, a number is near it, or a claim holds."""
     if isinstance(value, Finding):
         return value.holds
     if isinstance(value, str) or not is_number(stated) or tolerance is None:
         return value == stated
-    # An allowance for floating point where a value lies on the edge, as 0.125 at 0.13.
+    # The factor is a margin for rounding where a value is on the bound, as 0.125 at 0.13.
     return abs(value - float(stated)) <= tolerance.around(stated) * (1.0 + 1e-9)
 
 
 def _text(value: Value) -> str:
     if isinstance(value, Finding):
-        return value.figures
+        return value.evidence
     return value if isinstance(value, str) else f'{value:.6g}'

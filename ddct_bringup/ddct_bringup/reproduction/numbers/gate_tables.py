@@ -1,4 +1,4 @@
-"""The gate's rows as tables of text, the same for the terminal and the page of documentation."""
+"""Rows of the gate as tables of text, for the terminal and the page of documentation."""
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence
@@ -35,7 +35,7 @@ def summary_table(rows: Sequence[GateRow]) -> Table:
 
 
 def facts_table(rows: Sequence[GateRow]) -> Table:
-    """Return how many distinct facts the numbers are, by what each comes to."""
+    """Return the number of distinct facts by outcome."""
     numbers, facts = Counter(row.outcome for row in rows), count_facts(rows)
     lines = [(outcome, str(numbers[outcome]), str(facts[outcome])) for outcome in OUTCOMES]
     total = ('all', str(len(rows)), str(facts.total()))
@@ -44,7 +44,7 @@ def facts_table(rows: Sequence[GateRow]) -> Table:
 
 
 def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
-    """Return the number of groups by outcome: the worst of its numbers, so that no miss hides."""
+    """Return the number of groups by outcome: the worst of its numbers, so every miss shows."""
     outcomes: dict[str, list[str]] = defaultdict(list)
     for row in rows:
         outcomes[row.number.fact].append(row.outcome)
@@ -55,7 +55,7 @@ def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
 
 
 def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, Table]:
-    """Return one table per chapter by the name `chapter_N`, with groups and reasons if asked."""
+    """Return one table per chapter by the name `chapter_N`; `reasons` adds groups and reasons."""
     return {
         f'chapter_{chapter}': _table(
             f'Chapter {chapter}',
@@ -67,10 +67,10 @@ def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, Table
 
 
 def computed_text(row: GateRow) -> str:
-    """Return the computed value, a number with one digit more than is printed; - without one."""
+    """Return the computed value with one digit more than the print; - without one."""
     value = row.computed
     if isinstance(value, Finding):
-        return value.figures
+        return value.evidence
     if value is None or isinstance(value, str):
         return value or '-'
     if not row.hit and row.number.verdict != ERRATUM:
@@ -93,7 +93,7 @@ def _chapter(row: GateRow) -> str:
 
 
 _Cells = Mapping[str, Callable[[GateRow], str]]
-"""The cell of a row, by the header above it."""
+"""Functions that return the cell of a row, by header."""
 _VALUE_CELLS: _Cells = {
     'section': attrgetter('number.section'),
     'item': attrgetter('number.item'),

@@ -1,4 +1,4 @@
-"""One number or word that the thesis prints, and what is claimed about it."""
+"""One number or qualitative statement that the thesis prints, and the claim about it."""
 
 import math
 from dataclasses import dataclass
@@ -10,25 +10,25 @@ from ddct_plant.models.printed import PrintedNumber
 
 @dataclass(frozen=True)
 class Finding:
-    """Whether a claim in words holds, and the figures that show it."""
+    """Result of a check of a qualitative claim, with the values behind it."""
 
     holds: bool
-    figures: str
+    evidence: str
 
 
 Value = float | str | Finding
-"""What is computed for a printed number, or the word or finding for a printed word."""
+"""Computed value: a number for a printed number, a text or finding for a printed statement."""
 
 REPRODUCED = 'reproduced'
 ERRATUM = 'erratum'
 COMPUTED_VERDICTS = (REPRODUCED, ERRATUM, CALIBRATED, PREDICTED)
 VERDICTS = (*COMPUTED_VERDICTS, 'given', 'not_reproducible')
 """
-What can be said of a printed number.
+Verdicts of a claim about a printed number.
 
-`reproduced`: the thesis's other numbers lead to it. `erratum`: they lead far off it.
-`calibrated`: parameters of ours were fitted to its group. `predicted`: a model that was fitted to
-other numbers, or a rule that the thesis does not state, leads to it or misses it. `given`: an
+`reproduced`: it follows from the thesis's other numbers. `erratum`: they give a different number.
+`calibrated`: parameters of the model were fitted to its group. `predicted`: a model fitted to
+other numbers, or a rule that the thesis does not state, reproduces or misses it. `given`: an
 input of the thesis.
 `not_reproducible`: a result of the thesis whose inputs it does not print.
 """
@@ -36,16 +36,19 @@ input of the thesis.
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far a number may lie from the printed one: the widest of the parts that are given."""
+    """Tolerance of a printed number: the largest of the parts that are given."""
 
     half_units: float = 0.0
-    """In halves of a unit of the last printed digit; 1 is the rounding of the print."""
+    """Tolerance in halves of a unit of the last printed digit; 1 is the rounding of the print."""
     significant: float = 0.0
-    """Half a unit of this significant digit: rounding where the print drops trailing zeros."""
+    """
+    Significant digit whose half unit is the tolerance: rounding where the print drops trailing
+    zeros.
+    """
     relative: float = 0.0
-    """As a fraction of the printed number."""
+    """Tolerance as a fraction of the printed number."""
     absolute: float = 0.0
-    """In the number's own unit."""
+    """Tolerance in the number's unit."""
 
     def __post_init__(self) -> None:
         """Check the parts; raise ParameterError when none is given or one is negative."""
@@ -56,7 +59,7 @@ class Tolerance:
             raise ParameterError(f'tolerance: give {", ".join(parts)}, above 0')
 
     def around(self, printed: str) -> float:
-        """Return the tolerance of a printed number in its own unit."""
+        """Return the tolerance of a printed number in the number's unit."""
         number = PrintedNumber('', printed)
         widest = max(
             self.half_units * number.half_unit, self.relative * abs(number.value), self.absolute
@@ -74,25 +77,25 @@ class ThesisNumber:
     section: str
     item: str
     printed: str
-    """With the digits that the thesis prints, or a word."""
+    """Number with the digits that the thesis prints, or a text."""
     verdict: str
-    """One of VERDICTS."""
+    """Verdict of the claim: one of VERDICTS."""
     reason: str
-    """Why this tolerance; of an erratum, what is wrong; of the rest, why nothing is computed."""
+    """Reason for the tolerance; for an erratum, the error; for others, why nothing is computed."""
     unit: str = '1'
     id: str | None = None
-    """Name under which a source computes it; None when nothing does."""
+    """Name under which a source computes the number; None when none does."""
     tolerance: Tolerance | None = None
-    """None for words, which must be equal, and for what is computed as a Finding."""
+    """Tolerance; None for text, which must be equal, and for a Finding."""
     group: str | None = None
-    """What one computation, input or cause leads to together; counted as one fact."""
+    """Name of the numbers that one computation, input or cause determines; one fact together."""
     ours: str | None = None
-    """Our value of an erratum, to the digits that must come out; or a word."""
+    """Computed value of an erratum with its required digits; or a text."""
     hit: str | None = None
-    """'no' of a calibrated number that the fit misses."""
+    """Value 'no' for a calibrated number that the fit misses."""
 
     def __post_init__(self) -> None:
-        """Check that the claim is complete; raise ParameterError that names what is not."""
+        """Check that the claim is complete; raise ParameterError with the missing part."""
         computed = self.verdict in COMPUTED_VERDICTS
         complaints = {
             f'unknown verdict {self.verdict!r}: choose from {", ".join(VERDICTS)}': (
@@ -118,17 +121,17 @@ class ThesisNumber:
 
     @property
     def is_number(self) -> bool:
-        """Whether a number is printed, not a word."""
+        """Whether the printed value is a number, not a text."""
         return is_number(self.printed)
 
     @property
     def absolute_tolerance(self) -> float | None:
-        """The tolerance in the number's unit, None without one."""
+        """Tolerance in the number's unit, None without one."""
         return self.tolerance.around(self.printed) if self.tolerance else None
 
     @property
     def fact(self) -> str:
-        """The group, or the number itself where it has none: what is counted once."""
+        """Group, or the number itself where it has none; facts are counted once."""
         return self.group or f'{self.section}, {self.item}'
 
 

@@ -1,1 +1,1 @@
-"""Tables of closed-loop runs that show what decides how the predictive controllers fare."""
+"""Tables of closed-loop runs on the causes of the predictive controllers' results."""

@@ -1,4 +1,4 @@
-"""The kept admissible scenarios, what they predict, and what the MPC rows become in them."""
+"""Studies of the admissible scenarios: fitted values, predictions, readings of the MPC rows."""
 
 import dataclasses
 
@@ -14,16 +14,16 @@ from ddct_bringup.reproduction.runs import (
 )
 from ddct_bringup.reproduction.studies.readings import READINGS
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, Study, cells
-from ddct_bringup.reproduction.values.orders import OSCILLATION_WORDS, SLIP_WORDS, WORN
+from ddct_bringup.reproduction.values.orders import OSCILLATION_RATINGS, SLIP_RATINGS, WORN
 from ddct_bringup.thesis.predictions import Prediction, kept_predictions
 from ddct_bringup.thesis.table_5_1 import (
-    FIGURES,
     FORMS,
     PREDICTED_ROWS,
     ROW_OF,
+    TABLE_METRICS,
     ThesisRow,
 )
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.program.table import text_or_dash
@@ -37,7 +37,7 @@ _MORE_KNOWN = dataclasses.replace(
 
 
 def admissible_scenarios() -> Study:
-    """Return the fitted values of each kept scenario and how well it fits."""
+    """Return the fitted values of each admissible scenario and the quality of its fit."""
     return Study(
         'Admissible scenarios',
         (
@@ -64,10 +64,10 @@ def _scenario_row(scenario: Scenario) -> tuple[str, ...]:
 
 
 def prediction_ranges() -> Study:
-    """Return the MPC rows of Table 5.1 as value and range beside the print."""
+    """Return the MPC rows of Table 5.1 as value and range with the printed value."""
     rows = []
     for row in PREDICTED_ROWS:
-        for name, printed in row.figures().items():
+        for name, printed in row.printed_values().items():
             found = _kept(f'5.1 {row.controller} {name}')
             assert not isinstance(found.frozen, str)
             rows.append(
@@ -79,7 +79,7 @@ def prediction_ranges() -> Study:
                     'yes' if found.contains(printed) else 'no',
                 )
             )
-    for name in FIGURES[1:]:
+    for name in TABLE_METRICS[1:]:
         alone = _kept(f'5.1 {OPEN_LOOP} {name}')
         cells_of_value = _value_and_range(alone, FORMS[name])
         rows.append((OPEN_LOOP, METRICS[name].heading, *cells_of_value, '-', '-', '-'))
@@ -95,10 +95,10 @@ def prediction_ranges() -> Study:
 
 
 def _hits_at_once(row: ThesisRow) -> str:
-    """Return in how many scenarios all figures of a row are hits, and its sigmas."""
-    values = [_kept(f'5.1 {row.controller} {name}').values for name in FIGURES]
+    """Return the number of scenarios with hits for all values of a row, and for its sigmas."""
+    values = [_kept(f'5.1 {row.controller} {name}').values for name in TABLE_METRICS]
     hits = [
-        [row.hit(name, value) for name, value in zip(FIGURES, figures, strict=True)]
+        [row.hit(name, value) for name, value in zip(TABLE_METRICS, figures, strict=True)]
         for figures in zip(*values, strict=True)
     ]
     return (
@@ -108,15 +108,18 @@ def _hits_at_once(row: ThesisRow) -> str:
 
 
 def worn_ranges() -> Study:
-    """Return the words of Table 5.2 as hit or miss, and their numbers, with their ranges."""
+    """Return hit or miss for the ratings of Table 5.2, and their numbers, with their ranges."""
     rows: list[tuple[str, ...]] = []
     for gain in WORN:
-        for name in SLIP_WORDS:
+        for name in SLIP_RATINGS:
             kinds = (
-                ('w_d', f'w_d "{SLIP_WORDS[name]}"', ''),
+                ('w_d', f'w_d "{SLIP_RATINGS[name]}"', ''),
                 ('slip_rad_s', '|w_d| at the end of the window rad/s', '.1f'),
-                ('w_sr', f'w_sr, A_x "{OSCILLATION_WORDS[gain][name]}"', ''),
-                *((figure, METRICS[figure].heading, FORMS[figure]) for figure in FIGURES[1:]),
+                ('w_sr', f'w_sr, A_x "{OSCILLATION_RATINGS[gain][name]}"', ''),
+                *(
+                    (figure, METRICS[figure].heading, FORMS[figure])
+                    for figure in TABLE_METRICS[1:]
+                ),
             )
             for kind, header, form in kinds:
                 found = _kept(f'5.2 {name} {kind} {gain:g}')

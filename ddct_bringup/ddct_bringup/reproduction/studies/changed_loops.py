@@ -1,7 +1,7 @@
 """
-Loops with a clutch without actuator, a measured state, a load step or noise on the speeds.
+Modified loops: a clutch without actuator, a measured state, a load step, noisy speeds.
 
-And the linear loop of plant, filter and feedback, of which the modes are asked for.
+Also the modes of the linear loop of plant, filter and feedback.
 """
 
 import math
@@ -31,16 +31,16 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
 
 ALL_BUT_ONE = 1.0 - 1e-6
-"""Beyond this a mode is as good as an integrator."""
+"""Magnitude above which a mode counts as an integrator."""
 TWIST = MEASURED
-"""Place of theta_sr in the state, after the speeds."""
+"""Index of theta_sr in the state, after the speeds."""
 
 
 def model_without_actuator(
     driveline: DrivelineParameters, wear_gain: float = 1.0
 ) -> TransmissionModel:
     """
-    Return the sampled driveline alone; the actuator's states drive nothing any more.
+    Return the sampled driveline alone; the actuator's states have no effect.
 
     The clutch transmits `wear_gain` times the request.
     """
@@ -58,7 +58,7 @@ def closed_loop(
     """
     Return the matrix (2 STATES, 2 STATES) of `plant` and filter within limits.
 
-    Without weights on the moves the inputs follow from the estimate alone.
+    Without weights on the moves the inputs depend on the estimate alone.
     """
     feedback = -np.linalg.solve(program.structure.hessian, program.gradient[:, :STATES])
     inputs, measured = [REQUEST, ENGINE_TORQUE], np.eye(observer.gain.shape[1], STATES)
@@ -74,12 +74,12 @@ def closed_loop(
 
 
 def growth(program: CondensedProgram, observer: Observer, plant: TransmissionModel) -> float:
-    """Return the factor by which the fastest growing mode grows per period; below 1 none does."""
+    """Return the growth factor per period of the fastest-growing mode; below 1 none grows."""
     return float(np.abs(np.linalg.eigvals(closed_loop(program, observer, plant))).max())
 
 
 def slow_times_s(program: CondensedProgram, observer: Observer) -> list[float]:
-    """Return the three longest time constants with the plant that the observer expects."""
+    """Return the three longest time constants in s with the plant that the observer assumes."""
     sizes = np.abs(np.linalg.eigvals(closed_loop(program, observer, observer.model)))
     times = [
         PERIOD_S / -math.log(size) if 0.0 < size < ALL_BUT_ONE else math.inf for size in sizes
@@ -88,7 +88,7 @@ def slow_times_s(program: CondensedProgram, observer: Observer) -> list[float]:
 
 
 class LoopWithoutActuator(ClosedLoop):
-    """The closed loop with the request, cut off below zero, as the torque of the actuator."""
+    """Closed loop in which the request, saturated at zero, is the torque of the actuator."""
 
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
@@ -103,12 +103,12 @@ class _Direct:
 
 
 class MeasuredState(Observer):
-    """Takes w_m, w_p, w_r and theta_sr as measured; the actuator's states follow by the model."""
+    """Observer with w_m, w_p, w_r and theta_sr measured; actuator states follow the model."""
 
     def __init__(self, settings: RunSettings, model: TransmissionModel) -> None:
         super().__init__(model, np.eye(len(model.a), MEASURED + 1), run_start(settings))
         self.twist: Callable[[], float] | None = None
-        """Measures theta_sr in rad; without it there is no estimate."""
+        """Function that returns theta_sr in rad; without it there is no estimate."""
 
     def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """Return x_k, (n,), for w_m, w_p, w_r in rad/s and C_load in N m."""
@@ -120,7 +120,7 @@ class MeasuredState(Observer):
 
 
 class LoopWithMeasuredState(ClosedLoop):
-    """The closed loop, which lets its controller's `MeasuredState` measure the twist."""
+    """Closed loop that provides theta_sr to its controller's `MeasuredState`."""
 
     def __init__(self, settings: RunSettings, controller: MpcController[MeasuredState]) -> None:
         """Start in the run's initial state."""
@@ -138,10 +138,10 @@ def slip_after_load_step(
     each_step: Callable[[], None] = lambda: None,
 ) -> np.ndarray:
     """
-    Return w_d (steps + 1,) in rad/s of a run whose load grows by `load_step_n_m` on the way.
+    Return w_d (steps + 1,) in rad/s of a run with a step of the load by `load_step_n_m`.
 
     The plant has it from step `load_step_index` on; controllers compute C_load from the vehicle
-    speed and do not see it. `each_step` is called after every reply of the loop.
+    speed, without the step. `each_step` is called after every reply of the loop.
     """
     loop = ClosedLoop(settings, controller)
     slip = np.zeros(settings.scenario.steps + 1)
@@ -156,7 +156,7 @@ def slip_after_load_step(
 
 
 class NoisySpeeds(Controller):
-    """Gives a controller w_m, w_p and w_r with Gaussian noise that repeats after every reset."""
+    """Controller with Gaussian noise on w_m, w_p and w_r that repeats after every reset."""
 
     def __init__(self, controller: Controller, deviation_rad_s: float, seed: int) -> None:
         """Wrap `controller`; the noise has the standard deviation `deviation_rad_s`."""
@@ -168,16 +168,16 @@ class NoisySpeeds(Controller):
         self.reset()
 
     def reset(self) -> None:
-        """Reset the controller and start the noise anew."""
+        """Reset the controller and restart the noise."""
         self._controller.reset()
         self._random = np.random.default_rng(self._seed)
 
     def hold(self, measurement: Measurement) -> None:
-        """Pass a held-off period on with noise."""
+        """Pass a period with feedback held off to the controller, with noise."""
         self._controller.hold(self._noisy(measurement))
 
     def update(self, measurement: Measurement) -> Command:
-        """Return what the controller answers to noisy speeds."""
+        """Return the controller's command for noisy speeds."""
         return self._controller.update(self._noisy(measurement))
 
     def _noisy(self, measurement: Measurement) -> Measurement:

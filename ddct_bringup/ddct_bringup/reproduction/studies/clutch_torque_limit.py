@@ -1,4 +1,4 @@
-"""What no controller of the clutch torque alone can beat in the thesis scenario."""
+"""Lower limits of the sigmas in the thesis scenario for any control by clutch torque alone."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -27,23 +27,23 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import text_or_dash
 
 PRINTED_STRAYS_RAD_S = (1.0, 2.0, 6.0)
-"""How far the slip may stray after t_a; the thesis does not print how far its runs did."""
+"""Bounds of |w_d| after t_a in rad/s; the thesis does not print those of its runs."""
 REGULARISATION = 1e-8
-"""Share of the mean curvature: requests at the very end act on nothing that is weighed."""
+"""Weight as a share of the mean curvature: the last requests have no effect on the cost."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The least that one standard deviation can be, by quadratic programming."""
+    """Smallest possible standard deviations, each by a separate quadratic program."""
 
     torsion_speed_std_rpm: float
-    """When it is w_sr that is minimised."""
+    """Smallest standard deviation of w_sr in rpm."""
     acceleration_std_m_s2: float
-    """When it is A_x that is minimised."""
+    """Smallest standard deviation of A_x in m/s^2."""
 
 
 def clutch_torque_limit() -> Study:
-    """Return the limits at the engagement times of Table 5.1 and of our own runs."""
+    """Return the limits at the engagement times of Table 5.1 and of the computed runs."""
     clutch_only = [row for row in THESIS_TABLE if row.controller != 'mpc4']
     rows = []
     for controller in (*(row.controller for row in clutch_only), 'hinf_sampled'):
@@ -101,7 +101,7 @@ def limit_at(engagement_time_s: float, strays_rad_s: float) -> Limit:
     Return the limits for slip that is positive until `engagement_time_s`, near zero after it.
 
     From then to the end of the score window it stays within `strays_rad_s` of zero. The whole
-    future is known, C_m and C_load are those of the scenario, requests are held over 10 ms and
+    future is known, C_m and C_load are those of the scenario, requests are constant over 10 ms and
     not negative, and act through delay and G_a from the state at control start.
     """
     start = THESIS_SCENARIO.control_start_step
@@ -110,7 +110,7 @@ def limit_at(engagement_time_s: float, strays_rad_s: float) -> Limit:
     slip_free, slip_rows = prediction['slip']
     engaged = steps_in('engagement_time_s', engagement_time_s)
     before = np.arange(last - start + 1) < engaged
-    # Requests reach the slip after two periods.
+    # Requests act on the slip after two periods.
     lower = np.where(before, 0.0, -strays_rad_s)[2:] - slip_free[2:]
     upper = np.where(before, np.inf, strays_rad_s)[2:] - slip_free[2:]
     requests = last - start
@@ -136,7 +136,7 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
     """
     Return slip, w_sr and A_x over the steps `start`..`last` as free part and rows per request.
 
-    Until `start` every controller of `detailed` leaves the plant to C_fOL, so any run serves.
+    Until `start` every controller of `detailed` leaves the plant to C_fOL, so any run can be used.
     """
     driveline, vehicle = THESIS_SCENARIO.driveline, THESIS_SCENARIO.vehicle
     model = transmission_model(driveline)
@@ -167,6 +167,6 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
 
 
 def _delayed(response: np.ndarray) -> np.ndarray:
-    """Return (n, n - 1): column k is the response, which starts a period later, from step k."""
+    """Return (n, n - 1): column k is the response from step k on, delayed by one period."""
     none = np.zeros(len(response) - 1)
     return scipy.linalg.toeplitz(np.concatenate([[0.0], response[:-1]]), none)

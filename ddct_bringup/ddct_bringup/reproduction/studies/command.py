@@ -1,4 +1,4 @@
-"""Subcommand `reproduce studies`: what decides how the predictive controllers fare."""
+"""Subcommand `reproduce studies`: the causes of the predictive controllers' results."""
 
 import argparse
 import textwrap
@@ -45,7 +45,7 @@ _ABOUT: Mapping[StudyFunction, str] = {
 STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
     function.__name__: function for function in _ABOUT
 }
-"""Every study by its name."""
+"""Functions of all studies by name."""
 _COLUMNS, _NAME_COLUMNS = 80, max(map(len, STUDIES))
 _DESCRIPTION = """\
 Study the predictive controllers of Chapter 4, and of what it leaves to future work, in
@@ -84,7 +84,7 @@ def add_parser(subparsers: Any) -> None:
 
 
 def _studies() -> str:
-    """Return every study with what it is about, a line each, for a terminal of 80 columns."""
+    """Return every study with its subject, a line each, for a terminal of 80 columns."""
     lines = ['studies:']
     for name, function in STUDIES.items():
         lines += textwrap.wrap(
@@ -97,7 +97,7 @@ def _studies() -> str:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Make the tables, print them or write them where asked for, and return the exit code."""
+    """Compute the tables, print or write them as requested, and return the exit code."""
     names = options.study or list(STUDIES)
     for name in names:
         require_choice('study', name, list(STUDIES))

@@ -33,9 +33,9 @@ from ddct_plant.scenario.settings import RunSettings
 PANELS_IN_A_ROW = 5
 PANEL_INCHES = (2.2, 1.45)
 DOTS_PER_INCH = 58.0
-"""Keeps a chart below 150 kB."""
+"""Resolution of a chart, at which its file is smaller than 150 kB."""
 MARGIN = 0.15
-"""Beyond the slips of the runs that engage; what goes further leaves the panel."""
+"""Margin beyond the slips of engaged runs, as a share; larger slips leave the panel."""
 _COLOURS = (VERMILLION, BLACK, BLUE)
 Case = tuple[str, str, float, str]
 """Scenario, clutch, wear gain, controller."""
@@ -43,16 +43,16 @@ Case = tuple[str, str, float, str]
 
 @dataclass(frozen=True, eq=False)
 class Slip:
-    """The slip of one run, and the state that it was given."""
+    """Slip of one run, and its state."""
 
     controller: str
     label: str
-    """Its wear gain, which tells it from other runs of the controller."""
+    """Wear gain as text, which distinguishes the runs of a controller."""
     state: str
     start: int
     """Step at which control starts."""
     rpm: np.ndarray
-    """(N+1,)."""
+    """Slip speed w_d in rpm, (N+1,)."""
 
 
 def criterion(run: HeadlessRun, name: str) -> Any:
@@ -61,7 +61,7 @@ def criterion(run: HeadlessRun, name: str) -> Any:
 
 
 def _together(run: HeadlessRun) -> float | None:
-    """Return the time to lock in s, of a clutch that never locks t_a."""
+    """Return the time to lock in s; t_a for a clutch that never locks."""
     name = 'time_to_lock' if run.settings.stick_slip else 'engagement_time'
     return criterion(run, name)
 
@@ -77,7 +77,7 @@ COLUMNS: tuple[StudyColumn, ...] = (
 
 
 def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
-    """Run one case; return its row and its slip, small enough to come from another process."""
+    """Run one case; return its row and its slip, small enough to send between processes."""
     scenario, clutch, wear_gain, controller = case
     settings = RunSettings(load_scenario(scenario), clutch=clutch, wear_gain=wear_gain)
     run = headless_run(settings, controller)
@@ -104,7 +104,7 @@ def _engagements(scenario: str, clutch: str) -> Study:
 
 
 def engagement_chart(title: str, slips: Sequence[Slip]) -> Figure:
-    """Return a panel per controller with all its runs over time in s, each state in it."""
+    """Return a panel per controller with all its runs over time in s, and their states."""
     panels: dict[str, list[Slip]] = {}
     for slip in slips:
         panels.setdefault(slip.controller, []).append(slip)
@@ -126,7 +126,7 @@ def engagement_chart(title: str, slips: Sequence[Slip]) -> Figure:
 def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
     axes.set_title(panel[0].controller, fontsize=9.0)
     axes.tick_params(labelsize=7.0)
-    axes.set_xlabel('Time, s', visible=False)  # for the data; the title says it to the eye
+    axes.set_xlabel('Time, s', visible=False)  # for the chart's data; the title shows it
     axes.set_ylabel('w_d, rpm', visible=False)
     axes.axvline(time_of_step(panel[0].start), color=GREY, linewidth=0.8)
     for place, (slip, colour) in enumerate(zip(panel, _COLOURS, strict=True)):
@@ -146,7 +146,7 @@ def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
 
 
 def _range(slips: Sequence[Slip]) -> tuple[float, float]:
-    """Return the rpm that the panels show: of runs that (nearly) engage, of all if none does."""
+    """Return the range in rpm of the panels: of (nearly) engaged runs, or of all without one."""
     together = [slip.rpm for slip in slips if slip.state in SUCCESSES]
     shown = together or [slip.rpm for slip in slips]
     low, high = min(rpm.min() for rpm in shown), max(rpm.max() for rpm in shown)
@@ -168,4 +168,4 @@ def _functions() -> dict[str, StudyFunction]:
 
 
 ENGAGEMENTS = _functions()
-"""A study per scenario and clutch."""
+"""Studies by name, one per scenario and clutch."""

@@ -1,4 +1,4 @@
-"""MPC4 under the readings that Section 4.3 leaves open, and with a pull towards the demand."""
+"""MPC4 under the readings that Section 4.3 allows, and with a pull towards the demand."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -45,18 +45,18 @@ PULLS = (0.0, 0.01, 0.05, 0.1, 0.14, 0.2, 0.5, 1.0, 2.0)
 NEAR_WEAR = (0.95, 1.05)
 COASTING_S = 170
 STIFFER_PULL = 0.05
-"""r of the readings with less weight on dw_d/dt, by the same argument as the registry's."""
+"""Pull r of the readings with less weight on dw_d/dt, by the argument used in the registry."""
 Model = Callable[[DrivelineParameters, float], TransmissionModel]
-"""From the driveline and the wear gain."""
+"""Function from the driveline and the wear gain to the model."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What one reading makes of MPC4, and of the plant."""
+    """Settings and models of MPC4 under one reading, and the plant."""
 
     settings: MpcSettings
     model: Model = transmission_model
-    """In the controller."""
+    """Model in the controller."""
     plant: Model = transmission_model
     observer: Callable[[RunSettings, TransmissionModel], Observer] = make_observer
 
@@ -67,13 +67,13 @@ class Reading:
         return MpcController(model, observer, self.settings, run.scenario.engine_authority)
 
     def run(self) -> Trajectory:
-        """Return its run in the thesis scenario."""
+        """Return the run of the reading in the thesis scenario."""
         settings = THESIS_SETTINGS
         loop: type[ClosedLoop] = ClosedLoop
         if self.observer is MeasuredState:
             loop = LoopWithMeasuredState
         elif self.plant is not transmission_model:
-            # From the same slip, which without an actuator does not come about by itself.
+            # The same initial slip, which a run without actuator does not reach.
             start = thesis_run('pi', 'detailed', 1.0)
             speed = THESIS_SCENARIO.initial.shaft_speed_rad_s
             slip = float(start.trajectory.slip_speed[start.start])
@@ -83,7 +83,7 @@ class Reading:
         return run_loop(loop(settings, self.controller(settings)), settings.scenario.steps)
 
     def growth(self, wear_gain: float) -> float:
-        """Return the growth per period of its loop with a worn clutch, see `growth`."""
+        """Return the growth factor per period of the loop with a worn clutch, see `growth`."""
         mpc4 = self.controller(THESIS_SETTINGS)
         return growth(
             mpc4.program, mpc4.observer, self.plant(THESIS_SCENARIO.driveline, wear_gain)
@@ -98,7 +98,7 @@ _SETTINGS = TwoInputCost().settings()
 _SQUARED = TwoInputCost(0.05, STIFFER_PULL).settings()
 _MIXED = TwoInputCost(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL).settings()
 _NOWHERE = model_without_actuator, model_without_actuator
-"""Neither the controller nor the plant has an actuator."""
+"""Models without an actuator, for the controller and for the plant."""
 READINGS: Mapping[str, Reading] = {
     "x'Qx, reference along its tangent": Reading(_SETTINGS),
     "x'Qx, coming reference": Reading(replace(_SETTINGS, preview=True)),
@@ -117,11 +117,11 @@ READINGS: Mapping[str, Reading] = {
     'no actuator at all, coming reference': Reading(replace(_SETTINGS, preview=True), *_NOWHERE),
     'no actuator at all, weights squared': Reading(_SQUARED, *_NOWHERE),
 }
-"""The first is what the registry has."""
+"""Readings by name; the first is that of the registry."""
 
 
 def mpc4_readings() -> Study:
-    """Return the figures of MPC4 under each reading."""
+    """Return the metrics of MPC4 under each reading."""
     rows = [
         (
             name,
@@ -150,7 +150,7 @@ def mpc4_readings() -> Study:
 
 
 def torque_level() -> Study:
-    """Return how a pull towards the demand closes the torque level that the cost leaves open."""
+    """Return the effect of a pull towards the demand on the free torque level."""
     driveline = THESIS_SCENARIO.driveline
     model = transmission_model(driveline)
     worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]

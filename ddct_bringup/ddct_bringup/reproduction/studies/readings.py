@@ -1,4 +1,4 @@
-"""MPC1-3 under the readings that Table 4.1 and Section 4.2 of the thesis leave open."""
+"""MPC1-3 under the readings that Table 4.1 and Section 4.2 of the thesis allow."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -14,11 +14,11 @@ from ddct_bringup.reproduction.studies.study import (
     metric_column,
 )
 from ddct_bringup.thesis.table_5_1 import ROW_OF
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow
-from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, Knowledge
+from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, ObserverInputs
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
@@ -30,21 +30,21 @@ Change = Callable[[MpcSettings], MpcSettings]
 
 @dataclass(frozen=True)
 class Reading:
-    """What one reading makes of a row of Table 4.1."""
+    """Meaning of a row of Table 4.1 under one reading."""
 
     change: Change = lambda settings: settings
-    """Change of what the row means by itself."""
-    knowledge: Knowledge = AS_DRAWN
+    """Change of the settings from the meaning in the registry."""
+    knowledge: ObserverInputs = AS_DRAWN
     model: TransmissionModel | None = None
-    """In place of the one that is known of."""
+    """Model in place of that of `knowledge`."""
     noise_rpm: float = 1.0
-    """Noise of the measured w_d."""
+    """Standard deviation of the noise of the measured w_d in rpm."""
     beside: Callable[[MpcController], Controller] = lambda controller: controller
-    """What becomes of C_fOL beside the controller."""
+    """Function that wraps the controller to change C_fOL."""
     architecture: str = 'detailed'
 
     def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> HeadlessRun:
-        """Return its run in a scenario with the thesis's driveline."""
+        """Return the run of a row in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
         settings = self.change(row.settings())
         parts = self.knowledge.parts(run, self.model, noise_rpm=self.noise_rpm)
@@ -52,7 +52,7 @@ class Reading:
 
 
 def readings() -> Study:
-    """Return the figures of MPC1-3 under each reading; the first is what the registry has."""
+    """Return the metrics of MPC1-3 under each reading; the first is that of the registry."""
     columns = (
         *TABLE_5_1,
         metric_column(METRICS['slip_final_rpm'], 'z.1f', 'w_d at the end rpm'),
@@ -69,8 +69,8 @@ def readings() -> Study:
     )
 
 
-class OpenLoopUnknown(Controller):
-    """The MPC takes its own torque for all there is, while C_fOL acts beside it."""
+class OpenLoopNotModelled(Controller):
+    """The MPC models its own torque alone, while C_fOL is added to it."""
 
     def __init__(self, controller: MpcController) -> None:
         self._controller = controller
@@ -81,20 +81,20 @@ class OpenLoopUnknown(Controller):
         self._controller.reset()
 
     def hold(self, measurement: Measurement) -> None:
-        """Hold the MPC, which believes that the clutch is open."""
+        """Hold the MPC, whose model has an open clutch."""
         self._controller.hold(replace(measurement, open_loop_torque=0.0))
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the MPC's answer, to which the architecture adds C_fOL."""
+        """Return the MPC's command, to which the architecture adds C_fOL."""
         return self._controller.update(replace(measurement, open_loop_torque=0.0))
 
 
 class OpenLoopOff(Controller):
     """
-    C_fOL is taken off at control start, and the MPC gives the whole torque.
+    C_fOL is switched off at control start, and the MPC requests the whole torque.
 
-    With `from_zero` its moves are counted from no torque at all, so the first has to bring it all;
-    otherwise from the torque that there was.
+    With `from_zero` its moves start from zero torque, so the first has to request all of it;
+    otherwise from the last torque.
     """
 
     def __init__(self, controller: MpcController, *, from_zero: bool = False) -> None:
@@ -104,17 +104,17 @@ class OpenLoopOff(Controller):
         self._taken_over = 0.0
 
     def reset(self) -> None:
-        """Reset the MPC and forget the torque."""
+        """Reset the MPC and the stored torque."""
         self._controller.reset()
         self._taken_over = 0.0
 
     def hold(self, measurement: Measurement) -> None:
-        """Note the torque to go on from."""
+        """Store the torque at which the MPC starts."""
         self._controller.hold(measurement)
         self._taken_over = 0.0 if self._from_zero else measurement.open_loop_torque
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the MPC's whole request less the C_fOL that the architecture adds."""
+        """Return the MPC's whole request minus C_fOL, which the architecture adds."""
         command = self._controller.update(replace(measurement, open_loop_torque=self._taken_over))
         whole = command.clutch_torque + self._taken_over
         return replace(command, clutch_torque=whole - measurement.open_loop_torque)
@@ -125,13 +125,13 @@ def _coming(settings: MpcSettings) -> MpcSettings:
 
 
 def _per_rad_s(settings: MpcSettings) -> MpcSettings:
-    """Take Q per rad/s."""
+    """Return the settings with Q per rad/s."""
     return replace(settings, outputs=(OutputTerms(SLIP_SPEED, BASIS.output_weight),))
 
 
 def _not_squared(settings: MpcSettings) -> MpcSettings:
-    """Take Q e^2 + R du^2, the norm of Section 4.1: the weights that are squared are roots."""
-    # What is weighted stays in rpm: 0.26 becomes its root, the rpm per rad/s do not.
+    """Return the settings for Q e^2 + R du^2, the norm of Section 4.1: weights become roots."""
+    # The weighted output stays in rpm: 0.26 becomes its root, the factor from rad/s does not.
     weight = settings.outputs[0].weight / math.sqrt(BASIS.output_weight)
     return replace(
         settings,
@@ -141,7 +141,7 @@ def _not_squared(settings: MpcSettings) -> MpcSettings:
 
 
 def _torque_weighed(settings: MpcSettings) -> MpcSettings:
-    """Take R as the weight of the controller's torque, not of its moves."""
+    """Return the settings with R as the weight of the controller's torque, not of its moves."""
     return replace(settings, inputs=(InputTerms(target_weight=BASIS.move_weight),))
 
 
@@ -160,11 +160,11 @@ READINGS: Mapping[str, Reading] = {
     'C_fOL off from 0.6 s, moves from 0': Reading(
         beside=lambda controller: OpenLoopOff(controller, from_zero=True)
     ),
-    'C_fOL on, unknown to it': Reading(beside=OpenLoopUnknown),
+    'C_fOL on, unknown to it': Reading(beside=OpenLoopNotModelled),
     'base architecture': Reading(architecture='base'),
     'as mpc_preview': Reading(_coming, FULL),
     'as mpc_preview, reference held': Reading(knowledge=FULL),
     'as mpc_preview, Q per rad/s': Reading(lambda settings: _coming(_per_rad_s(settings)), FULL),
     'as mpc_preview, Q per rad/s, reference held': Reading(_per_rad_s, FULL),
 }
-"""The first is what the registry has as `mpc1` to `mpc3`."""
+"""Readings by name; the first is that of `mpc1` to `mpc3` in the registry."""

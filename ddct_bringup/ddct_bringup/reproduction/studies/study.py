@@ -1,4 +1,4 @@
-"""What a study is: a table that closed-loop runs make, row by row, and what its columns are."""
+"""Study: a table of closed-loop runs, row by row, and the columns that studies share."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -10,25 +10,28 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import HeadlessRun
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Column, Quantity, Table
 
 WEAR_GAINS = (0.7, 1.0, 1.3)
-"""The ends of the thesis's Table 5.2, and a new clutch."""
+"""Wear gains: the ends of the thesis's Table 5.2, and a new clutch."""
 FINER_WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
 CLOSE_RPM = 10.0
-"""2 % of the slip at control start in the thesis scenario; a line's width in a plot of it."""
+"""
+Slip in rpm that counts as close to zero: 2 % of that at control start in the thesis scenario, a
+line's width in a plot.
+"""
 
 
 @dataclass(frozen=True)
 class Study(Table):
-    """A table, and what to know when reading it."""
+    """Table with remarks for its readers."""
 
     remarks: tuple[str, ...] = ()
     draw: Callable[[], matplotlib.figure.Figure] | None = None
-    """Returns the chart that goes with the table, if there is one."""
+    """Function that returns the chart of the study, None without one."""
 
     def as_dict(self) -> dict[str, object]:
         """Return the table with one mapping per row."""
@@ -41,12 +44,12 @@ StudyColumn = Column[HeadlessRun]
 
 
 def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
-    """Return what stands above the columns."""
+    """Return the headers of the columns."""
     return tuple(column.heading for column in columns)
 
 
 def cells(columns: Sequence[StudyColumn], run: HeadlessRun) -> tuple[str, ...]:
-    """Return what stands below them for a run."""
+    """Return the cells of a run in the columns."""
     return tuple(column.text(run) for column in columns)
 
 
@@ -63,7 +66,7 @@ def run_study(
 
 
 def close_time_s(trajectory: Trajectory, start: int) -> float | None:
-    """Return how long after step `start` |w_d| falls below CLOSE_RPM for good, None for never."""
+    """Return the time in s from step `start` until |w_d| stays below CLOSE_RPM, None for never."""
     far = np.flatnonzero(np.abs(rpm_from_rad_s(trajectory.slip_speed)) >= CLOSE_RPM)
     last = far[-1] if far.size else -1
     return None if last == trajectory.steps else float(max(last + 1 - start, 0) * PERIOD_S)
@@ -81,9 +84,9 @@ def friction_kj(run: HeadlessRun) -> float | None:
     return None if energy is None else energy / 1000.0
 
 
-def metric_column(figure: Quantity, form: str, heading: str = '') -> StudyColumn:
-    """Return the column of a metric, under its symbol and unit where there is no heading."""
-    return Column(heading or figure.heading, form, attrgetter(f'metrics.{figure.key}'))
+def metric_column(quantity: Quantity, form: str, heading: str = '') -> StudyColumn:
+    """Return the column of a metric; the heading defaults to its symbol and unit."""
+    return Column(heading or quantity.heading, form, attrgetter(f'metrics.{quantity.key}'))
 
 
 def close_column(header: str) -> StudyColumn:
@@ -92,7 +95,7 @@ def close_column(header: str) -> StudyColumn:
 
 
 TABLE_5_1 = tuple(metric_column(METRICS[name], form) for name, form in FORMS.items())
-"""The figures that Table 5.1 has."""
+"""Columns of the metrics of Table 5.1."""
 TWO_INPUTS: tuple[StudyColumn, ...] = (
     TABLE_5_1[0],
     close_column(f'|w_d| < {CLOSE_RPM:g} rpm s'),
@@ -100,4 +103,4 @@ TWO_INPUTS: tuple[StudyColumn, ...] = (
     metric_column(METRICS['slip_final_rpm'], '.1f', 'w_d at end rpm'),
     Column('C_m - demand N m', '', lambda run: deviation_range(run.trajectory)),
 )
-"""Those of a controller of clutch and engine."""
+"""Columns for a controller of clutch and engine."""

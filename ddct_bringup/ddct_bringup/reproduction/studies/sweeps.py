@@ -1,4 +1,4 @@
-"""Studies that run controllers over a weight, the wear, the pedal, or what the engine may do."""
+"""Studies that vary a weight, the wear, the pedal, or the authority over the engine."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from ddct_bringup.reproduction.studies.study import (
     metric_column,
     run_study,
 )
-from ddct_bringup.verdict.metric_figures import METRICS
+from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
@@ -31,15 +31,17 @@ from ddct_plant.program.table import Column
 from ddct_plant.scenario.settings import RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
-"""Weights of w_sr per rpm as multiples of that of w_d, beside the default."""
+"""Weights of w_sr per rpm as multiples of that of w_d, besides the default."""
 DEFAULT_FACTOR = (
     default_torsion_weight(THESIS_SCENARIO.driveline.total_ratio) / BASIS.output_weight
 )
 BESIDE = ('pi', 'hinf1', 'mpc3')
-"""Controllers of the thesis beside those that it cites."""
+"""Controllers of the thesis for comparison with the cited ones."""
 _FINE_GAINS = (0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3)
 TWO_INPUT_GAINS = {'mpc4': _FINE_GAINS, 'mpc4_wear': (0.4, 0.5, *_FINE_GAINS, 1.5, 1.6, 2.0)}
-"""Wear gains. Those of `mpc4_wear` reach beyond the bounds of its estimate, 0.5 and 1.5."""
+"""
+Wear gains by controller; those of `mpc4_wear` exceed the bounds of its estimate, 0.5 and 1.5.
+"""
 AUTHORITIES = {
     'free': EngineAuthority(),
     **{
@@ -91,7 +93,7 @@ def _torsion_case(factor: float) -> tuple[tuple[str, str], HeadlessRun]:
 
 
 def state_of_art() -> Study:
-    """Run what the thesis cites beside its own, new and worn, in the detailed architecture."""
+    """Run the controllers that the thesis cites, and three of its own, new and worn, detailed."""
     return run_study(
         'The state of the art in the thesis scenario, detailed',
         ('controller', 'K_usura'),
@@ -140,7 +142,7 @@ def pedal_positions() -> Study:
 
 
 def engine_authority() -> Study:
-    """Run the controllers of both inputs between free authority over the engine and none."""
+    """Run the controllers of both inputs between full authority over the engine and none."""
     cases = [(name, case) for name in ('mpc4', 'mpc4_wear') for case in AUTHORITIES]
     cases += [(name, 'none') for name in ('mpc3', 'mpc_preview')]
     settings = {

@@ -1,4 +1,4 @@
-"""Table 5.2 in numbers, with the clutch of the thesis and with one that sticks."""
+"""Table 5.2 in numbers, with the thesis's linear clutch and with the stick-slip clutch."""
 
 import math
 from collections.abc import Mapping
@@ -7,14 +7,14 @@ from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, headless_run
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
 from ddct_bringup.reproduction.values.orders import (
-    OSCILLATION_WORDS,
-    SLIP_WORDS,
+    OSCILLATION_RATINGS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     Row,
     judge_table_5_2,
+    ratings_of,
     rows_of_table_5_2,
-    words_of,
 )
 from ddct_bringup.verdict.state import NOT_ENGAGED, SUCCESSES
 from ddct_plant.models.clutch import CLUTCHES
@@ -22,7 +22,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 
 def table_5_2_in_numbers() -> Study:
-    """Return the figures, the words that they come to and the printed ones."""
+    """Return the values, the ratings that follow from them and the printed ones."""
     return Study(
         f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}',
         (
@@ -46,11 +46,11 @@ def table_5_2_in_numbers() -> Study:
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return a row per controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_WORDS}
+    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.verdict['state'] for name, run in runs.items()}
     figures = rows_of_table_5_2(runs)
     ranked = [_with_states(row, states) for row in figures]
-    words = [words_of(row) for row in ranked]
+    words = [ratings_of(row) for row in ranked]
     printed = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
         (
@@ -60,18 +60,18 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
             *(f'{row[name]:.3g}' for row in figures),
             states[name],
             *(row[name] for row in words),
-            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_WORDS[name]),
+            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_RATINGS[name]),
             _printed(
                 printed.get(f'5.2 {name} w_sr {wear_gain:g}'),
-                OSCILLATION_WORDS.get(wear_gain, {}).get(name, ''),
+                OSCILLATION_RATINGS.get(wear_gain, {}).get(name, ''),
             ),
         )
-        for name in SLIP_WORDS
+        for name in SLIP_RATINGS
     ]
 
 
 def _with_states(row: Row, states: Mapping[str, str]) -> Row:
-    """Return the figures, infinite for a run that got out of hand: however small, none is good."""
+    """Return the values, infinite for a failed run: a small one is no good result there."""
     return {
         name: figure if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
         for name, figure in row.items()
@@ -79,7 +79,7 @@ def _with_states(row: Row, states: Mapping[str, str]) -> Row:
 
 
 def _printed(finding: Finding | None, word: str) -> str:
-    """Return the printed word and whether it holds; a dash where the thesis prints none."""
+    """Return the printed rating and whether it holds; a dash where the thesis prints none."""
     if finding is None:
         return '-'
     return f'{word}: {"holds" if finding.holds else "does not hold"}'

@@ -1,4 +1,4 @@
-"""What a worn clutch and an unknown load leave of the slip, and how well `mpc_wear` knows them."""
+"""Slip with a worn clutch and an unknown load, and the estimates of `mpc_wear`."""
 
 import numpy as np
 
@@ -24,15 +24,15 @@ CONTROLLERS = (
     *('hinf2', 'ls8'),
 )
 FAR_GAINS = (0.4, 0.7, 1.0, 1.3, 2.5)
-"""The outer two are beyond what a clutch is taken to reach."""
+"""Wear gains; the outer two are beyond the assumed range of a clutch."""
 LOAD_STEP_N_M = 470.0
-"""At the wheels: a slope of 10 % begins."""
+"""Load step at the wheels in N m: the start of a slope of 10 %."""
 LOAD_STEP_S = 1.5
 LAST_S = 0.5
-"""Last part of the run, in which the largest slip is looked for."""
+"""Length in s of the last part of the run, in which the largest slip is evaluated."""
 SEED = 4
 CLOSE = 0.02
-"""How near the true gain counts as known."""
+"""Relative error below which the wear gain counts as identified."""
 _LOAD_STEP = LOAD_STEP_N_M, steps_in('load step', LOAD_STEP_S)
 
 
@@ -47,7 +47,7 @@ def wear() -> Study:
 
 
 def wear_feedforward() -> Study:
-    """Do the same in the architecture of Figure 5.1, where feedback acts from the start."""
+    """Run the controllers worn in the architecture of Figure 5.1, with feedback from the start."""
     return _study(
         'feedforward', FAR_GAINS, 'Feedback acts from 0 s, so slip is controlled at 0.6 s.'
     )

@@ -1,1 +1,1 @@
-"""What is computed for the numbers of Chapters 1 to 4."""
+"""Computed values for the numbers of the thesis."""

@@ -1,15 +1,15 @@
 """
-What we compute for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims.
+Computed values for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims.
 
-The claims are what the thesis says in words of its architectures and controllers. The rule of each
-stands in its entry of the gate's files: a strict order, or one by a factor.
+The claims are the thesis's qualitative statements on its architectures and controllers. The rule
+of each is in its entry of the gate's files: a strict order, or one by a factor.
 """
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
 from ddct_bringup.reproduction.runs import thesis_run
 from ddct_bringup.reproduction.values.orders import (
     CLEARLY,
-    SLIP_WORDS,
+    SLIP_RATINGS,
     WORN,
     WORN_ARCHITECTURE,
     below,
@@ -23,23 +23,23 @@ from ddct_bringup.reproduction.values.orders import (
     text,
 )
 from ddct_bringup.reproduction.values.plant_values import deviation_bound_percent
-from ddct_bringup.thesis.table_5_1 import FIGURES, ROW_OF
+from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 
 LOOP_SHAPING = tuple(f'ls{number}' for number in range(1, 10))
 H_INFINITY = ('hinf1', 'hinf2', 'hinf3')
 PREDICTIVE = ('mpc1', 'mpc2', 'mpc3')
 NOT_REACHED = 'not reached'
-"""In the place of t_a when w_d does not become 0."""
+"""Text in place of t_a when w_d does not become 0."""
 _ERROR = 'slip_rmse_rpm'
 _FREQUENCY, _PREDICTIVE = ('ls8', 'hinf1'), ('mpc3', 'mpc4')
 _SIMILAR = 0.25
-"""Relative distance within which two figures are similar: the tolerance of a prediction."""
+"""Relative distance within which two values are similar: the tolerance of a prediction."""
 _EQUAL_MODELS_PERCENT = 1.0
-"""Share of the peak of w_d. Models that are nearer to each other count as equal."""
+"""Difference of models that count as equal, in % of the peak of w_d."""
 
 
 def closed_loop_values() -> dict[str, Value | None]:
-    """Return the values by the ids that the thesis gate's files give them."""
+    """Return the values by the ids of the thesis gate's files."""
     bound = deviation_bound_percent()
     base = metric(_ERROR, H_INFINITY, 'base')
     twist, _ = sigmas(H_INFINITY, 'base')
@@ -91,7 +91,7 @@ def _mpc_oscillates_less() -> Finding:
 
 
 def _table_claims() -> dict[str, Value | None]:
-    """Return the values that the five controllers of Table 5.1 decide, by the ids of the files."""
+    """Return the values for claims on the five controllers of Table 5.1, by gate id."""
     times, rows = metric('engagement_time_s', ROW_OF), sigmas(tuple(ROW_OF))
     of_time, of_all = text('s', times), sigma_text(rows, ROW_OF)
     four = (*_FREQUENCY, *_PREDICTIVE)
@@ -121,11 +121,11 @@ def _table_claims() -> dict[str, Value | None]:
 
 
 def _printed_order() -> str:
-    """Return how MPC3's printed sigmas are beside the printed ones of the chapters before."""
+    """Return the order of MPC3's printed sigmas relative to those of the earlier chapters."""
     better = all(
-        ROW_OF['mpc3'].figures()[name] < ROW_OF[before].figures()[name]
+        ROW_OF['mpc3'].printed_values()[name] < ROW_OF[before].printed_values()[name]
         for before in _FREQUENCY
-        for name in FIGURES[1:]
+        for name in TABLE_METRICS[1:]
     )
     return 'better' if better else 'not better'
 
@@ -133,7 +133,7 @@ def _printed_order() -> str:
 def _table_5_1() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     for controller in ROW_OF:
-        figures = thesis_run(controller, 'detailed', 1.0).figures
+        figures = thesis_run(controller, 'detailed', 1.0).table_values
         if figures['engagement_time_s'] is None:
             figures['engagement_time_s'] = NOT_REACHED
         found |= {f'5.1 {controller} {name}': value for name, value in figures.items()}
@@ -141,11 +141,11 @@ def _table_5_1() -> dict[str, Value | None]:
 
 
 def _table_5_2() -> dict[str, Value | None]:
-    """Return the words, and whether Hinf2 alone ends clearly nearer to zero at both K_usura."""
+    """Return the ratings, and whether Hinf2 alone ends clearly nearer to zero at both K_usura."""
     found: dict[str, Value | None] = {}
     ends = {}
     for wear in WORN:
-        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_WORDS}
+        runs = {name: thesis_run(name, WORN_ARCHITECTURE, wear) for name in SLIP_RATINGS}
         rows = rows_of_table_5_2(runs)
         ends[wear] = rows[0]
         found |= judge_table_5_2(wear, rows)

@@ -1,11 +1,11 @@
-"""What we compute of a controller: every coefficient by name, z-form, rise time, overshoot."""
+"""Computed values of a controller: coefficients by name, z-form, rise time, overshoot."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
@@ -19,9 +19,14 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 _DURATION_S = 8.0
 _RISE_TOLERANCE = (0.08, 0.02)
 _OVERSHOOT_TOLERANCE = 1.5
-"""Those of Tables 2.1 and 3.1: a fraction or seconds, and points; what is read off a plot."""
+"""
+Tolerances of Tables 2.1 and 3.1, which are read off a plot: rise time as a fraction or in s,
+overshoot in points.
+"""
 _OUTPUT_WEIGHT, _RATE_WEIGHT = 1.0, 0.1
-"""Defaults of MATLAB's mpcDesigner; its slider multiplies the one and divides the other."""
+"""
+Default weights of MATLAB's mpcDesigner; its slider multiplies the first and divides the other.
+"""
 
 
 def coefficients(name: str, transfer_function: FactoredTransferFunction) -> dict[str, float]:
@@ -48,10 +53,10 @@ def in_the_form_of(
     printed: FactoredTransferFunction, computed: FactoredTransferFunction
 ) -> FactoredTransferFunction:
     """
-    Return the computed transfer function in the factors that the print has.
+    Return the computed transfer function in factors of the printed form.
 
-    Slowest with slowest: its roots, by magnitude, go to the printed factors, by magnitude, two to
-    each pair. Raise ParameterError when one has more roots than the other.
+    Its roots, sorted by magnitude, are assigned to the printed factors, sorted by magnitude, two
+    to each pair. Raise ParameterError when one has more roots than the other.
     """
     return FactoredTransferFunction(
         computed.gain,
@@ -86,14 +91,14 @@ def step_values(
     """Return `NAME.rise time` in s and `NAME.overshoot` in % of these controllers."""
     found: dict[str, float | None] = {}
     for name, controller in controllers.items():
-        rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
+        rise_time, over = rise_time_and_overshoot(continuous_loop(controller), _DURATION_S)
         found |= {f'{name}.rise time': rise_time, f'{name}.overshoot': 100.0 * over}
     return found
 
 
 def fulfilled(controller: FactoredTransferFunction, specifications: TimeSpecifications) -> str:
-    """Return which specifications the step response meets, as far as a plot can tell."""
-    rise_time, over = step_figures(continuous_loop(controller), _DURATION_S)
+    """Return the specifications that the step response meets, within plotting accuracy."""
+    rise_time, over = rise_time_and_overshoot(continuous_loop(controller), _DURATION_S)
     limit = specifications.rise_time_s
     quick = rise_time is not None and rise_time <= limit + max(
         _RISE_TOLERANCE[0] * limit, _RISE_TOLERANCE[1]

@@ -1,4 +1,4 @@
-"""What we compute for the numbers of Chapter 3, H-infinity: weights, synthesis, Hinf1's norms."""
+"""Computed values for the numbers of Chapter 3, H-infinity: weights, synthesis, norms of Hinf1."""
 
 import math
 
@@ -38,9 +38,9 @@ RAW_CONTROLLER = FactoredTransferFunction(
 )
 """G_c(s) of hinflmi (Section 3.2.2) as printed, before it is cleaned."""
 _WORN_ERROR = 0.3
-"""|G_p/G_pn - 1| at the ends of 0.7 <= K_usura <= 1.3."""
-_SAME = 0.1
-"""Relative distance within which a printed factor can be meant to cancel one of the plant."""
+"""Relative error |G_p/G_pn - 1| at the ends of 0.7 <= K_usura <= 1.3."""
+_CANCELLATION_TOLERANCE = 0.1
+"""Relative distance within which a printed factor may cancel one of the plant."""
 
 
 def h_infinity_values() -> dict[str, Value | None]:
@@ -59,7 +59,7 @@ def h_infinity_values() -> dict[str, Value | None]:
 
 
 def _rise_formula() -> str:
-    """Return which numerator gives the printed w_n >= 9.6 rad/s for zeta = 0.63, t_r = 0.3 s."""
+    """Return the numerator for the printed w_n >= 9.6 rad/s with zeta = 0.63, t_r = 0.3 s."""
     angle = math.acos(THESIS_SPECIFICATIONS.damping)
     numerators = {'pi - arccos(zeta)': math.pi - angle, 'pi arccos(zeta)': math.pi * angle}
     fall = THESIS_SPECIFICATIONS.rise_time_s * math.sin(angle)
@@ -67,16 +67,16 @@ def _rise_formula() -> str:
 
 
 def _synthesised_weight() -> str:
-    """Return whether two calls of sderiv, (1 + s/w_2) each, make W_t's polynomial."""
+    """Return whether two calls of sderiv, (1 + s/w_2) each, give W_t's polynomial."""
     made = float(np.polymul([1.0, 1.0], [1.0, 1.0])[1])
     printed = 2.0 * PRINTED_WEIGHTS.complementary.damping
     return 'W_t(s)' if math.isclose(made, printed, abs_tol=5e-4) else '(1 + s/w_2)^2/T_p'
 
 
 def _norm_values() -> dict[str, Value | None]:
-    """Section 3.2: the weights, and what the printed and the rescaled Hinf1 make of them."""
+    """Return the values of Section 3.2: weights, and norms of the printed and rescaled Hinf1."""
     hinf1 = H_INFINITY_CONTROLLERS['hinf1']
-    # From the slow pole pair, (s + epsilon)^2, of the raw controller.
+    # The slow pole pair of the raw controller is (s + epsilon)^2.
     _, square = numbers_of(RAW_CONTROLLER.denominator[4])
     epsilon_rad_s = math.sqrt(square)
     crossover = loop_margins(continuous_loop(RAW_CONTROLLER)).crossover_rad_s
@@ -89,17 +89,17 @@ def _norm_values() -> dict[str, Value | None]:
         'W_u constant': _WORN_ERROR * -float(PRINTED_W_U.poles[0].real),
         'epsilon / w_c': epsilon_rad_s / crossover if crossover else None,
         'gain of Hinf1.gain': cleaned.gain,
-        **_figures('gain of Hinf1', hinf1),
+        **_printed_values('gain of Hinf1', hinf1),
         'raw gain times 30/pi.gain': rescaled,
-        **_figures(
+        **_printed_values(
             'raw gain times 30/pi',
             FactoredTransferFunction(rescaled, hinf1.numerator, hinf1.denominator),
         ),
     }
 
 
-def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value | None]:
-    """Return every figure that Sections 3.2.2 and 3.3 print for Hinf1, of `controller`."""
+def _printed_values(name: str, controller: FactoredTransferFunction) -> dict[str, Value | None]:
+    """Return every value that Sections 3.2.2 and 3.3 print for Hinf1, for `controller`."""
     loop = continuous_loop(controller)
     w_s, w_t = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
     norms = weighted_norms(loop, w_s, w_t, PRINTED_W_U)
@@ -116,11 +116,11 @@ def _figures(name: str, controller: FactoredTransferFunction) -> dict[str, Value
 
 
 def _synthesis_values() -> dict[str, Value | None]:
-    """Section 3.2.2 synthesised again: whole controllers, no part of one."""
+    """Return the values of a new synthesis by Section 3.2.2: whole controllers, no part of one."""
     by_printed, by_fitted = design_h_infinity(PRINTED_WEIGHTS), synthesised_design('hinf_fitted')
     hinf1 = H_INFINITY_CONTROLLERS['hinf1']
     cleaned = coefficients('hinf1 by fitted weights', in_the_form_of(hinf1, by_fitted.cleaned))
-    del cleaned['hinf1 by fitted weights.pole 1']  # The pole at 0, which the cleaning puts there.
+    del cleaned['hinf1 by fitted weights.pole 1']  # the pole at 0, which the cleaning adds
     return {
         **coefficients('raw by printed weights', in_the_form_of(RAW_CONTROLLER, by_printed.raw)),
         **coefficients('raw by fitted weights', in_the_form_of(RAW_CONTROLLER, by_fitted.raw)),
@@ -131,7 +131,7 @@ def _synthesis_values() -> dict[str, Value | None]:
 
 def _cancelled() -> dict[str, Value | None]:
     """
-    Return what an H-infinity controller cancels: all that is stable in G_a P_2.
+    Return the factors that an H-infinity controller cancels: all stable ones of G_a P_2.
 
     Its zeros are the plant's poles without the one at 0, its poles the plant's zeros in the left
     half-plane.
@@ -144,5 +144,8 @@ def _cancelled() -> dict[str, Value | None]:
     del found['cancelled.gain']
     fast = max((factor for factor in poles if isinstance(factor, tuple)), key=lambda f: f[1])
     numerator = H_INFINITY_CONTROLLERS['hinf2'].numerator
-    has = any(isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _SAME for f in numerator)
+    has = any(
+        isinstance(f, tuple) and abs(f[1] / fast[1] - 1.0) < _CANCELLATION_TOLERANCE
+        for f in numerator
+    )
     return found | {'hinf2 fast pair': Finding(has, f's^2 + {fast[0]:g} s + {fast[1]:g}')}

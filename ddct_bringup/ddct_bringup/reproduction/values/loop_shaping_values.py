@@ -1,4 +1,4 @@
-"""What we compute for the numbers of Chapter 2, loop shaping."""
+"""Computed values for the numbers of Chapter 2, loop shaping."""
 
 import math
 
@@ -40,22 +40,22 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 _DRIVELINE = DrivelineParameters()
 _CROSSOVER_RAD_S = 8.0
-"""w_c that Section 2.2 designs G_c1 for."""
+"""Crossover frequency w_c in rad/s that Section 2.2 designs G_c1 for."""
 _PRINTED_PRODUCT = 2.02
-"""t_r w_c that Section 2.2 reads off Figure 2.2."""
+"""Product t_r w_c that Section 2.2 reads off Figure 2.2."""
 _LEAD_RATIO = 16.0
-"""m_d as printed."""
+"""Lead ratio m_d as printed."""
 _INTEGRATORS = {0: '1', 1: 's'}
-"""The factor of mu poles at 0, as it is printed."""
+"""Printed factor of mu poles at 0, by mu."""
 _SAMPLED_PAIR = 0.9481
-"""c of the pole pair of G_c2(z) as printed."""
+"""Coefficient c of the pole pair of G_c2(z) as printed."""
 
 
 def loop_shaping_values() -> dict[str, Value | None]:
     """Return the values by the ids of the gate's file."""
     steps = step_values(LOOP_SHAPING_CONTROLLERS)
     percent = steps['ls7.overshoot']
-    # t_r w_c bounds what is chosen from below.
+    # t_r w_c is the lower bound of the chosen crossover.
     bound = _PRINTED_PRODUCT / PLACEMENT_SPECIFICATIONS.rise_time_s
     # The printed pole pairs are s^2 + b s + ... and z^2 + ... + c: c = exp(-b T).
     b, _ = numbers_of(LOOP_SHAPING_CONTROLLERS['ls7'].denominator[-1])
@@ -114,7 +114,7 @@ def _sign() -> dict[str, Value | None]:
 
 
 def _networks() -> dict[str, Value | None]:
-    """Return the phase that -1/s lacks at w_c, and what the networks make of G_c1."""
+    """Return the phase that -1/s lacks at w_c, and the effect of the networks on G_c1."""
     g_c1 = LOOP_SHAPING_CONTROLLERS['ls2']
     response = continuous_loop(integrators(-1.0, 1)).response(np.array([_CROSSOVER_RAD_S]))[0]
     wanted = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
@@ -126,7 +126,7 @@ def _networks() -> dict[str, Value | None]:
     return {
         'missing phase': math.degrees(wanted - float(np.angle(-response))),
         'lead phase': math.degrees(float(np.angle(lead))),
-        # w_c = 8 rad/s over the printed zero of the leads.
+        # w_c = 8 rad/s divided by the printed zero of the leads
         'lead zero': f'w_c / {_CROSSOVER_RAD_S / lead_zero:g}',
         **{name: x for name, x in coefficients('G_c1', made).items() if name not in put_in},
         'G_c1 in Nichols': 'out of the circles'
@@ -137,7 +137,7 @@ def _networks() -> dict[str, Value | None]:
 
 
 def _placement() -> dict[str, Value | None]:
-    """Return G_c2 by our placement: its zero is the largest allowed, its pairs the plant's."""
+    """Return G_c2 by our placement: its zero is the largest allowed, its pairs are the plant's."""
     crossover, allowed = PLACEMENT_CROSSOVER_RAD_S, PLACEMENT_SPECIFICATIONS.overshoot
     zero = largest_zero_rad_s(crossover, allowed, _DRIVELINE)
     placed = placement(crossover, zero, _DRIVELINE)

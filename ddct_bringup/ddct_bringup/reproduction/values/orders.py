@@ -1,9 +1,10 @@
 """
-Figures of several runs by controller, and how they order them: what claims in words rest on.
+Metrics of several runs by controller and their order, the basis of qualitative claims.
 
-The thesis names no limits for the words of Table 5.2; what a word says is an order. They are
-judged by one rule that was set after looking at the figures: a row of words holds where every
-figure grows with the word, and within one word the largest is at most twice the smallest.
+The thesis defines no limits for the ratings of Table 5.2, such as `good`; a rating states an
+order. They are judged by one rule that was set after the values were known: a row of ratings holds
+where every value increases with the rating, and within one rating the largest is at most twice the
+smallest.
 """
 
 import math
@@ -11,30 +12,30 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
-from ddct_bringup.thesis.table_5_1 import FIGURES
+from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
 
 CLEARLY = 2.0
-"""Factor behind `huge`, `very bad`, `no oscillations` and the only one that does something."""
+"""Factor that `huge`, `very bad`, `no oscillations` and "the only one with an effect" require."""
 WORN = (0.7, 1.3)
-"""The two critical values of K_usura, inequality (3.2)."""
+"""Critical values of K_usura, inequality (3.2)."""
 WORN_ARCHITECTURE = 'feedforward'
-"""That of Figure 5.1, the only run with a worn clutch that the thesis shows."""
-SLIP_WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
-"""Table 5.2: w_d, at both values of K_usura."""
-OSCILLATION_WORDS = {
+"""Architecture of Figure 5.1, the only run with a worn clutch in the thesis."""
+SLIP_RATINGS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+"""Ratings of w_d in Table 5.2, equal for both values of K_usura."""
+OSCILLATION_RATINGS = {
     0.7: {'ls8': 'high', 'hinf2': 'low', 'mpc3': 'average', 'mpc4': 'average'},
-    1.3: dict.fromkeys(SLIP_WORDS, 'average'),
+    1.3: dict.fromkeys(SLIP_RATINGS, 'average'),
 }
-"""Table 5.2: w_sr and A_x by K_usura."""
+"""Ratings of w_sr and A_x in Table 5.2, by K_usura."""
 
 _RANKS = {'good': 0, 'low': 0, 'average': 1, 'bad': 2, 'high': 2}
-"""Of the words, from the best to the worst."""
+"""Ranks of the ratings, from the best to the worst."""
 _ALIKE = 2.0
-"""Largest ratio of two figures that have the same word."""
+"""Largest ratio of two values with the same rating."""
 
 Row = Mapping[str, float]
-"""One figure by controller; infinite where it does not exist."""
+"""Values of one metric by controller; infinite where it does not exist."""
 
 
 def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed') -> Row:
@@ -52,7 +53,7 @@ def _metric_of(name: str, runs: Mapping[str, HeadlessRun]) -> Row:
 
 def sigmas(controllers: Sequence[str], architecture: str = 'detailed') -> tuple[Row, Row]:
     """Return the standard deviations of w_sr in rpm and of A_x in m/s^2."""
-    twist, acceleration = (metric(name, controllers, architecture) for name in FIGURES[1:])
+    twist, acceleration = (metric(name, controllers, architecture) for name in TABLE_METRICS[1:])
     return twist, acceleration
 
 
@@ -74,7 +75,7 @@ def is_extreme(
 
 
 def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = True) -> Finding:
-    """Return whether each controller, or none, is lower in every row than the same elsewhere."""
+    """Return whether each controller, or none, is lower in all rows of `ours` than of `others`."""
     names = list(ours[0])
     lower = [
         name
@@ -88,7 +89,7 @@ def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = Tru
 
 
 def text(unit: str, row: Row) -> str:
-    """Return the figures of a row for a reader."""
+    """Return the values of a row as text."""
     parts = (
         f'{name} {value:.3g}' if value < math.inf else f'{name} -' for name, value in row.items()
     )
@@ -96,60 +97,64 @@ def text(unit: str, row: Row) -> str:
 
 
 def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
-    """Return the two standard deviations of some controllers for a reader."""
+    """Return the two standard deviations of some controllers as text."""
     twist, acceleration = ({name: row[name] for name in names} for row in rows)
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
 
 
 def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
-    """Return |w_d| as the score window ends in rad/s, std w_sr in rpm and std A_x in m/s^2."""
+    """Return |w_d| at the window's end in rad/s, std w_sr in rpm and std A_x in m/s^2."""
     slips = {}
     for name, run in runs.items():
         end = steps_in('score_window_s', run.settings.scenario.score_window_s[1])
         slips[name] = abs(float(run.trajectory.slip_speed[end]))
-    return [slips, *(_metric_of(name, runs) for name in FIGURES[1:])]
+    return [slips, *(_metric_of(name, runs) for name in TABLE_METRICS[1:])]
 
 
 def judge_table_5_2(wear_gain: float, rows: Sequence[Row]) -> dict[str, Finding]:
-    """Return what the printed words come to, by the gate's ids, of `rows_of_table_5_2`."""
+    """Return the findings on the printed ratings by the gate's ids, from `rows_of_table_5_2`."""
     slips, twist, acceleration = rows
-    words = {
-        'w_d': judge_words(SLIP_WORDS, [('rad/s', slips)]),
-        'w_sr': judge_words(
-            OSCILLATION_WORDS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
+    ratings = {
+        'w_d': judge_ratings(SLIP_RATINGS, [('rad/s', slips)]),
+        'w_sr': judge_ratings(
+            OSCILLATION_RATINGS[wear_gain], [('rpm', twist), ('m/s^2', acceleration)]
         ),
     }
     return {
         f'5.2 {name} {what} {wear_gain:g}': finding
-        for what, found in words.items()
+        for what, found in ratings.items()
         for name, finding in found.items()
     }
 
 
-def judge_words(
-    words: Mapping[str, str], figures: Sequence[tuple[str, Row]]
+def judge_ratings(
+    ratings: Mapping[str, str], quantities: Sequence[tuple[str, Row]]
 ) -> dict[str, Finding]:
     """
-    Return what each controller's word comes to, by its name.
+    Return the finding on each controller's rating, by its name.
 
-    `words` has the printed word by controller; `figures` a unit and the figures by controller, for
-    each quantity that the words are about. A word holds when it is right beside all the others.
+    `ratings` has the printed rating by controller; `quantities` a unit and the values by
+    controller, for each metric that is rated. A rating holds when it is right relative to all the
+    others.
     """
     return {
         name: Finding(
-            all(_stands(name, other, words, row) for _, row in figures for other in words),
-            ', '.join(_text(row[name], unit) for unit, row in figures),
+            all(
+                _in_order(name, other, ratings, row) for _, row in quantities for other in ratings
+            ),
+            ', '.join(_text(row[name], unit) for unit, row in quantities),
         )
-        for name in words
+        for name in ratings
     }
 
 
-def words_of(row: Row) -> dict[str, str]:
+def ratings_of(row: Row) -> dict[str, str]:
     """
-    Return the word that each controller's figure comes to by the rule of `judge_words`.
+    Return the rating of each controller's value by the rule of `judge_ratings`.
 
-    From the least on, figures within twice the least of them have one word. The words are good,
-    average and bad; of more groups than three all between are average, one group is alike.
+    In increasing order, values within twice the smallest of them have one rating. The ratings are
+    good, average and bad; of more than three groups all inner ones are average, one group is
+    alike.
     """
     groups: list[list[str]] = []
     for name in sorted(row, key=row.__getitem__):
@@ -165,13 +170,13 @@ def words_of(row: Row) -> dict[str, str]:
     }
 
 
-def _stands(name: str, other: str, words: Mapping[str, str], row: Row) -> bool:
-    """Return whether the figures of two controllers are as their words say."""
-    order = _RANKS[words[name]] - _RANKS[words[other]]
+def _in_order(name: str, other: str, ratings: Mapping[str, str], row: Row) -> bool:
+    """Return whether the values of two controllers are in the order of their ratings."""
+    order = _RANKS[ratings[name]] - _RANKS[ratings[other]]
     if order == 0:
         return max(row[name], row[other]) <= _ALIKE * min(row[name], row[other])
     return row[name] > row[other] if order > 0 else row[name] < row[other]
 
 
-def _text(figure: float, unit: str) -> str:
-    return f'{figure:.3g} {unit}' if figure < math.inf else 'no figure'
+def _text(value: float, unit: str) -> str:
+    return f'{value:.3g} {unit}' if value < math.inf else 'no figure'

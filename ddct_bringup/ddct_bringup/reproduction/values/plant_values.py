@@ -1,4 +1,4 @@
-"""What we compute for the numbers of Chapter 1: driveline, actuator, load, feedforward."""
+"""Computed values for the numbers of Chapter 1: driveline, actuator, load, feedforward."""
 
 import dataclasses
 import math
@@ -39,7 +39,7 @@ SIMPLIFIED_PLANTS: Mapping[str, SimplifiedPlant] = {
     'state space': state_space_slip,
     'LTI': lti_slip,
 }
-"""The three simplified models of Section 1.5.1."""
+"""Simplified models of Section 1.5.1 by name."""
 
 
 def plant_values() -> dict[str, Value | None]:
@@ -56,7 +56,7 @@ def plant_values() -> dict[str, Value | None]:
             PrintedCoefficients(CLUTCH_TO_SLIP_AS_PRINTED), 'P2', 'zero c'
         )[0],
         **_shared_poles(driveline),
-        # The gain that makes G_a(0) = 1 with these zeros and poles.
+        # the gain for G_a(0) = 1 with these zeros and poles
         'actuator.gain': ACTUATOR.gain / float(ACTUATOR.at(np.array(0.0)).real),
         'engine.rise end': THESIS_SCENARIO.engine.time_s[-1],
         'driveline.ratio': driveline.total_ratio,
@@ -66,13 +66,13 @@ def plant_values() -> dict[str, Value | None]:
 
 
 def _shared_poles(driveline: DrivelineParameters) -> dict[str, Value]:
-    """Return the poles of P_3, which Section 1.5 makes those of P_2 without the one at 0."""
+    """Return the poles of P_3, which by Section 1.5 are those of P_2 without the one at 0."""
     (a,), (b, c) = (numbers_of(factor) for factor in load_to_slip(driveline).denominator)
     return {'p3.pole a': a, 'p3.pole b': b, 'p3.pole c': c}
 
 
 def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
-    """Return what the equations of Section 1.5 have to be for the printed P_2 to come out."""
+    """Return the corrections of the equations of Section 1.5 that the printed P_2 requires."""
     model = driveline_matrices(driveline)
     minus = model.c[0].tolist() == [1.0, -1.0, 0.0, 0.0]
     undamped = clutch_to_slip(dataclasses.replace(driveline, shaft_damping=0.0))
@@ -85,7 +85,7 @@ def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
 
 
 def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> str:
-    """Return which coefficient of w_p the w_r equation needs: one that leaves no growing pole."""
+    """Return the coefficient of w_p in the w_r equation that leaves no growing pole, as text."""
     growth = {}
     for symbol, inertia in (('J_p', driveline.shaft_inertia), ('J_v', driveline.vehicle_inertia)):
         changed = a.copy()
@@ -104,7 +104,7 @@ def _compensators() -> dict[str, Value]:
 
 
 def _buildable(path: FactoredTransferFunction, inverted: FactoredTransferFunction) -> str:
-    """Return what is wrong with path / inverted, in words."""
+    """Return why path / inverted cannot be realised, as text."""
     order = len(path.poles) - len(path.zeros) - len(inverted.poles) + len(inverted.zeros)
     unstable = int(np.count_nonzero(inverted.zeros.real > 0.0))
     proper = 'improper, ' if order < 0 else ''
@@ -112,7 +112,7 @@ def _buildable(path: FactoredTransferFunction, inverted: FactoredTransferFunctio
 
 
 def deviation_bound_percent() -> float:
-    """Return the power of ten within which w_d of the simplified models is, of its peak."""
+    """Return the smallest power of ten in % above all `deviations`."""
     return 10.0 ** math.ceil(math.log10(100.0 * max(deviations(SIMPLIFIED_PLANTS).values())))
 
 
@@ -126,7 +126,7 @@ def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
 
 
 def deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:
-    """Return how far w_d of each model is from the detailed one, as a share of its peak."""
+    """Return the largest difference of w_d of each model from the detailed one, over its peak."""
     detailed = thesis_run('pi', 'detailed', 1.0).trajectory.slip_speed
     return {
         name: float(np.abs(slip - detailed).max() / np.abs(detailed).max())

@@ -1,4 +1,4 @@
-"""The rule that admits a scenario looks at the nine fitted figures, the PI loop and the bounds."""
+"""The rule that admits a scenario uses the nine fitted values, the PI loop and the bounds."""
 
 import dataclasses
 
@@ -22,13 +22,13 @@ def test_frozen_scenario_is_admissible():
     assert why_not_admissible(SCENARIO) == []
 
 
-def test_figure_outside_its_tolerance_is_named():
+def test_value_outside_its_tolerance_is_named():
     assert why_not_admissible(changed('reference.slope_rad_s2=108.0')) == [
         'ls8 torsion_speed_std_rpm -10.8 %'
     ]
 
 
-def test_nine_figures_are_those_of_the_whole_run_in_the_scenarios_own_window():
+def test_nine_values_are_those_of_the_whole_run_in_the_scenarios_own_window():
     longer = dataclasses.replace(SCENARIO, score_window_s=(0.6, 3.0))
     rows = fitted_rows(longer)
     assert len(rows) == 9
@@ -39,13 +39,13 @@ def test_nine_figures_are_those_of_the_whole_run_in_the_scenarios_own_window():
     assert times == others[::3]
 
 
-def test_unstable_pi_is_not_admissible_whatever_its_figures(monkeypatch):
+def test_unstable_pi_is_not_admissible_whatever_its_values(monkeypatch):
     monkeypatch.setattr(ensemble, 'pi_growth_rate', lambda *loop: 0.1)
     assert why_not_admissible(SCENARIO) == ['the PI loop grows by 0.1/s']
 
 
-def test_value_beyond_its_bound_is_not_admissible_whatever_its_figures():
-    """The level of the torque moves no figure, so that nothing but the bound speaks."""
+def test_parameter_beyond_its_bound_is_not_admissible_whatever_its_values():
+    """The level of the torque changes no value, so only the bound is violated."""
     both = changed('engine.torque_n_m=[61.0, 365.0]')
     assert why_not_admissible(both) == [
         'torque_start_n_m 61 is outside 0 to 60',

@@ -1,4 +1,4 @@
-"""The calibration fits what it says it fits, and its analysis of the fit holds."""
+"""The calibration fits its stated parameters, and its analysis of the fit is correct."""
 
 import dataclasses
 
@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     ROWS,
     values_of,
 )
-from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_figures
+from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_values
 from ddct_bringup.reproduction.calibration.record import check_frozen
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
@@ -90,7 +90,7 @@ def test_weakest_direction_moves_no_residual():
 
 
 def test_same_rise_of_torque_by_another_path_does_move_residuals():
-    """The sloppy direction is one: raising only the end shows at once."""
+    """There is one insensitive direction: raising the end alone changes the residuals."""
     change = np.array([0.0, 10.0, 0.0, 0.0, 0.0, 0.0])
     difference = PROBLEM.residuals(VALUES + change) - PROBLEM.residuals(VALUES)
     assert np.max(np.abs(difference)) > 0.2
@@ -107,7 +107,7 @@ def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations():
 
 
 def test_standard_error_of_a_function_is_that_of_the_normal_equations():
-    """Of the slope of C_m, against the covariance and a difference quotient."""
+    """The function is the slope of C_m, compared with the covariance and a difference quotient."""
     optimum = fit(PROBLEM, VALUES)
     values = np.array(optimum.values)
 
@@ -130,14 +130,14 @@ def test_engagement_time_without_engagement_is_the_time_that_the_reference_would
     end = round(100 * scenario.score_window_s[1])
     assert np.all(slip[60 : end + 1] > 0.0)
     expected = (end - 60) / 100 + slip[end] / scenario.reference.slope_rad_s2
-    assert row_figures(scenario, 'pi')['engagement_time_s'] == pytest.approx(expected, rel=1e-12)
+    assert row_values(scenario, 'pi')['engagement_time_s'] == pytest.approx(expected, rel=1e-12)
 
 
 def test_engagement_time_is_continuous_where_engagement_leaves_the_window():
     """Slip reaches zero later the lower the slope, until the window ends first."""
     slopes = np.linspace(40.0, 60.0, 41)
     times = [
-        row_figures(PROBLEM.scenario([*VALUES[:3], slope, *VALUES[4:]]), 'hinf1')[
+        row_values(PROBLEM.scenario([*VALUES[:3], slope, *VALUES[4:]]), 'hinf1')[
             'engagement_time_s'
         ]
         for slope in slopes

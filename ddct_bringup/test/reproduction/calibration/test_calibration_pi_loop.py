@@ -1,4 +1,4 @@
-"""The growth rate that decides between the two kinds of PI is that of the simulated loop."""
+"""The growth rate that selects the kind of PI is that of the simulated loop."""
 
 import dataclasses
 
@@ -28,7 +28,7 @@ def peak_slip(slip: np.ndarray, first_s: float, last_s: float) -> float:
     return float(np.max(np.abs(slip[round(100 * first_s) : round(100 * last_s)])))
 
 
-def test_integral_alone_grows_as_fast_as_the_linear_loop_says():
+def test_integral_alone_grows_at_the_rate_of_the_linear_loop():
     scenario = long_run(0.0, 0.14)
     rate = pi_growth_rate(scenario.driveline, 0.0, 0.14)
     slip = run_headless(RunSettings(scenario), 'pi').slip_speed
@@ -61,7 +61,7 @@ def optimum(proportional_gain: float, integral_gain: float, residual: float) -> 
 
 
 def test_an_unstable_pi_does_not_leave_the_search_however_well_it_fits():
-    """Integral action alone grows, at 0.04 by 0.1/s."""
+    """Integral action alone is unstable: at 0.04 it grows by 0.1/s."""
     good, better = optimum(0.1, 0.02, 0.5), optimum(0.1, 0.03, 0.4)
     unstable = [optimum(0.0, 0.14, 0.1), optimum(3.0, 0.02, 0.2), optimum(0.0, 0.04, 0.3)]
     assert [one.pi_stable for one in unstable] == [False] * 3

@@ -1,4 +1,4 @@
-"""Program `reproduce calibration`: what it prints and writes, and how it refuses."""
+"""Program `reproduce calibration`: its output and files, and its errors."""
 
 import dataclasses
 import json
@@ -19,7 +19,7 @@ RECORD = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='u
 
 @pytest.fixture
 def calibrated(monkeypatch):
-    """Spare the tests of the outputs the minute and a half of the calibration itself."""
+    """Replace the calibration, which takes a minute and a half, for tests of the outputs."""
     monkeypatch.setattr(command, 'calibrate', lambda progress: RECORD)
 
 
@@ -52,7 +52,7 @@ def test_quick_check_fails_for_a_scenario_that_is_not_the_optimum(monkeypatch, c
     assert errors[-1].startswith('ddct reproduce: scenario thesis is not the optimum')
 
 
-def test_json_on_standard_output_stands_alone(calibrated, capsys):
+def test_json_on_standard_output_has_no_other_text(calibrated, capsys):
     assert reproduce.main(['calibration', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out) == RECORD
 

@@ -1,4 +1,4 @@
-"""The kept record, the scenario file, the page and the simulation tell the same."""
+"""The stored record, the scenario file, the page and the simulation agree."""
 
 import importlib.resources
 import json
@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     residual_rows,
     rounded,
 )
-from ddct_bringup.reproduction.calibration.problem import Problem, row_figures
+from ddct_bringup.reproduction.calibration.problem import Problem, row_values
 from ddct_bringup.reproduction.calibration.record import scenario_text
 from ddct_bringup.reproduction.calibration.tables import all_tables
 from ddct_plant.scenario.file import load_scenario
@@ -29,7 +29,7 @@ def values(entry: dict) -> list[float]:
 
 
 def test_nine_residuals_are_as_recorded_and_within_five_and_ten_percent():
-    rows = residual_rows({row: row_figures(SCENARIO, row) for row in ('ls8', 'hinf1', 'pi')})
+    rows = residual_rows({row: row_values(SCENARIO, row) for row in ('ls8', 'hinf1', 'pi')})
     assert len(rows) == 9
     for computed, recorded in zip(rows, RECORD['residuals'], strict=True):
         assert computed['computed'] == pytest.approx(recorded['computed'], rel=1e-6)
@@ -71,7 +71,7 @@ def test_row_left_out_took_no_part_in_the_fit_that_predicts_it(row):
     """Its parameters beat the frozen ones on the other two rows, and predict what is recorded."""
     one = next(entry for entry in RECORD['left_out'] if entry['row'] == row)
     problem = Problem(RECORD['score_window_s'][1])
-    predicted = row_figures(problem.scenario(values(one)), row)
+    predicted = row_values(problem.scenario(values(one)), row)
     assert [predicted[entry['figure']] for entry in one['figures']] == pytest.approx(
         [entry['computed'] for entry in one['figures']], rel=1e-6
     )
@@ -86,10 +86,10 @@ def test_only_the_pi_row_is_marked_as_not_predictable():
     assert [one['row'] for one in RECORD['left_out'] if one['gains_from_row']] == ['pi']
 
 
-def test_longer_windows_leave_a_sigma_of_ls8_out_of_tolerance_as_the_page_says():
+def test_longer_windows_leave_a_sigma_of_ls8_out_of_tolerance_as_on_the_page():
     beyond = [one for one in RECORD['windows'] if one['pi_stable'] and one['window_end_s'] > 1.85]
     assert len(beyond) >= 12
     assert all(one['worst_residual'] < -1.0 for one in beyond)
     longest = max(beyond, key=lambda one: one['window_end_s'])
-    figures = row_figures(Problem(longest['window_end_s']).scenario(values(longest)), 'ls8')
+    figures = row_values(Problem(longest['window_end_s']).scenario(values(longest)), 'ls8')
     assert figures['torsion_speed_std_rpm'] < 0.9 * 1.15

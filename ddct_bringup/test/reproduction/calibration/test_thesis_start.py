@@ -1,4 +1,4 @@
-"""What docs/thesis/calibration.md says of the start of the thesis's scenario."""
+"""Statements of docs/thesis/calibration.md on the start of the thesis's scenario."""
 
 from pathlib import Path
 

@@ -24,13 +24,13 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-FIGURES = {figure.number: figure for figure in collect_figures()}
+TABLE_METRICS = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 
 
 def drawing(number: str) -> tuple[Figure, str]:
     """Return the chart of a figure and the remark on it."""
-    return FIGURES[number].draw()
+    return TABLE_METRICS[number].draw()
 
 
 def lines(axes: Axes) -> dict[str, np.ndarray]:
@@ -48,7 +48,7 @@ def lines(axes: Axes) -> dict[str, np.ndarray]:
         ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
     ],
 )
-def test_run_figure_holds_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
+def test_run_figure_contains_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number)[0].axes[0]
     run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
     signals = {
@@ -132,7 +132,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     assert 'MPC4 none (for comparison MPC3 0.58)' in drawing('4.6')[1]
 
 
-def test_remarks_tell_the_rows_of_table_5_1_that_were_fitted_from_those_that_were_not():
+def test_remarks_distinguish_fitted_and_predicted_rows_of_table_5_1():
     assert drawing('2.27')[1].endswith('used in the calibration: LS8 1.15, PI 0.70.')
     assert drawing('4.4')[1].endswith('not used in the calibration: MPC3 0.90.')
 
@@ -164,11 +164,11 @@ def test_tanh_figure_reaches_zero_at_the_chosen_times():
 def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
     counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
     every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
-    assert sorted([*FIGURES, *NOT_DRAWN], key=figure_order) == every
+    assert sorted([*TABLE_METRICS, *NOT_DRAWN], key=figure_order) == every
 
 
 def test_page_of_the_documentation_is_what_the_command_writes():
-    drawn = {figure: drawing(number)[1] for number, figure in FIGURES.items()}
+    drawn = {figure: drawing(number)[1] for number, figure in TABLE_METRICS.items()}
     shown, computed = shown_tables('figures'), as_markdown(figure_tables(drawn))
     assert shown.keys() == computed.keys()
     page, written = (''.join(each[name] for name in computed) for each in (shown, computed))

@@ -1,4 +1,4 @@
-"""docs/controllers/feedforward.md says what the code computes, to the last printed digit."""
+"""docs/controllers/feedforward.md agrees with the code, to the last printed digit."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""In each figure of the gallery no two lines share a colour, or dashes that look alike."""
+"""In each figure of the gallery no two lines have equal colours, or dashes that are alike."""
 
 from itertools import combinations
 from typing import Any
@@ -18,8 +18,8 @@ def dash_points(line: Any) -> tuple[float, ...]:
     return tuple(line.get_linewidth() * each for each in lengths or ())
 
 
-def look_alike(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    """Say whether two dashes have as many parts, nearly one period and nearly the same share."""
+def dashes_alike(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """Return whether two dashes have as many parts, nearly one period and nearly one share."""
     if len(one) != len(other):
         return False
     if not one:
@@ -47,11 +47,11 @@ def test_each_line_of_a_figure_has_its_own_colour_and_its_own_dash(number):
         for one, other in combinations(of_the_legend(axes), 2):
             pair = f'{one.get_label()} and {other.get_label()}'
             assert to_hex(one.get_color()) != to_hex(other.get_color()), pair
-            assert not look_alike(dash_points(one), dash_points(other)), pair
+            assert not dashes_alike(dash_points(one), dash_points(other)), pair
 
 
-def test_a_dash_of_a_thinner_line_is_the_same_to_the_eye_and_another_is_not():
-    assert look_alike((7.0, 3.0), (4.8, 2.1))
-    assert look_alike((), ())
-    assert not look_alike((7.0, 3.0), (2.0, 2.0))
-    assert not look_alike((9.0, 3.0, 2.0, 3.0), (9.0, 3.0))
+def test_dashes_that_differ_in_line_width_alone_count_as_equal():
+    assert dashes_alike((7.0, 3.0), (4.8, 2.1))
+    assert dashes_alike((), ())
+    assert not dashes_alike((7.0, 3.0), (2.0, 2.0))
+    assert not dashes_alike((9.0, 3.0, 2.0, 3.0), (9.0, 3.0))

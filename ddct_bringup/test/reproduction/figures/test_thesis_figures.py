@@ -1,4 +1,4 @@
-"""Figures of the thesis that need no run: what their lines hold, and what the command writes."""
+"""Figures of the thesis that need no run: the data of their lines, and the command's files."""
 
 import csv
 import re
@@ -44,7 +44,7 @@ def labels(figure: Figure, panel: int = 0) -> tuple[str, str]:
     return figure.axes[panel].get_xlabel(), figure.axes[panel].get_ylabel()
 
 
-def test_rise_time_figure_is_the_prototypes_curve_and_says_what_2_02_belongs_to():
+def test_rise_time_figure_is_the_prototypes_curve_with_a_remark_on_2_02():
     chart, remark = drawing('2.2')
     damping, product = line(chart, 'second-order prototype')
     expected = [rise_time_crossover_product(value) for value in damping]
@@ -54,7 +54,9 @@ def test_rise_time_figure_is_the_prototypes_curve_and_says_what_2_02_belongs_to(
 
 
 @pytest.mark.parametrize(('number', 'gain', 'unstable'), [('2.3', 1.0, 1), ('2.4', -1.0, 2)])
-def test_nyquist_figure_holds_the_loop_and_counts_as_the_thesis(number, gain, unstable):
+def test_nyquist_figure_contains_the_loop_and_has_the_thesis_s_encirclements(
+    number, gain, unstable
+):
     chart, remark = drawing(number)
     real, imaginary = line(chart, 'ω > 0', panel=1)
     loop = continuous_loop(FactoredTransferFunction(gain, (), (0.0,)))
@@ -83,7 +85,7 @@ def test_network_of_ratio_16_changes_the_gain_by_24_db_and_the_phase_by_62_degre
     ('number', 'label', 'controller'),
     [('2.8', 'G_c1', 'ls2'), ('2.9', 'G_c2', 'ls7'), ('3.9', 'G_c = H∞1', 'hinf1')],
 )
-def test_nichols_figure_holds_the_loop_of_the_printed_controller(number, label, controller):
+def test_nichols_figure_contains_the_loop_of_the_printed_controller(number, label, controller):
     chart, remark = drawing(number)
     expected = nichols_curve(LoopCurve(continuous_loop(PRINTED_CONTROLLERS[controller])).values)
     phase, magnitude = line(chart, f'L with {label}')
@@ -105,7 +107,7 @@ def test_nichols_bounds_lie_on_the_constant_s_and_t_curves():
         np.testing.assert_allclose(size, float(label.split()[-1]), atol=0.005)
 
 
-def test_step_figure_holds_the_step_response():
+def test_step_figure_contains_the_step_response():
     chart, remark = drawing('2.10')
     legend = [text.get_text() for text in chart.axes[0].get_legend().get_texts()]
     time, output = line(chart, legend[0])
@@ -117,7 +119,7 @@ def test_step_figure_holds_the_step_response():
 
 
 @pytest.mark.parametrize(('number', 'function'), [('3.5', 'S_n'), ('3.6', 'T_n'), ('3.7', 'T_n')])
-def test_bound_figure_holds_s_and_t_of_the_printed_hinf1(number, function):
+def test_bound_figure_contains_s_and_t_of_the_printed_hinf1(number, function):
     figure = drawing(number)[0]
     omega, magnitude = line(figure, f'|{function}|, G_c = H∞1')
     loop = continuous_loop(PRINTED_CONTROLLERS['hinf1']).response(omega)
@@ -235,7 +237,7 @@ def test_command_refuses_controllers_that_cannot_be_drawn(
     assert not list(tmp_path.iterdir())
 
 
-def test_command_replaces_figures_only_when_asked(tmp_path, refusal):
+def test_command_replaces_figures_only_with_the_option(tmp_path, refusal):
     arguments = ('--out', tmp_path, '--only', '2.2')
     run_command(*arguments)
     assert re.search(r'figure_2_2.png exists: .* add --overwrite', refusal(*arguments))
@@ -259,7 +261,7 @@ def test_command_never_replaces_a_page_that_is_not_its_own(tmp_path, refusal):
         ('', "the thesis has no figure ''"),
     ],
 )
-def test_command_says_why_a_figure_cannot_be_drawn(tmp_path, refusal, number, complaint):
+def test_command_reports_why_a_figure_cannot_be_drawn(tmp_path, refusal, number, complaint):
     assert complaint in refusal('--out', tmp_path, '--only', f'2.2,{number}')
     assert not list(tmp_path.iterdir())
 

@@ -1,4 +1,4 @@
-"""What `compare` prints beside Table 5.1, and when it does."""
+"""Values that `compare` prints with Table 5.1, and the conditions for it."""
 
 import dataclasses
 import io
@@ -10,10 +10,10 @@ from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.thesis import predictions
 from ddct_bringup.thesis.predictions import Prediction, Predictions
-from ddct_bringup.thesis.table_5_1 import FIGURES as TABLE_FIGURES
 from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,
     PREDICTION_TOLERANCE,
+    TABLE_METRICS,
     THESIS_TABLE,
     thesis_row,
 )
@@ -30,10 +30,10 @@ KEPT = Predictions(
         '5.1 mpc3 acceleration_std_m_s2': Prediction(0.3, {'a': 0.3, 'b': 0.3, 'c': 0.3}),
     },
 )
-FIGURES = (0.62, 1.2, 0.19)
+VALUES = (0.62, 1.2, 0.19)
 
 
-def run(controller, figures=FIGURES):
+def run(controller, figures=VALUES):
     names = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
     return {
         'bag': controller,
@@ -68,7 +68,7 @@ def test_predicted_row_has_value_and_range_print_and_verdict():
     assert 'below the print hit (within 25 % of it) or miss.' in lines
 
 
-def test_undefined_figure_is_a_miss():
+def test_undefined_value_is_a_miss():
     lines = printed(run('mpc3', (None, 0.9, 0.19)))
     assert '0.550 to - miss 0.50 to 1.50 hit 0.300 to 0.300 hit' in lines
 
@@ -114,6 +114,6 @@ def test_the_gate_judges_the_predicted_rows_by_the_same_tolerance():
     gate = {number.id: number.tolerance for number in thesis_numbers()}
     predicted = [row.controller for row in THESIS_TABLE if row.use == PREDICTED]
     for controller in predicted:
-        for figure in TABLE_FIGURES:
+        for figure in TABLE_METRICS:
             name = f'5.1 {controller} {figure}'
             assert gate[name].relative == PREDICTION_TOLERANCE, name

@@ -1,4 +1,4 @@
-"""The kept predictions are those of the packaged scenario and of the kept members."""
+"""The stored predictions are those of the packaged scenario and of the stored members."""
 
 import pytest
 
@@ -15,7 +15,7 @@ from ddct_plant.scenario.scenario import Scenario
 
 FROZEN = load_scenario('thesis')
 AGAIN = ('thesis', 'window_3.0_level_high', 'road_load_times_1.5')
-"""Whose values are computed again; the others are as they were when the file was written."""
+"""Scenarios whose values are computed again; those of the others are as stored."""
 
 
 def scenario(name: str) -> Scenario:
@@ -44,7 +44,7 @@ def test_every_prediction_has_a_value_for_each_member():
     assert all(set(one.members) == names for one in kept_predictions().by_id.values())
 
 
-def test_no_calibrated_figure_is_among_the_predictions_of_table_5_1():
+def test_no_calibrated_value_is_among_the_predictions_of_table_5_1():
     controllers = {name.split(' ')[1] for name in kept_predictions().by_id if '5.1 ' in name}
     predicted = {row.controller for row in THESIS_TABLE if row.use == PREDICTED}
     assert controllers == predicted | {OPEN_LOOP.split(' ')[0]}
@@ -68,11 +68,11 @@ def test_range_goes_from_the_least_to_the_largest_value_the_frozen_one_included(
     assert not one.contains(0.51)
 
 
-def test_range_of_a_figure_that_some_members_lack_is_open_above():
+def test_range_of_a_value_that_some_members_lack_is_open_above():
     assert Prediction(None, {'a': 0.5, 'b': 0.4}).text('.1f') == '0.4 to -'
     assert Prediction(None, {'a': None}).text('.1f') == '-'
     assert not Prediction(None, {'a': None}).contains(0.5)
 
 
-def test_range_of_a_word_counts_the_scenarios():
+def test_range_of_a_rating_counts_the_scenarios():
     assert Prediction('bad', {'a': 'bad', 'b': 'average'}).text('') == 'bad (2), average (1)'

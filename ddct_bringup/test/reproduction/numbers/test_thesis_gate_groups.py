@@ -1,4 +1,4 @@
-"""Groups of the thesis gate: one computation is shown whole, by one rule, and counted once."""
+"""Groups of the thesis gate: one computation is shown completely, by one rule, counted once."""
 
 import pytest
 
@@ -111,7 +111,7 @@ def test_design_yields_every_coefficient_of_its_controller(values, name, printed
     assert len(found) == orders(printed) - put_in
 
 
-def test_synthesis_with_fitted_weights_misses_what_it_misses(values):
+def test_synthesis_with_fitted_weights_has_its_known_misses(values):
     raw = synthesised_design('hinf_fitted').raw
     assert values['raw by fitted weights.gain'] == raw.gain
     expected = coefficients('raw by fitted weights', in_the_form_of(RAW_CONTROLLER, raw))

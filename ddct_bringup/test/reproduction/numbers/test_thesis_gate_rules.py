@@ -1,4 +1,4 @@
-"""The rules of the thesis gate: what a claim needs, and when it does not hold."""
+"""Rules of the thesis gate: required parts of a claim, and when it fails."""
 
 import dataclasses
 
@@ -23,7 +23,7 @@ ERRATUM = dataclasses.replace(REPRODUCED, verdict='erratum', ours='0.61')
 GIVEN = dataclasses.replace(REPRODUCED, verdict='given', id=None, tolerance=None)
 PREDICTED = dataclasses.replace(REPRODUCED, verdict='predicted')
 CALIBRATED = dataclasses.replace(REPRODUCED, verdict='calibrated')
-WORD = dataclasses.replace(REPRODUCED, printed='negative', tolerance=None)
+TEXT = dataclasses.replace(REPRODUCED, printed='negative', tolerance=None)
 
 
 def complaint(number: ThesisNumber, value) -> str | None:
@@ -58,9 +58,9 @@ def test_a_number_less_than_two_tolerances_off_is_a_miss_and_no_erratum():
     assert complaint(dataclasses.replace(near, ours='0.541'), 0.541) is None
 
 
-def test_words_must_be_equal():
-    assert complaint(WORD, 'negative') is None
-    assert complaint(WORD, 'positive')
+def test_texts_must_be_equal():
+    assert complaint(TEXT, 'negative') is None
+    assert complaint(TEXT, 'positive')
 
 
 @pytest.mark.parametrize(('value', 'hit'), [(0.532, True), (0.54, False)])
@@ -74,7 +74,7 @@ def test_prediction_without_a_value_does_not_hold():
     assert complaint(PREDICTED, None)
 
 
-def test_miss_of_a_fit_holds_only_where_the_list_says_so():
+def test_miss_of_a_fit_holds_only_where_the_list_states_it():
     missed = dataclasses.replace(CALIBRATED, hit='no')
     assert 'not within' in complaint(CALIBRATED, 0.54)
     assert complaint(missed, 0.54) is None
@@ -82,7 +82,7 @@ def test_miss_of_a_fit_holds_only_where_the_list_says_so():
 
 
 @pytest.mark.parametrize('holds', [True, False])
-def test_claim_in_words_holds_by_its_finding_and_shows_its_figures(holds):
+def test_qualitative_claim_holds_by_its_finding_and_shows_its_evidence(holds):
     (row,) = judge(
         [dataclasses.replace(PREDICTED, printed='larger', tolerance=None)],
         {'zeta': Finding(holds, '1.2 rpm')},
@@ -103,7 +103,7 @@ def test_given_number_has_no_computed_value_and_always_holds():
     assert row.as_dict()['tolerance'] is None and row.as_dict()['group'] == '2.2, zeta'
 
 
-def test_computed_value_that_the_list_does_not_ask_for_is_refused():
+def test_computed_value_without_an_entry_in_the_list_is_refused():
     with pytest.raises(ParameterError, match='not in the list of numbers: other'):
         judge([REPRODUCED], {'zeta': 0.53, 'other': 1.0})
 
@@ -158,7 +158,7 @@ LIST = """
 """
 
 
-def test_entries_take_what_their_group_gives_and_stand_in_the_order_of_the_sections():
+def test_entries_take_the_defaults_of_their_group_and_are_in_the_order_of_the_sections():
     numbers = parse_numbers(LIST)
     assert [number.item for number in numbers] == ['c', 'a', 'b']
     assert (numbers[1].unit, numbers[2].unit, numbers[2].reason) == ('s', '1', 'given')

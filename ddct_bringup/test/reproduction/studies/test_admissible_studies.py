@@ -1,4 +1,4 @@
-"""The tables of docs/thesis/predictions.md are those of the studies and bear out its text."""
+"""The tables of docs/thesis/predictions.md are those of the studies and support its text."""
 
 import pytest
 from generator.pages import as_markdown, shown_tables

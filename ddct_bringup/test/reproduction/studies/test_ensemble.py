@@ -1,4 +1,4 @@
-"""Every kept scenario is admissible, is what its name says, and was found by the rule alone."""
+"""Every stored scenario is admissible, matches its name, and was found by the rule alone."""
 
 import dataclasses
 
@@ -38,7 +38,7 @@ def quiet(text: str) -> None:
 
 
 @pytest.mark.parametrize('name', MEMBERS)
-def test_member_passes_the_rule_on_its_nine_figures(name):
+def test_member_passes_the_rule_on_its_nine_values(name):
     assert why_not_admissible(MEMBERS[name]) == []
 
 
@@ -64,7 +64,7 @@ def test_members_with_another_assumption_differ_in_that_too():
 @pytest.mark.parametrize('end', [1.6, FROZEN.score_window_s[1], 3.0])
 @pytest.mark.parametrize('quantity', QUANTITIES)
 def test_rim_is_on_both_sides_of_the_centre(end, quantity):
-    """The torque level is at its bound in some centres, which then are the lowest themselves."""
+    """The torque level is at its bound in some centres, which are then the lowest themselves."""
     direction = np.array(QUANTITIES[quantity][1]) / RANGE
     along = {
         which: float(direction @ values_of(MEMBERS[f'window_{end}{which}']))
@@ -101,7 +101,7 @@ def test_files_are_written_as_they_are_kept(tmp_path):
 
 
 def test_search_keeps_each_window_end_that_has_an_admissible_scenario(monkeypatch):
-    """With a search that finds nothing better than its start, so only what is admissible stays."""
+    """The search is replaced by one that returns its start, so only admissible ones are kept."""
     told: list[str] = []
     monkeypatch.setattr(ensemble, 'centre', lambda problem, start: tuple(start))
     monkeypatch.setattr(ensemble, 'rim', lambda problem, start, along: tuple(start))

@@ -1,4 +1,4 @@
-"""Program `reproduce studies`: which studies it makes, and what it prints and writes of them."""
+"""Program `reproduce studies`: the studies, and their printed and written output."""
 
 import json
 
@@ -18,7 +18,7 @@ SECOND = Study('The second', ('name',), [('c',)])
 
 @pytest.fixture(autouse=True)
 def two_studies(monkeypatch):
-    """Spare these tests the closed loops."""
+    """Replace the studies, so that these tests need no closed loops."""
     monkeypatch.setattr(command, 'STUDIES', {'first': lambda: FIRST, 'second': lambda: SECOND})
 
 
@@ -41,7 +41,7 @@ def test_the_help_lists_every_study_with_what_it_is_about(capsys, monkeypatch):
     assert max(map(len, listed.splitlines())) <= 80
 
 
-def test_json_on_standard_output_stands_alone_and_has_a_mapping_per_row(capsys):
+def test_json_on_standard_output_has_no_other_text_and_a_mapping_per_row(capsys):
     assert reproduce.main(['studies', '--study', 'first', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out) == {
         'first': {
@@ -73,5 +73,5 @@ def test_unknown_study_is_refused_before_the_work(capsys):
     assert all(name in error for name in ('third', 'first', 'second'))
 
 
-def test_every_study_stands_on_one_page_and_no_page_marks_another():
+def test_every_study_is_on_one_page_and_no_page_marks_another():
     assert sorted(shown_tables('studies')) == sorted(STUDIES)

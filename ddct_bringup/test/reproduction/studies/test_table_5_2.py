@@ -1,9 +1,9 @@
-"""Table 5.2 in numbers, where a run got out of hand."""
+"""Table 5.2 in numbers, for a run that failed."""
 
 from ddct_bringup.reproduction.studies.table_5_2 import rows_of
 
 
-def test_a_runaway_has_no_good_word_however_still_the_car_is():
+def test_a_runaway_has_no_good_rating_however_small_its_oscillations_are():
     rows = {row[2]: row for row in rows_of('stick_slip', 0.7)}
     stillest = min(rows, key=lambda name: float(rows[name][4]))
     assert (stillest, rows[stillest][6]) == ('mpc4', 'runaway')

@@ -1,1 +1,1 @@
-"""Sampled loops: margins, corners of plant and wear, step responses."""
+"""Analysis of sampled loops: margins, corners of plant and wear, step responses."""

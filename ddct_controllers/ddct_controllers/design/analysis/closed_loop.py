@@ -1,5 +1,5 @@
 """
-What a closed loop does: its step response, the driveline's mode in it, and the Nyquist criterion.
+Closed-loop behaviour: step response, mode of the driveline, and Nyquist criterion.
 
 Rise time and overshoot are as the thesis measures them. P_cl = P_ol + N is that of Section 2.2.1.
 """
@@ -19,12 +19,16 @@ from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 
 TIME_STEP_S = 0.001
-"""Between the points at which a continuous loop is evaluated, each of them exact."""
+"""Time in s between the points at which a continuous loop is evaluated, each of them exact."""
 _BLOCK = 128
-"""Points computed at once; python-control takes one after another, 10 to 80 times as long."""
+"""
+Number of points computed at once.
+
+python-control takes one after another, 10 to 80 times as long.
+"""
 _INDENTATION_RAD_S = 1e-6
 """
-Radius of the half circles past poles on the imaginary axis.
+Radius in rad/s of the half circles past poles on the imaginary axis.
 
 A closed-loop pole within one would be missed: one that the loop hardly moves off the axis.
 """
@@ -67,7 +71,7 @@ def _output_of_step(system: StateSpace, points: int) -> np.ndarray:
     return np.concatenate(blocks)[:points]
 
 
-def step_figures(
+def rise_time_and_overshoot(
     loop: ContinuousLoop | StateSpace, duration_s: float
 ) -> tuple[float | None, float]:
     """Return rise time in s, None if it is never over, and overshoot as a fraction."""
@@ -77,7 +81,7 @@ def step_figures(
 
 def rise_time_s(time: np.ndarray, output: np.ndarray) -> float | None:
     """
-    Return when the output first crosses the final value 1, t_r of Section 2.1; None if never.
+    Return the first time in s at which the output crosses 1, t_r of Section 2.1; None if never.
 
     Linear between points. The final value is that of a loop with an integrator, 1, not the last
     point: slow poles take minutes to settle.
@@ -92,22 +96,22 @@ def rise_time_s(time: np.ndarray, output: np.ndarray) -> float | None:
 
 
 def overshoot(time: np.ndarray, output: np.ndarray) -> float:
-    """Return by what fraction the output exceeds the final value 1 at most; 0.1 is 10 %."""
+    """Return the largest excess of the output over the final value 1, as a fraction."""
     return max(0.0, float(np.max(output)) - 1.0)
 
 
 @dataclass(frozen=True)
 class NyquistCount:
-    """What the Nyquist curve of a loop tells of its closed loop."""
+    """Numbers of the Nyquist criterion for a loop."""
 
     open_loop_unstable: int
-    """P_ol, poles of L with positive real part."""
+    """Number P_ol of poles of L with positive real part."""
     encirclements: int
-    """N, of -1 by the curve for w from -inf to inf: clockwise less counterclockwise."""
+    """Number N of encirclements of -1 for w from -inf to inf: clockwise less counterclockwise."""
 
     @property
     def closed_loop_unstable(self) -> int:
-        """P_cl, roots of 1 + L with positive real part."""
+        """Number P_cl of roots of 1 + L with positive real part."""
         return self.open_loop_unstable + self.encirclements
 
 
@@ -143,11 +147,13 @@ class DrivelineMode:
     """
 
     frequency_hz: float
-    """Magnitude of the pole over 2 pi."""
+    """Frequency in Hz: magnitude of the pole over 2 pi."""
     damping: float
-    """Minus its real part over its magnitude; negative for a mode that grows."""
+    """
+    Damping ratio: minus the pole's real part over its magnitude; negative for a growing mode.
+    """
     torsion_amplitude_rpm: float
-    """First amplitude of the mode in w_sr after a step of 1 rpm of the reference."""
+    """First amplitude in rpm of the mode in w_sr after a step of 1 rpm of the reference."""
 
 
 def driveline_mode(
@@ -181,7 +187,7 @@ def locked_driveline_zero(parameters: DrivelineParameters) -> complex | None:
 
 
 def nearest_mode(rates: np.ndarray, zero: complex | None) -> int | None:
-    """Return which of the s-plane poles `rates`, (n,), oscillates and is nearest `zero`."""
+    """Return the index of the oscillating pole among `rates`, (n,), that is nearest `zero`."""
     upper = np.flatnonzero(rates.imag > 0.0)
     if zero is None or not upper.size:
         return None

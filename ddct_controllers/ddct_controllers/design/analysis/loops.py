@@ -21,19 +21,23 @@ from ddct_plant.models.printed import ACTUATOR
 
 IDENTIFIED_DRIVELINE = DrivelineParameters()
 PRINTED_ACTUATOR = ActuatorParameters()
-"""A delay of 10 ms and G_a(s): for designs of the thesis and ours, not for what runs."""
+"""Actuator with 10 ms delay and G_a(s): for designs of the thesis and ours, not for runs."""
 WEAR_RANGE = (0.7, 1.3)
-"""Ends of the range of K_usura: inequality (3.2), Table 5.2."""
+"""Ends of the range of K_usura, without unit: inequality (3.2), Table 5.2."""
 Measure = Callable[[np.ndarray], np.ndarray]
-"""A real function of L(j omega), elementwise."""
+"""Real function of L(j omega), elementwise."""
 _GRID_POINTS = 1500
 _SLOWEST_RAD_S = 1e-5
 _FASTEST_RAD_S = 1e5
-"""Ends of the grid of a continuous loop; a sampled one ends at half its sampling rate."""
+"""
+Ends of the grid of a continuous loop in rad/s.
+
+A sampled one ends at half its sampling rate.
+"""
 _DISTANCES = np.geomspace(1e-4, 0.1, 12)
-"""Relative distances of further grid points from every pole's frequency, on both sides."""
+"""Distances of further grid points from every pole's frequency, relative, on both sides."""
 _NEAR_THE_PEAK = 0.95
-"""A local maximum on the grid of at least this share of the highest is refined too."""
+"""Share of the highest value on the grid from which a local maximum is refined too."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +45,11 @@ class ContinuousLoop:
     """A continuous L(s), with a dead time if the actuator's delay is counted."""
 
     transfer_function: FactoredTransferFunction
-    """L(s) without the dead time."""
+    """Transfer function L(s) without the dead time."""
     delay_s: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the delay; raise ParameterError when it is bad."""
+        """Check the delay; raise ParameterError when it is negative or no number."""
         require_number('delay_s', self.delay_s, at_least=0.0)
 
     def response(self, omega: np.ndarray) -> np.ndarray:
@@ -91,9 +95,9 @@ def sampled_plant(
     """
     Return the actuator's delay times G_a P_2 30/pi K_usura under a zero-order hold at 10 ms.
 
-    States: the delayed requests in N m, of the printed actuator one; those of G_a; then
-    [w_m, w_p, w_r, theta_sr]. Output: slip speed in rpm. The run holds the actuator's torque as
-    1 ms straight lines, which is within 5e-5 of this.
+    States: the delayed requests in N m, of the printed actuator one; those of G_a; then [w_m, w_p,
+    w_r, theta_sr]. Output: slip speed in rpm. In a run the actuator's torque is made of 1 ms
+    straight lines, which is within 5e-5 of this.
     """
     driveline = driveline_matrices(parameters)
     clutch_to_slip_rpm = StateSpace(
@@ -128,7 +132,7 @@ class LoopCurve:
     """L(j omega) or L(exp(j omega T)) on a grid that is dense around the poles of L and of T."""
 
     def __init__(self, loop: ContinuousLoop | StateSpace) -> None:
-        """Evaluate the loop on its grid, which takes the poles of T without a dead time."""
+        """Evaluate the loop on its grid, which contains the poles of T without a dead time."""
         if isinstance(loop, ContinuousLoop):
             system = loop.transfer_function.to_state_space()
             self._response = loop.response
@@ -142,7 +146,7 @@ class LoopCurve:
         self.omega = _grid(np.concatenate([poles, poles_rad_s(close_loop(system))]), last)
         """Frequencies in rad/s, rising, (n,)."""
         self.values = self._response(self.omega)
-        """L there, (n,) complex."""
+        """Values of L at these frequencies, (n,) complex."""
 
     def at(self, omega: float) -> complex:
         """Return L at one frequency in rad/s."""
@@ -182,7 +186,7 @@ class LoopCurve:
     def critical_gains(self) -> list[float]:
         """Return every factor that puts L through -1: -1/L where L is real and negative."""
         crossings = self.crossings(lambda values: values.imag / np.abs(values))
-        # L is real at rest and at half the sampling rate too, where no sign tells a crossing.
+        # L is real at rest and at half the sampling rate too, without a change of sign.
         at_rest = () if self._integrates else (0.0,)
         at_half_rate = self.omega[-1:] if self._sampled else ()
         values = [self.at(omega) for omega in (*crossings, *at_rest, *at_half_rate)]

@@ -45,7 +45,7 @@ LOOP_FIGURES = (
     ),
     Quantity('driveline_mode_damping', 'damping', PURE, '.3f', 'damping ratio of that mode'),
 )
-"""What every table of loops as they run shows."""
+"""Quantities in every table of loops as they run."""
 LOOP_FIGURE_OF = {
     figure.key: figure
     for figure in (
@@ -59,38 +59,38 @@ LOOP_FIGURE_OF = {
         ),
     )
 }
-"""All by name."""
+"""Quantities of a loop as it runs, by their keys."""
 DESIGN_FIGURE_OF = LOOP_FIGURE_OF | {
     name: replace(LOOP_FIGURE_OF[name], form='.3f')
     for name in ('sensitivity_peak', 'complementary_peak')
 }
-"""The same, with peaks as fine as a design is held against its specifications."""
+"""Quantities of a loop by their keys, with peaks as precise as a design's specifications."""
 
 
 @dataclass(frozen=True)
 class LoopMargins:
     """
-    How far a stable closed loop is from instability, and how it behaves on the way there.
+    Margins of a stable closed loop to instability, with crossover and bandwidth.
 
-    `LOOP_FIGURES` has what the numbers are. Every one is None when the closed loop is unstable,
-    and infinite where nothing limits it.
+    `LOOP_FIGURES` defines the quantities. Each is None when the closed loop is unstable, and
+    infinite where nothing limits it.
     """
 
     stable: bool
-    """Whether the closed loop is, by its poles."""
+    """Whether the closed loop is stable, by its poles."""
     gain_margin_db: float | None = None
     gain_reduction_margin_db: float | None = None
-    """Least decrease of the loop gain that makes it unstable, as a positive number."""
+    """Least decrease in dB of the loop gain that makes it unstable, as a positive number."""
     phase_margin_deg: float | None = None
     delay_margin_s: float | None = None
     disk_margin: float | None = None
-    """alpha; gains from (2 - alpha)/(2 + alpha) to its inverse are safe."""
+    """Disk margin alpha; gains from (2 - alpha)/(2 + alpha) to its inverse are safe."""
     sensitivity_peak: float | None = None
     complementary_peak: float | None = None
     crossover_rad_s: float | None = None
-    """0 when |L| is below 1 everywhere."""
+    """Crossover frequency in rad/s; 0 when |L| is below 1 everywhere."""
     bandwidth_rad_s: float | None = None
-    """0 when |T| is below 1/sqrt(2) at rest."""
+    """Bandwidth in rad/s; 0 when |T| is below 1/sqrt(2) at rest."""
 
     def plain(self) -> dict[str, bool | float | None]:
         """Return all by name for JSON, which has no infinity: None where nothing limits one."""
@@ -101,9 +101,9 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
     """
     Return the margins of L closed by unit negative feedback.
 
-    Crossings are bracketed on a grid, dense around every pole, and then solved for; peaks
-    likewise. The delay margin of a sampled loop counts a delay tau as exp(-j omega tau), which is
-    exact for whole samples.
+    Crossings and peaks are bracketed on a grid, dense around every pole, and then solved for. The
+    delay margin of a sampled loop counts a delay tau as exp(-j omega tau), which is exact for
+    whole samples.
     """
     if not closed_loop_stable(loop):
         return LoopMargins(stable=False)
@@ -147,7 +147,7 @@ def closed_loop_stable(loop: ContinuousLoop | StateSpace) -> bool:
 
 def unstable_poles(loop: ContinuousLoop | StateSpace) -> int:
     """
-    Return how many poles the closed loop has on or beyond the stability boundary.
+    Return the number of closed-loop poles on or beyond the stability boundary.
 
     With a dead time tau there are infinitely many poles, and all but a few are stable. Growing
     from 0, tau takes two across at w when L(jw) exp(-jw tau) = -1: outwards where |L| falls with

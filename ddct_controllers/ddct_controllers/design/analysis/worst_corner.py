@@ -1,4 +1,4 @@
-"""The worst that wear and the corners of the driveline's parameters do to a sampled loop."""
+"""The worst corner: margins over wear and the corners of the driveline's parameters."""
 
 import itertools
 from dataclasses import dataclass, fields, replace
@@ -31,9 +31,9 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
 WEAR_GAINS = (WEAR_RANGE[0], 1.0, WEAR_RANGE[1])
-"""K_usura at the ends of its range, and of a new clutch."""
+"""Values of K_usura, without unit: the ends of its range, and that of a new clutch."""
 _CANDIDATE_SHARE = 0.95
-"""Corners whose M_s on the grid reaches this share of the highest are solved for exactly."""
+"""Share of the highest M_s on the grid from which a corner's M_s is solved for exactly."""
 
 
 class PlantCorners:
@@ -58,7 +58,7 @@ class PlantCorners:
         """Names of the parameters that differ between corners."""
         ends = (1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD)
         self.factors = list(itertools.product(ends, repeat=len(self.varied)))
-        """Per corner: multiples of the nominal values, in the order of `varied`."""
+        """Multiples of the nominal values per corner, in the order of `varied`."""
         self.parameters = [
             replace(
                 nominal,
@@ -69,35 +69,38 @@ class PlantCorners:
             )
             for factors in self.factors
         ]
-        """Per corner: the driveline."""
+        """Parameters of the driveline per corner."""
         self.plants = [sampled_plant(each, actuator=actuator) for each in self.parameters]
-        """Per corner: hold, delay, actuator and driveline, as `sampled_plant` gives them."""
+        """
+        Sampled plant per corner: hold, delay, actuator and driveline, as `sampled_plant` returns
+        it.
+        """
         self.responses = np.array([frequency_response(p, self.omega) for p in self.plants])
-        """(corners, frequencies), complex."""
+        """Frequency responses of the plants, (corners, frequencies), complex."""
 
 
 @dataclass(frozen=True)
 class WorstCorner:
-    """Where among all corners, and wear gains from 0.7 to 1.3, a loop is nearest instability."""
+    """The corner, among all corners and wear gains from 0.7 to 1.3, nearest instability."""
 
     unstable_corners: int
-    """How many corners are unstable at some wear gain of the range."""
+    """Number of corners that are unstable at some wear gain of the range."""
     index: int
     """
-    Which corner is worst.
+    Index of the worst corner, the one of highest M_s.
 
-    That is the one of highest M_s or, if any is unstable, of the fastest growing pole.
+    If any is unstable, that of the fastest growing pole.
     """
     wear_gain: float
-    """The wear gain there."""
+    """Wear gain K_usura at the worst corner, without unit."""
     sensitivity_peak: float | None
-    """M_s there, None when a corner is unstable."""
+    """Peak M_s at the worst corner, None when a corner is unstable."""
     least_mode_damping: float | None
-    """Least damping of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
+    """Least damping ratio of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
 
 
 def worst_corner(controller: StateSpace, corners: PlantCorners) -> WorstCorner:
-    """Return the worst corner for a controller as `sampled_loop` takes it."""
+    """Return the worst corner for a controller in the form that `sampled_loop` accepts."""
     loops = [series(controller, plant) for plant in corners.plants]
     responses = corners.responses * frequency_response(controller, corners.omega)
     poles = np.linalg.eigvals(

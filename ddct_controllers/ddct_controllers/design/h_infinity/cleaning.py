@@ -1,4 +1,4 @@
-"""Clean a synthesised controller: drop what epsilon and optimality left in it (Section 3.2.2)."""
+"""Clean a synthesised controller: drop the traces of epsilon and optimality (Section 3.2.2)."""
 
 import math
 from collections.abc import Sequence
@@ -11,27 +11,31 @@ from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 FAST_RAD_S = 10.0 * math.pi / PERIOD_S
-"""Real poles and zeros beyond ten times half the sampling rate do nothing at 10 ms."""
+"""
+Magnitude in rad/s beyond which real poles and zeros have no effect at 10 ms.
+
+It is ten times half the sampling rate.
+"""
 _NEAR_OFFSET = 3.0
-"""Largest factor between epsilon and the poles that it left."""
+"""Largest ratio, either way, of epsilon to the poles that it causes in the controller."""
 _SAME = 1e-3
-"""Relative distance within which a pole and a zero cancel."""
+"""Distance, relative, within which a pole and a zero cancel."""
 
 
 @dataclass(frozen=True)
 class CleaningStep:
-    """One rule that was applied, and to what."""
+    """One rule that was applied, and the factors that it removed."""
 
     rule: str
     removed: str
-    """Factors of numerator and denominator."""
+    """Factors removed from numerator and denominator."""
 
 
 def clean(
     controller: FactoredTransferFunction, offset_rad_s: float
 ) -> tuple[FactoredTransferFunction, tuple[CleaningStep, ...]]:
     """
-    Return the controller with the weights' traces taken out, and what was done.
+    Return the controller without the traces of the weights, and the steps of the cleaning.
 
     In this order: (1) real factors faster than `FAST_RAD_S` go by their gain at rest, s + a
     becoming a; (2) of the two poles that W_1* left at -epsilon one becomes s, mu = 1, the other

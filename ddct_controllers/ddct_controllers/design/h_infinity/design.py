@@ -30,22 +30,26 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 METHODS = ('riccati', 'lmi')
 _ROLL_OFF = 10.0
-"""How far beyond w_2 the weight W_t levels out in the sampled problem, which needs it proper."""
+"""
+Corner at which W_t levels out in the sampled problem, relative to w_2.
+
+That problem needs a proper W_t.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class HinfDesign:
-    """A verified controller and how it came about."""
+    """A verified controller, with weights and intermediate results of its design."""
 
     weights: HinfWeights
     synthesis: Synthesis
     raw: FactoredTransferFunction
-    """What the synthesis gave: in s, or in w for a sampled design."""
+    """Controller from the synthesis: in s, or in w for a sampled design."""
     cleaning: tuple[CleaningStep, ...]
     cleaned: FactoredTransferFunction
-    """In the same variable."""
+    """Controller after cleaning, in the same variable as `raw`."""
     sampled: StateSpace
-    """G_c(z) from slip error in rpm to torque in N m, as it runs."""
+    """Controller G_c(z) from slip error in rpm to torque in N m, as it runs."""
 
 
 def design_h_infinity(

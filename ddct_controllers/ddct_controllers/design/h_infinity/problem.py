@@ -13,7 +13,7 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 AXIS_SHIFT_RAD_S = 1e-4
 """
-Where a plant pole at 0 is put for the synthesis.
+Distance in rad/s by which a plant pole at 0 is moved to the left for the synthesis.
 
 On the axis it is an invariant zero of the generalised plant, for which the Riccati equations have
 no stabilising solution; anything from 1e-6 to 1e-3 gives the same gamma.

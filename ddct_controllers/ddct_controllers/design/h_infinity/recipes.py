@@ -12,12 +12,12 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_plant.base.errors import ParameterError, require_choice
 
 THESIS_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.3, overshoot=0.08)
-"""Section 3.2."""
+"""Time specifications of Section 3.2."""
 
 
 @dataclass(frozen=True)
 class HinfWeights:
-    """The weights of one design."""
+    """Weights of one design."""
 
     sensitivity: SensitivityWeight
     complementary: ComplementaryWeight
@@ -50,7 +50,7 @@ RECIPES = {
     ),
 }
 """
-By the name that `ddct design h-infinity --weights` takes, for the specifications of Section 3.2.
+Weights by the name of the option --weights, for the specifications of Section 3.2.
 
 Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
 first with one more on the torque, and hold and delay in the plant.
@@ -62,7 +62,7 @@ PRINTED_WEIGHTS = HinfWeights(
     sampled=False,
     back_off=1.0,
 )
-"""Section 3.2.1: K, S_p, T_p and w_2 as printed; at the optimum, as the thesis's synthesis is."""
+"""Weights of Section 3.2.1: K, S_p, T_p and w_2 as printed; at the optimum, as the thesis's."""
 
 
 def make_weights(
@@ -74,7 +74,7 @@ def make_weights(
     back_off: float | None = None,
 ) -> HinfWeights:
     """
-    Return the weights of a recipe for specifications; what is given overrides the recipe.
+    Return the weights of a recipe for specifications; arguments override the recipe.
 
     S_p and T_p follow from the overshoot. K and w_2 are the designer's choice in the thesis; with
     the rise time, times grow by a factor t_r / 0.3 s, so that K grows by its square.

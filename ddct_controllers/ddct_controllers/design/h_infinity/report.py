@@ -1,9 +1,9 @@
-"""What `design h-infinity` computes, as plain values."""
+"""Results of `design h-infinity` as plain values."""
 
 import dataclasses
 from typing import Any
 
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
     ContinuousLoop,
     continuous_loop,
@@ -34,7 +34,7 @@ from ddct_plant.linear.lti import StateSpace
 
 Record = dict[str, Any]
 _STEP_RISE_TIMES = 20.0
-"""Length of the step responses in rise times asked for."""
+"""Length of the step responses in specified rise times."""
 
 
 def design_record(
@@ -44,7 +44,7 @@ def design_record(
     design: HinfDesign,
     corners: PlantCorners,
 ) -> Record:
-    """Return a design and what was verified of it, at `corners` over wear and parameters too."""
+    """Return a design and its verified quantities, at `corners` over wear and parameters too."""
     found = design.synthesis
     worst = worst_corner(design.sampled, corners)
     return {
@@ -69,17 +69,17 @@ def design_record(
     }
 
 
-def lacks(record: Record) -> list[str]:
-    """Return in what a design with its corners falls short of its specifications, empty if not."""
-    asked, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
+def shortfalls(record: Record) -> list[str]:
+    """Return the specifications that a design with its corners does not meet, empty if none."""
+    specified, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
     found = []
-    if loop['rise_time_s'] is None or loop['rise_time_s'] > asked['rise_time_s']:
+    if loop['rise_time_s'] is None or loop['rise_time_s'] > specified['rise_time_s']:
         reached = 'never' if loop['rise_time_s'] is None else f'in {loop["rise_time_s"]:.3g} s'
-        found.append(f'it rises {reached}, {asked["rise_time_s"]:g} s are asked for')
-    if loop['overshoot'] > asked['overshoot']:
+        found.append(f'it rises {reached}, {specified["rise_time_s"]:g} s are asked for')
+    if loop['overshoot'] > specified['overshoot']:
         found.append(
             f'it overshoots by {100.0 * loop["overshoot"]:.3g} %, '
-            f'{100.0 * asked["overshoot"]:g} % are allowed'
+            f'{100.0 * specified["overshoot"]:g} % are allowed'
         )
     if corners['unstable']:
         found.append(
@@ -91,7 +91,7 @@ def lacks(record: Record) -> list[str]:
 
 
 def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Record:
-    """Return what a controller's file says of where it comes from."""
+    """Return the provenance of a design for the controller's file."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
     return {
@@ -128,11 +128,13 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
 def loop_record(
     loop: ContinuousLoop | StateSpace, weights: HinfWeights, specifications: TimeSpecifications
 ) -> Record:
-    """Return weighted norms, step figures and margins of a loop; only `stable` if it is not."""
+    """Return weighted norms, step figures and margins of a loop; only `stable` if unstable."""
     if not closed_loop_stable(loop):
         return {'stable': False}
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
-    rise_time, exceeds = step_figures(loop, _STEP_RISE_TIMES * specifications.rise_time_s)
+    rise_time, exceeds = rise_time_and_overshoot(
+        loop, _STEP_RISE_TIMES * specifications.rise_time_s
+    )
     return {
         **loop_margins(loop).plain(),
         'rise_time_s': rise_time,
@@ -145,7 +147,7 @@ def loop_record(
 
 
 def uncertainty_record() -> Record:
-    """Return the fitted and the printed W_u, and how far the printed one falls short."""
+    """Return the fitted and the printed W_u, and the shortfall of the printed one."""
     error = relative_error(plant_in_rpm(), wear_family(), OMEGA)
     largest = float(error.max())
     printed = abs(PRINTED_W_U.frequency_response(OMEGA))

@@ -21,7 +21,7 @@ _LOOP_HEADERS = (
 
 
 def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, Table]:
-    """Return the tables of designs for one specification, by the names that the page has."""
+    """Return the tables of designs for one specification, by their names on the page."""
     return {
         'specifications': _specification_table(records[0]['specifications']),
         'weights': _weight_table(records),

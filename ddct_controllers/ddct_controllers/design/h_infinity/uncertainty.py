@@ -22,13 +22,17 @@ from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, Sens
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 
 PRINTED_W_U = FactoredTransferFunction(0.2987, (3913.0 / 0.2987,), (13030.0,))
-"""W_u as printed, made with `ginput`; it falls from 0.3003 to 0.2987, short of the error 0.3."""
+"""
+Weight W_u as printed, made with `ginput`.
+
+It falls from 0.3003 to 0.2987, short of the error 0.3.
+"""
 OMEGA = np.geomspace(1e-2, 1e6, 241)
-"""Frequencies in rad/s that the family is looked at."""
+"""Frequencies in rad/s at which the family is evaluated."""
 
 
 def shortfall_from_rad_s(weight: FactoredTransferFunction, error: float) -> float | None:
-    """Return from which frequency on a falling |W_u| is below a constant error, None if never."""
+    """Return the frequency from which a falling |W_u| is below a constant error, or None."""
 
     def excess(omega: float) -> float:
         return float(np.abs(weight.frequency_response(np.array([omega])))[0]) - error
@@ -89,16 +93,16 @@ def _least_excess(omega: np.ndarray, error: np.ndarray, pole: float) -> tuple[fl
 
 @dataclass(frozen=True)
 class WeightedNorms:
-    """Peaks over frequency; each below 1 meets its requirement."""
+    """Peaks over frequency; a requirement is met by a peak below 1."""
 
     sensitivity: float
-    """||W_s S||, with the poles of W_s at 0."""
+    """Norm ||W_s S||, with the poles of W_s at 0."""
     complementary: float
-    """||W_t T||."""
+    """Norm ||W_t T||."""
     uncertainty: float
-    """||W_u T||: robust stability for all K_usura."""
+    """Norm ||W_u T||: robust stability for all K_usura."""
     stack: float
-    """||[W_s S; W_t T]||."""
+    """Norm ||[W_s S; W_t T]||."""
 
 
 def weighted_norms(

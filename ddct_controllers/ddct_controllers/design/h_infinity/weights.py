@@ -12,7 +12,7 @@ BUTTERWORTH = math.sqrt(0.5)
 """Damping of a second-order Butterworth polynomial; the thesis rounds 2 x this to 1.414."""
 OFFSET_RATIO = 0.01
 """
-epsilon over w_1, where the thesis has 0.01 w_c.
+Ratio of epsilon to w_1, where the thesis has 0.01 w_c.
 
 Its printed controller has the pair of epsilon = 0.0095 rad/s, and no loop of Chapter 3 crosses
 over at 0.95 rad/s; from 0.001 to 0.03 the ratio moves gamma by less than 1 %.
@@ -28,9 +28,9 @@ class SensitivityWeight:
     """
 
     low_frequency_gain: float
-    """K = |S(0)*|."""
+    """Factor K = |S(0)*| of |S| = K w^2 at low frequency, in s^2."""
     peak: float
-    """S_p."""
+    """Bound S_p of |S|."""
 
     def __post_init__(self) -> None:
         """Check both; raise ParameterError that names a bad one."""
@@ -44,12 +44,12 @@ class SensitivityWeight:
 
     @property
     def corner_rad_s(self) -> float:
-        """w_1 = sqrt(S_p / K)."""
+        """Corner frequency w_1 = sqrt(S_p / K) in rad/s."""
         return math.sqrt(self.peak / self.low_frequency_gain)
 
     @property
     def offset_rad_s(self) -> float:
-        """epsilon, where `shifted` has its poles."""
+        """Distance epsilon in rad/s of the poles of `shifted` from 0."""
         return OFFSET_RATIO * self.corner_rad_s
 
     def transfer_function(self, offset_rad_s: float = 0.0) -> FactoredTransferFunction:
@@ -68,11 +68,11 @@ class ComplementaryWeight:
     """W_t = (1 + 2 zeta s/w_2 + (s/w_2)^2) / T_p: |T| may be T_p, and falls off beyond w_2."""
 
     peak: float
-    """T_p."""
+    """Bound T_p of |T|."""
     corner_rad_s: float
-    """w_2."""
+    """Corner frequency w_2 in rad/s."""
     damping: float = BUTTERWORTH
-    """zeta; 1 makes the double real zero that two calls of `sderiv` with [1/w_2 1] make."""
+    """Damping zeta; 1 makes the double real zero of two calls of `sderiv` with [1/w_2 1]."""
 
     def __post_init__(self) -> None:
         """Check all; raise ParameterError that names a bad one."""
@@ -102,9 +102,9 @@ class EffortWeight:
     """W_c on the torque request: it costs 1 at `torque_n_m_per_rpm`, and more beyond a corner."""
 
     torque_n_m_per_rpm: float
-    """Torque that costs 1, per rpm of the reference."""
+    """Torque in N m that costs 1, per rpm of the reference."""
     corner_rad_s: float
-    """Frequency from which the weight rises, up to 100 times higher."""
+    """Frequency in rad/s from which the weight rises, up to 100 times higher."""
 
     def __post_init__(self) -> None:
         """Check both; raise ParameterError that names a bad one."""

@@ -17,13 +17,13 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
 NETWORK_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.25, overshoot=0.14)
-"""What G_c1 is designed for."""
+"""Time specifications for which the thesis designs G_c1."""
 PLACEMENT_SPECIFICATIONS = TimeSpecifications(rise_time_s=0.6, overshoot=0.14)
-"""What G_c2 is designed for."""
+"""Time specifications for which the thesis designs G_c2."""
 PLACEMENT_CROSSOVER_RAD_S = 3.5
-"""w_c that the thesis takes for t_r = 0.6 s."""
+"""Crossover w_c in rad/s that the thesis takes for t_r = 0.6 s."""
 _SLOW = 1e-7
-"""A frequency below all others of a plant, relative to its slowest pole or zero."""
+"""Frequency below all others of a plant, relative to its slowest pole or zero."""
 
 
 def integrators(gain: float, count: int) -> FactoredTransferFunction:
@@ -104,10 +104,14 @@ def with_crossover(
 
 
 _LEAD = lead_network(zero_rad_s=1.0, ratio=16.0)
-"""As G_c1 has it: the text says z_d = w_c = 8 rad/s, the printed zeros and poles are 1 and 16."""
+"""
+Lead network of G_c1: its printed zeros and poles are 1 and 16 rad/s.
+
+The text has z_d = w_c = 8 rad/s instead.
+"""
 _LAG = lag_network(pole_rad_s=0.6, ratio=16.0)
 _GAIN = 0.3
-"""|K_c| of G_c1."""
+"""Gain |K_c| of G_c1."""
 
 
 def network_steps() -> dict[str, FactoredTransferFunction]:
@@ -131,9 +135,9 @@ def placement(
     """
     Return a controller of G_c2's structure, equation (2.2), with the gain for the crossover.
 
-    G_c = -k (s + z)^mu (slow poles of G_a) / (s^mu (locked-driveline zeros of P_2)): what it
-    cancels leaves a loop that falls evenly around w_c. The thesis prints s^2 + 74.29 s + 2393 for
-    the pair that is s^2 + 82.23 s + 2563 in G_a, as drawn by hand in Control System Designer.
+    G_c = -k (s + z)^mu (slow poles of G_a) / (s^mu (locked-driveline zeros of P_2)): the
+    cancellation leaves a loop that falls evenly around w_c. The thesis prints s^2 + 74.29 s + 2393
+    for the pair that is s^2 + 82.23 s + 2563 in G_a, as drawn by hand in Control System Designer.
     """
     driveline_zeros = next(f for f in clutch_to_slip(parameters).numerator if isinstance(f, tuple))
     actuator_poles = min(

@@ -1,9 +1,9 @@
-"""What `design loop-shaping` computes, as plain values."""
+"""Results of `design loop-shaping` as plain values."""
 
 import dataclasses
 from typing import Any
 
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
     WEAR_RANGE,
     ContinuousLoop,
@@ -31,12 +31,12 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 Record = dict[str, Any]
 G_C1, G_C2 = LOOP_SHAPING_CONTROLLERS['ls2'], LOOP_SHAPING_CONTROLLERS['ls7']
-"""Equations (2.1) and (2.2)."""
+"""Controllers of equations (2.1) and (2.2)."""
 _STEP_DURATION_S = 6.0
 
 
 def thesis_record() -> Record:
-    """Return the way to G_c1 and to G_c2, and both loops in three versions."""
+    """Return the steps to G_c1 and to G_c2, and both loops in three versions."""
     return {
         'network_steps': [
             {'step': step, **_loop_record(continuous_loop(controller))}
@@ -55,7 +55,7 @@ def thesis_record() -> Record:
 
 
 def design_record(name: str, design: LoopShapingDesign) -> Record:
-    """Return a design and what was verified of it."""
+    """Return a design and its verified quantities."""
     found = design.verification
     return {
         'name': name,
@@ -66,7 +66,7 @@ def design_record(name: str, design: LoopShapingDesign) -> Record:
 
 
 def provenance(design: LoopShapingDesign) -> Record:
-    """Return what a controller's file says of where it comes from."""
+    """Return the provenance of a design for the controller's file."""
     found = design.verification
     specifications = found.specifications
     return {
@@ -93,7 +93,7 @@ def provenance(design: LoopShapingDesign) -> Record:
 
 
 def _placements() -> dict[str, FactoredTransferFunction]:
-    """Return G_c2 as printed, with the gain for w_c, and what the rule of `placement` gives."""
+    """Return G_c2 as printed, with the gain for w_c, and by the rule of `placement`."""
     driveline, crossover = DrivelineParameters(), PLACEMENT_CROSSOVER_RAD_S
     zero = largest_zero_rad_s(crossover, PLACEMENT_SPECIFICATIONS.overshoot, driveline)
     return {
@@ -105,7 +105,7 @@ def _placements() -> dict[str, FactoredTransferFunction]:
 
 def _placement_record(controller: FactoredTransferFunction) -> Record:
     loop = continuous_loop(controller)
-    rise_time_s, overshoot = step_figures(loop, _STEP_DURATION_S)
+    rise_time_s, overshoot = rise_time_and_overshoot(loop, _STEP_DURATION_S)
     margins = loop_margins(loop)
     return {
         **dataclasses.asdict(controller),

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
 from ddct_controllers.design.analysis.margins import closed_loop_stable
 from ddct_controllers.design.loop_shaping.design import (
@@ -34,20 +34,28 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discreti
 from ddct_plant.models.parameters import DrivelineParameters
 
 STRUCTURES = ('networks', 'placement')
-"""Integrators with lead networks, as G_c1 begins, and placed poles and zeros, as in G_c2."""
+"""
+Names of the structures: integrators with lead networks, as G_c1 begins, or placement.
+
+The latter has placed poles and zeros, as G_c2.
+"""
 
 _LEAD_POLE_RATIO = 10.0
-"""Pole of a lead network over the crossover: it takes back 6 degrees of the lead."""
+"""Pole of a lead network over the crossover; it costs 6 degrees of the lead."""
 _ZERO_RATIOS = np.geomspace(0.002, 0.5, 64)
 """Zeros over the crossover, from the least overshoot to the quickest recovery."""
 _CROSSOVERS_RAD_S = np.geomspace(0.05, 50.0, 150)
-"""5 % apart, whatever is asked for, so that what one search can reach the next can too."""
+"""
+Candidate crossovers in rad/s, 5 % apart.
+
+They are the same for all specifications, so that one search reaches the results of another.
+"""
 _FIRST_CROSSOVER = 0.7
-"""Start of the search, as a share of the crossover that the prototype asks for."""
+"""Start of the search, as a share of the crossover of the prototype."""
 _SEARCH_TIME = 15.0
 """Length of a step response of the search over 1/w_c: past the highest overshoot."""
 _OMEGA = np.geomspace(1e-2, math.pi / PERIOD_S, 200)
-"""Frequencies in rad/s at which the search looks at S and T."""
+"""Frequencies in rad/s at which the search evaluates S and T."""
 
 
 @dataclass(frozen=True)
@@ -55,9 +63,9 @@ class LoopShapingDesign:
     """A controller that meets its specifications in the sampled loop."""
 
     structure: str
-    """One of STRUCTURES."""
+    """Name of the structure, one of STRUCTURES."""
     integrators: int
-    """mu."""
+    """Number mu of integrators."""
     controller: FactoredTransferFunction
     verification: Verification
 
@@ -71,9 +79,9 @@ def design_loop_shaping(
     """
     Return the slowest controller found that meets the specifications.
 
-    In this order: a structure whose L stays out of the S_p and T_p curves, then any that meets
-    the time specifications. Only what `verify` accepts is returned. Raise ParameterError with
-    what can be reached when there is none.
+    In this order: a structure whose L stays out of the S_p and T_p curves, then any that meets the
+    time specifications. Only controllers that `verify` accepts are returned. Without one raise
+    ParameterError with the specifications that can be reached.
     """
     require_reachable(specifications)
     search = _Search(specifications, integrator_count, parameters)
@@ -81,9 +89,9 @@ def design_loop_shaping(
         for structure in structures:
             for controller in search.candidates(structure, within_contours):
                 found = verify(controller, specifications, parameters)
-                if not found.complaints and found.respects_contours >= within_contours:
+                if not found.rejections and found.respects_contours >= within_contours:
                     return LoopShapingDesign(structure, integrator_count, controller, found)
-                search.complaints = found.complaints
+                search.rejections = found.rejections
     raise search.failure(structures)
 
 
@@ -103,13 +111,13 @@ class _Search:
         first_rad_s = _FIRST_CROSSOVER * specifications.crossover_rad_s
         self._first = int(np.searchsorted(_CROSSOVERS_RAD_S, first_rad_s))
         self._fastest_s = math.inf
-        self.complaints: tuple[str, ...] = ()
-        """Why the last candidate was turned down."""
+        self.rejections: tuple[str, ...] = ()
+        """Reasons why the last candidate was refused."""
 
     def candidates(
         self, structure: str, within_contours: bool
     ) -> Iterator[FactoredTransferFunction]:
-        """Yield what is fast enough and overshoots little enough, rising in crossover."""
+        """Yield controllers, fast enough and with little enough overshoot, by crossover."""
         for crossover in _CROSSOVERS_RAD_S[self._first :]:
             found = self._quickest(structure, float(crossover), within_contours)
             if found is None:
@@ -120,23 +128,23 @@ class _Search:
                 yield controller
 
     def failure(self, structures: tuple[str, ...]) -> ParameterError:
-        """Return the error that says what can be reached and what to change."""
+        """Return the error with the reachable specifications and the remedy."""
         limit_s = self._specifications.rise_time_s
-        asked = (
+        goal = (
             f'no loop-shaping controller found with {self._count} integrator(s), rise time '
             f'{limit_s:g} s and overshoot {100.0 * self._specifications.overshoot:g} % in the '
             'sampled loop'
         )
         if self._fastest_s <= limit_s:
             return ParameterError(
-                f'{asked} (last candidate: {"; ".join(self.complaints)}): allow a longer rise time'
+                f'{goal} (last candidate: {"; ".join(self.rejections)}): allow a longer rise time'
             )
         fastest_s = min(self._fastest_s, *(self._slower_s(structure) for structure in structures))
         if math.isinf(fastest_s):
-            return ParameterError(f'{asked}, nor a slower one: allow more overshoot')
+            return ParameterError(f'{goal}, nor a slower one: allow more overshoot')
         fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
         return ParameterError(
-            f'{asked}: the fastest has {fastest_s:g} s: allow that or more overshoot'
+            f'{goal}: the fastest has {fastest_s:g} s: allow that or more overshoot'
         )
 
     def _slower_s(self, structure: str) -> float:
@@ -174,13 +182,13 @@ class _Search:
         loop = series(sampled, self._sampled_plant)
         if not closed_loop_stable(loop) or not self._within_bounds(sampled, within_contours):
             return None
-        rise_time_s, highest = step_figures(loop, _SEARCH_TIME / crossover)
+        rise_time_s, highest = rise_time_and_overshoot(loop, _SEARCH_TIME / crossover)
         if highest > self._specifications.overshoot:
             return None
         return controller, math.inf if rise_time_s is None else rise_time_s
 
     def _within_bounds(self, sampled: StateSpace, within_contours: bool) -> bool:
-        """Return whether |S| is low enough, and |S| and |T| below S_p and T_p if asked for."""
+        """Return whether |S| is low enough, and |S| and |T| below S_p and T_p if required."""
         values = frequency_response(sampled, _OMEGA) * self._plant_response
         sensitivity = np.abs(1.0 / (1.0 + values))
         if not within_contours:

@@ -1,4 +1,4 @@
-"""Time specifications and what they ask of S, T and L, by the second-order prototype."""
+"""Time specifications, and their bounds on S, T and L by the second-order prototype."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.printed import ACTUATOR
 
 LONGEST_RISE_TIME_S = 5.0
-"""An engagement takes about a second."""
+"""Longest rise time in s; an engagement takes about a second."""
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,9 @@ class TimeSpecifications:
     """
 
     rise_time_s: float
-    """t_r, until the first crossing of the final value."""
+    """Rise time t_r in s, until the first crossing of the final value."""
     overshoot: float
-    """s^, as a fraction of the final value: 0.14 is 14 %."""
+    """Overshoot s^ as a fraction of the final value: 0.14 is 14 %."""
 
     def __post_init__(self) -> None:
         """Check both; raise ParameterError that names a bad one."""
@@ -41,7 +41,7 @@ class TimeSpecifications:
 
     @property
     def damping(self) -> float:
-        """Least zeta, |ln s^| / sqrt(pi^2 + ln^2 s^)."""
+        """Least damping zeta = |ln s^| / sqrt(pi^2 + ln^2 s^)."""
         logarithm = math.log(self.overshoot)
         return -logarithm / math.hypot(math.pi, logarithm)
 
@@ -71,12 +71,12 @@ class TimeSpecifications:
 
     @property
     def natural_frequency_rad_s(self) -> float:
-        """Least w_n, (pi - arccos zeta) / (t_r sqrt(1 - zeta^2)) (Section 3.2)."""
+        """Least w_n in rad/s, (pi - arccos zeta) / (t_r sqrt(1 - zeta^2)) (Section 3.2)."""
         return rise_angle(self.damping) / self.rise_time_s
 
     @property
     def crossover_rad_s(self) -> float:
-        """Least w_c, from t_r w_c at this zeta."""
+        """Least crossover w_c in rad/s, from t_r w_c at this zeta."""
         return rise_time_crossover_product(self.damping) / self.rise_time_s
 
 
@@ -133,7 +133,7 @@ def highest_crossover_rad_s(damping: float) -> float:
 
 
 def require_reachable(specifications: TimeSpecifications) -> None:
-    """Raise ParameterError with the bound when the crossover asked for is above it."""
+    """Raise ParameterError with the bound when the required crossover is above it."""
     damping, wanted = specifications.damping, specifications.crossover_rad_s
     bound = highest_crossover_rad_s(damping)
     if wanted > bound:

@@ -48,7 +48,7 @@ def thesis_tables(record: Record) -> dict[str, Table]:
 
 
 def design_tables(record: Record) -> tuple[Table, Table]:
-    """Return the tables of `design_record`: what was asked for and found, and G_c(s)."""
+    """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
     wanted, found = record['specifications'], record['sampled_loop']
     peaks = {contour['name']: contour for contour in record['contours']}
     figures = Table(
@@ -121,8 +121,8 @@ def _peak_name(contour: Record) -> str:
     return f'max |{contour["name"]}|' + ('' if contour['respected'] else ', crosses its curve')
 
 
-def _row(name: str, asked: float | None, found: float | None, unit: str) -> tuple[str, ...]:
-    return (name, text_or_dash(asked, '.3g'), text_or_dash(found, '.3g'), unit)
+def _row(name: str, specified: float | None, found: float | None, unit: str) -> tuple[str, ...]:
+    return (name, text_or_dash(specified, '.3g'), text_or_dash(found, '.3g'), unit)
 
 
 def _loop_cells(row: Record) -> tuple[str, ...]:

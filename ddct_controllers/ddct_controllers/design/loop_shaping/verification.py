@@ -1,10 +1,10 @@
-"""What a linear controller does in the loop as it runs: sampled, held, delayed, clutch worn."""
+"""Verification of a linear controller in the loop as it runs: sampled, held, delayed, worn."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.closed_loop import step_figures
+from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
     WEAR_RANGE,
     LoopCurve,
@@ -22,48 +22,54 @@ from ddct_plant.models.parameters import DrivelineParameters
 LARGEST_SENSITIVITY_PEAK = 2.0
 """Bound on M_s, whatever the overshoot: at least 30 degrees and 6 dB of margin."""
 _LOOK_AHEAD = 40.0
-"""Length of the step response in rise times asked for."""
+"""Length of the step response in specified rise times."""
 
 
 @dataclass(frozen=True)
 class Contour:
-    """A closed curve that L has to stay out of, and what L does there."""
+    """A closed curve that L has to stay out of, with the peak and the crossings of L."""
 
     name: str
-    """S or T."""
+    """Name of the curve's function: S or T."""
     level: float
-    """S_p or T_p."""
+    """Level of the curve: S_p or T_p."""
     peak: float
-    """M_s or M_t of the loop."""
+    """Peak M_s or M_t of the loop."""
     peak_rad_s: float
-    """Frequency of the peak."""
+    """Frequency of the peak in rad/s."""
     inside_rad_s: tuple[tuple[float, float], ...]
-    """First and last frequency of every stretch of L inside the curve, as far as L is known."""
+    """
+    First and last frequency in rad/s of every stretch of L inside the curve.
+
+    The last stretch may end at the end of the grid.
+    """
 
     @property
     def respected(self) -> bool:
-        """Whether L stays out."""
+        """Whether L stays out of the curve."""
         return not self.inside_rad_s
 
 
 @dataclass(frozen=True)
 class Verification:
-    """Figures of the sampled loop with hold and delay, beside the specifications."""
+    """Quantities of the sampled loop with hold and delay, beside the specifications."""
 
     specifications: TimeSpecifications
     margins: LoopMargins
     rise_time_s: float | None
-    """None when the output never reaches the final value in the time looked at."""
+    """
+    Rise time in s; None when the output does not reach the final value in the response's time.
+    """
     overshoot: float | None
-    """Fraction; None for an unstable loop."""
+    """Overshoot as a fraction of the final value; None for an unstable loop."""
     contours: tuple[Contour, ...]
-    """At the curves of S_p and T_p."""
+    """Behaviour of L at the curves of S_p and T_p."""
     stable_when_worn: tuple[bool, ...]
     """Whether the loop is stable, at each end of WEAR_RANGE."""
 
     @property
-    def complaints(self) -> tuple[str, ...]:
-        """What keeps the controller from being accepted; empty for a good one."""
+    def rejections(self) -> tuple[str, ...]:
+        """Reasons to refuse the controller; empty for a good one."""
         if not self.margins.stable:
             return ('the closed loop is unstable',)
         found = []
@@ -92,7 +98,7 @@ def verify(
     specifications: TimeSpecifications,
     parameters: DrivelineParameters,
 ) -> Verification:
-    """Return what the controller, discretised as in the run, does in the sampled loop."""
+    """Return the quantities of the sampled loop with the controller, discretised as in the run."""
     sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
     loop = sampled_loop(sampled, parameters)
     margins = loop_margins(loop)
@@ -102,13 +108,13 @@ def verify(
     )
     if not margins.stable:
         return Verification(specifications, margins, None, None, (), worn)
-    reached_s, highest = step_figures(loop, _LOOK_AHEAD * specifications.rise_time_s)
+    reached_s, highest = rise_time_and_overshoot(loop, _LOOK_AHEAD * specifications.rise_time_s)
     at_contours = contours(LoopCurve(loop), specifications)
     return Verification(specifications, margins, reached_s, highest, at_contours, worn)
 
 
 def contours(curve: LoopCurve, specifications: TimeSpecifications) -> tuple[Contour, Contour]:
-    """Return what L does at the S_p and the T_p curve of the specifications."""
+    """Return the behaviour of L at the S_p and the T_p curve of the specifications."""
     return (
         _contour(curve, 'S', specifications.sensitivity_peak, sensitivity),
         _contour(curve, 'T', specifications.complementary_peak, complementary),

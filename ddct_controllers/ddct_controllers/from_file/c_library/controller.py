@@ -29,7 +29,7 @@ _SCALARS = attrgetter(
     *('step', 'engine_speed', 'shaft_speed', 'wheel_speed', 'vehicle_speed'),
     *('engine_torque', 'load_torque', 'open_loop_torque'),
 )
-"""What a ddct_measurement begins with."""
+"""Scalars of a measurement, in the order of the struct ddct_measurement."""
 _CALLS = {host.RESET: 'reset', host.UPDATE: 'update', host.HOLD: 'hold'}
 
 
@@ -46,7 +46,7 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
 
 
 class CLibraryController(Controller):
-    """Asks a process of its own, which has the library, at every step."""
+    """Controller whose library runs in a process of its own, called at every step."""
 
     method_names = MappingProxyType({name: f'ddct_controller_{name}' for name in _CALLS.values()})
 
@@ -71,25 +71,25 @@ class CLibraryController(Controller):
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
-        self._ask(host.RESET)
+        self._call(host.RESET)
 
     def hold(self, measurement: Measurement) -> None:
         """Call ddct_controller_hold, or reset where there is none."""
-        self._ask(host.HOLD, measurement)
+        self._call(host.HOLD, measurement)
 
     def update(self, measurement: Measurement) -> Command:
-        """Call ddct_controller_update; raise DdctError when it fails, or says so."""
-        clutch, engine, status = self._ask(host.UPDATE, measurement)
-        said = (('c_status', str(status)),)
-        return Command(clutch, said, engine if self.commands_engine else None)
+        """Call ddct_controller_update; raise DdctError when it fails or returns an error."""
+        clutch, engine, status = self._call(host.UPDATE, measurement)
+        pairs = (('c_status', str(status)),)
+        return Command(clutch, pairs, engine if self.commands_engine else None)
 
-    def _ask(self, call: int, measurement: Measurement | None = None) -> tuple[float, float, int]:
+    def _call(self, call: int, measurement: Measurement | None = None) -> tuple[float, float, int]:
         request, at = bytes([call]), f'{_CALLS[call]} was called'
         if measurement is not None:
             at += f' at step {measurement.step}'
             references = (*measurement.slip_reference, *measurement.slip_reference_rate)
             request += self._layout.pack(*_SCALARS(measurement), *references)
-        with contextlib.suppress(OSError):  # it ended before; what follows says how
+        with contextlib.suppress(OSError):  # it ended before; `_received` raises
             self._channel.send(request)
         clutch, engine, status = host.ANSWER.unpack(self._received(at))
         if status < 0:
@@ -98,7 +98,7 @@ class CLibraryController(Controller):
         return clutch, engine, status
 
     def _received(self, at: str) -> bytes:
-        """Return an answer; raise DdctError when the process ended instead."""
+        """Return the next message; raise DdctError when the process ended instead."""
         try:
             answer = self._channel.recv(host.MOST_BYTES)
         except OSError:

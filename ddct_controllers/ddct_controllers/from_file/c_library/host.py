@@ -1,8 +1,8 @@
 """
 The process around a controller's library: loads it and makes its calls.
 
-It is a process of its own because C may crash, loop for ever or print. Answers go over a socket, a
-message each; the process ends when the other end does.
+It is a process of its own because C may crash, loop for ever or print. Replies go over a socket, a
+message each; the process ends when the other end closes.
 """
 
 import json
@@ -17,21 +17,23 @@ from typing import Any
 
 HEADER = 'ddct_controller.h'
 TEMPLATE = Path(__file__).parent / 'template'
-"""Folder of the header and of a controller to start from."""
+"""Path of the folder with the header and a controller to start from."""
 RESET, UPDATE, HOLD = b'ruh'
-"""First byte of a request; a measurement follows the other two, as C has it, then references."""
+"""
+First byte of a request; UPDATE and HOLD continue with a measurement as C has it, then references.
+"""
 ANSWER = struct.Struct('ddi')
-"""Clutch torque, engine torque, and what the function returned."""
+"""Struct of a reply: clutch and engine torque in N m, and the function's return value."""
 MOST_BYTES = 1 << 16
-"""Largest size of a message."""
+"""Largest size of a message in bytes."""
 MOST_PREVIEW_STEPS = 1000
 MOST_SECONDS = 10
-"""Longest duration of a call. After it an alarm ends the process."""
+"""Longest duration of a call in s; after it an alarm ends the process."""
 _EXAMPLE = 'start from the template in docs/controllers/c_controller.md'
 
 
 class LibraryError(Exception):
-    """The library is none that can be called."""
+    """The library cannot be called."""
 
 
 class Library:
@@ -81,7 +83,7 @@ class Library:
         self._scalars = ffi.buffer(self._measurement, before_references)
 
     def answer(self, request: bytes) -> bytes:
-        """Carry out one request."""
+        """Execute one request and return the reply."""
         kind = request[0]
         if kind == RESET or (kind == HOLD and self._calls[HOLD] is None):
             # NaN, so that what is not set shows at once, and not after a second run.

@@ -1,4 +1,4 @@
-"""Observer of the states that are not measured, with a constant gain, and the gains."""
+"""Observer of the states that are not measured, with a constant gain; design of that gain."""
 
 from dataclasses import dataclass
 
@@ -18,31 +18,37 @@ from ddct_plant.base.units import rpm_from_rad_s
 
 CLUTCH_DRIFT_N_M = 13.0
 """
-Per period. A random walk reaches it times the root of the number of periods: a clutch worn by 0.3
-is wrong by 90 N m when C_f has risen to 300 N m, half a second after the start.
+Drift of the error of C_f in N m per period.
+
+A random walk reaches it times the root of the number of periods: a clutch worn by 0.3 is wrong by
+90 N m when C_f has risen to 300 N m, half a second after the start.
 """
 LOAD_DRIFT_N_M = 47.0
-"""Drift per period: in a second it reaches the load of a 10 % slope, 470 N m for 1500 kg."""
+"""
+Drift of the error of C_load in N m per period.
+
+In a second it reaches the load of a 10 % slope, 470 N m for 1500 kg.
+"""
 
 
 @dataclass(frozen=True)
 class NoiseLevels:
-    """Standard deviations that set how far the filter trusts its model and the measurements."""
+    """Standard deviations of noise and drift, from which the gain of the filter follows."""
 
     speed_rad_s: float = 0.05
-    """Noise of each measured speed: about the resolution of a wheel-speed sensor."""
+    """Noise of each measured speed in rad/s: about the resolution of a wheel-speed sensor."""
     engine_torque_n_m: float = 2.0
-    """Deviation of C_m from its known value."""
+    """Deviation of C_m from its known value in N m."""
     clutch_torque_n_m: float = 5.0
-    """Deviation of C_f from what the actuator's model gives."""
+    """Deviation of C_f from the torque of the actuator's model in N m."""
     load_torque_n_m: float = 20.0
-    """Deviation of C_load from its computed value."""
+    """Deviation of C_load from its computed value in N m."""
     drift: tuple[float, ...] = ()
-    """Drift of each estimated disturbance per period, in its unit."""
+    """Drift per period of each estimated disturbance, in its unit."""
 
 
 def torque_noise(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
-    """Return the covariance (n, n) that a period adds, its torques' noise held over it."""
+    """Return the covariance (n, n) that a period adds, from torque noise held over it."""
     torques = np.column_stack(
         [
             noise.engine_torque_n_m * model.b[:, ENGINE_TORQUE],
@@ -79,9 +85,9 @@ def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndar
     """
     Return the stationary filter gain (n, 3) for w_d in rpm as the only measured output.
 
-    It is that of the filter that the MPC Toolbox gives an MPC for which nothing else is said. By
-    default the toolbox's estimator believes in white noise of unit variance on each manipulated
-    variable and measured disturbance, held over a period, and on each measured output:
+    It is that of the filter that the MPC Toolbox gives an MPC without further options. By default
+    the toolbox's estimator assumes white noise of unit variance on each manipulated variable and
+    measured disturbance, held over a period, and on each measured output:
 
         x_(k+1) = a x_k + b (u_k + w_k), y_k = c x_k + v_k, E[w w'] = I, E[v v'] = 1.
 
@@ -90,8 +96,8 @@ def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndar
 
         p = a p a' - a p c' (c p c' + R)^-1 c p a' + Q.
 
-    The integrator that it would add to the output is dropped: C_m to w_d is an integrator
-    already, P_1 = 4/s, and two that act on one output cannot be told apart.
+    The integrator that it would add to the output is dropped: C_m to w_d is an integrator already,
+    P_1 = 4/s, and of two that act on one output only the sum is observable.
 
     l acts on the error of w_d, which is [1, -1, 0] times that of w_m, w_p and w_r. Raise
     ParameterError when there is no stationary gain.
@@ -112,7 +118,7 @@ def riccati(
     """
     Return the stabilising solution p of p = a' p a - a' p b (b' p b + r)^-1 b' p a + q.
 
-    Without one raise ParameterError that says `complaint` with the reason for its %s.
+    Without one raise ParameterError with the text `complaint`, whose %s is the reason.
     """
     # Imported here: only runs with such a gain need it.
     from scipy.linalg import solve_discrete_are
@@ -128,26 +134,28 @@ class AtRest:
     """Start of an estimate: speeds as measured, half-shaft and actuator at rest."""
 
     halfshaft_stiffness: float
-    """In N m/rad; the half-shaft balances the load, inf for one that is not known."""
+    """
+    Stiffness in N m/rad of the half-shaft, which balances the load; inf if the load is unknown.
+    """
     initial_request: float
-    """In N m, on which the actuator rests."""
+    """Clutch torque request in N m at which the actuator rests."""
 
 
 class Observer:
     """
     x_(k|k) = x_(k|k-1) + l ((w_m, w_p, w_r)_k - x_(k|k-1)[:3]), x_(k+1|k) = a x_(k|k) + b u_k.
 
-    What is measured, and how far it is trusted, is all in the constant gain l. The clutch is taken
-    for a new one.
+    The constant gain l selects the measured signals and weighs them against the model. The clutch
+    is taken for a new one.
     """
 
     wear_gain = 1.0
-    """K_usura as estimated, by which the states of the driveline are divided."""
+    """Estimated K_usura, without unit, by which the states of the driveline are divided."""
     status: Status = ()
-    """What `controller/status` shows of the estimate."""
+    """Pairs (key, value) of the estimate for `controller/status`."""
 
     def __init__(self, model: TransmissionModel, gain: np.ndarray, start: AtRest | None) -> None:
-        """Take the gain (n, 3), and how the estimate starts; None starts it at zero."""
+        """Take the gain (n, 3) and the start of the estimate; without one it starts at zero."""
         self.model, self.gain, self.start = model, gain, start
         self.reset()
 
@@ -159,7 +167,7 @@ class Observer:
         return self.model.at_rest(speeds, twist, start.initial_request)
 
     def reset(self) -> None:
-        """Forget the estimate; the next measurement starts another one."""
+        """Clear the estimate; the next measurement starts another one."""
         self._started = self.start is None
         self._state = np.zeros(len(self.model.a))
 

@@ -24,29 +24,29 @@ from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import OptionGroup, option
 
 DRIVELINE = 4
-"""w_m, w_p, w_r and theta_sr come first."""
+"""Number of driveline states, which come first: w_m, w_p, w_r in rad/s and theta_sr in rad."""
 GAIN, CLUTCH_ERROR, LOAD_ERROR = range(DRIVELINE, DRIVELINE + 3)
-"""Then K_usura, and the errors of C_f and C_load in N m."""
+"""Indices of the next states: K_usura, and the errors of C_f and C_load in N m."""
 SIZE = LOAD_ERROR + 1
 LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
-"""Bounds of the estimate. We take a clutch to reach 0.7 to 1.3."""
+"""Bounds of the estimate of K_usura; a clutch is assumed to reach 0.7 to 1.3."""
 LEAST_TORQUE_N_M = 5.0
-"""Torque of the actuator below which K_usura does not drift: C_f may be wrong by as much."""
+"""Actuator torque in N m below which K_usura does not drift: C_f may be wrong by as much."""
 MOST_TORQUE_N_M = MOST
 """
-Largest request that the filter takes as the actuator's torque.
+Largest request in N m that the filter takes as the actuator's torque.
 
-No clutch carries a thousandth of it, but a loop that diverges soon asks for 1e11 N m. With so much
+No clutch carries a thousandth of it, but a loop that diverges soon requests 1e11 N m. With so much
 known torque P loses the digits of the measurement's noise, and then has no gain.
 """
 
 
 @dataclass(frozen=True)
 class WearNoise(OptionGroup):
-    """Standard deviations; a scenario may change the drifts, which are per period."""
+    """Standard deviations of the filter; a scenario may change the drifts per period."""
 
     initial_gain: float = 0.2
-    """Deviation of K_usura from 1 before the first measurement."""
+    """Deviation of K_usura from 1 before the first measurement, without unit."""
     gain_drift: float = option(
         0.01,  # 0.1 within a second, an engagement: the fade of a hot clutch
         'drift of K_usura per period; the bounds of its estimate are 0.5 and 1.5',
@@ -74,12 +74,12 @@ class WearObserver:
     """
     Time-varying Kalman filter of w_m, w_p, w_r, theta_sr, K_usura and the errors of C_f, C_load.
 
-    The actuator's torque follows from the requests alone, so it is known, and the clutch transmits
-    K_usura times as much. Then K_usura enters the driveline's equations linearly, times a known
-    signal: x+ = a x + K_usura g_k + b u + b_d d, and the filter needs no linearisation. Its
-    covariance tells how much each period says about K_usura: nothing without torque. A constant
-    torque does not tell K_usura from an error of C_f, so the latter drifts only while a bound
-    holds the former.
+    The actuator's torque follows from the requests alone, so it is a known signal, and the clutch
+    transmits K_usura times as much. Then K_usura enters the driveline's equations linearly, times
+    that signal: x+ = a x + K_usura g_k + b u + b_d d, and the filter needs no linearisation. Its
+    covariance contains how much each period informs about K_usura: nothing without torque. Under a
+    constant torque K_usura and an error of C_f have the same effect, so the latter drifts only
+    while a bound limits the former.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class WearObserver:
         wear: WearNoise,
         start: AtRest,
     ) -> None:
-        """Take the `offset_free_model` of a new clutch, and how the estimate starts."""
+        """Take the `offset_free_model` of a new clutch, and the start of the estimate."""
         driveline, actuator = slice(DRIVELINE), slice(DRIVELINE, STATES)
         self._model = model
         self._wear = wear
@@ -109,7 +109,7 @@ class WearObserver:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the estimate; the next measurement starts another one."""
+        """Clear the estimate; the next measurement starts another one."""
         self._started = False
         self._state = np.zeros(SIZE)
         self._state[GAIN] = 1.0
@@ -119,22 +119,22 @@ class WearObserver:
 
     @property
     def wear_gain(self) -> float:
-        """The estimate of K_usura; 1 before the first measurement."""
+        """Estimate of K_usura, without unit; 1 before the first measurement."""
         return float(self._state[GAIN])
 
     @property
     def wear_gain_deviation(self) -> float:
-        """Standard deviation of the estimate by the filter's own account."""
+        """Standard deviation of the estimate of K_usura, from the filter's covariance."""
         return float(np.sqrt(self._covariance[GAIN, GAIN]))
 
     @property
     def wear_gain_at_bound(self) -> bool:
-        """Whether a bound holds the estimate, so that the error of C_f has the rest."""
+        """Whether the estimate is at a bound, so that the rest is in the error of C_f."""
         return self.wear_gain in (LOWEST_GAIN, HIGHEST_GAIN)
 
     @property
     def status(self) -> Status:
-        """The estimate, its standard deviation and whether a bound holds it."""
+        """Pairs (key, value): estimate, standard deviation, and whether it is at a bound."""
         return (
             ('wear_gain_estimate', repr(self.wear_gain)),
             ('wear_gain_deviation', repr(self.wear_gain_deviation)),

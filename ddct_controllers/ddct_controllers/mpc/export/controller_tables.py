@@ -1,4 +1,4 @@
-"""Everything that the exported C needs to know of one predictive controller, as numbers."""
+"""Numbers of one predictive controller for the exported C: macros and constant arrays."""
 
 import math
 from dataclasses import dataclass
@@ -26,14 +26,14 @@ class ControllerTables:
     """Macros and constant arrays of the exported C, by their names there."""
 
     public: dict[str, int | float]
-    """Numbers for the header, by their names without the prefix DDCT_MPC_."""
+    """Macros of the header, by their names without the prefix DDCT_MPC_."""
     private: dict[str, int | float]
     arrays: dict[str, np.ndarray]
-    """Vectors and matrices."""
+    """Constant vectors and matrices, by their names."""
 
 
 def exportable(controller: Controller, name: str) -> tuple[MpcController, Observer]:
-    """Return controller and observer; raise ParameterError when they do what the C does not."""
+    """Return controller and observer; raise ParameterError for features that the C lacks."""
     if not isinstance(controller, MpcController):
         raise ParameterError(
             f'{name} cannot be exported: it is not a predictive controller; choose one, as mpc3 is'
@@ -49,7 +49,7 @@ def exportable(controller: Controller, name: str) -> tuple[MpcController, Observ
 
 
 def controller_tables(controller: MpcController, observer: Observer) -> ControllerTables:
-    """Return the tables of what `exportable` has returned."""
+    """Return the tables of a controller and observer from `exportable`."""
     settings, program, model = controller.settings, controller.program, observer.model
     form = dual_form(program.structure)
     columns = known_columns(program, len(model.a), settings)
@@ -134,7 +134,7 @@ def _rows(
 
 
 def _periods_ahead(program: CondensedProgram, of_input: int) -> np.ndarray:
-    """Return how far ahead each row limits the level of an input; 0 for other rows."""
+    """Return the number of periods ahead at which a row limits the input; 0 for other rows."""
     periods, rows = np.zeros(len(program.lower)), program.level_rows[of_input]
     periods[rows] = np.arange(1, len(rows) + 1)
     return periods
@@ -151,7 +151,7 @@ def _engine_macros(authority: EngineAuthority) -> dict[str, float]:
 
 
 def _iterations(settings: MpcSettings, form: DualForm) -> int:
-    """Return how often the solver may change its active set in one call."""
+    """Return the largest number of changes of the solver's active set in one call."""
     if settings.iteration_limit is not None and settings.backend == 'daqp':
         return settings.iteration_limit  # counted in the same unit
     return CHANGES_PER_ROW * form.capacity

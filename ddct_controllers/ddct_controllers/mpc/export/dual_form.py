@@ -21,22 +21,22 @@ class DualForm:
     """
 
     to_dual: np.ndarray
-    """(n, n), L^-1."""
+    """Map L^-1 from f to the solver's coordinates, (n, n)."""
     moves: np.ndarray
-    """(n, n), z = moves @ y."""
+    """Map from y to the moves, (n, n): z = moves @ y."""
     normals: np.ndarray
-    """(r, n), of unit length, or 0 for a hard row of zeros."""
+    """Rows in y, (r, n), of unit length, or 0 for a hard row of zeros."""
     relaxation: np.ndarray
-    """(r,) the inverse weight of a soft row's slack in the row's new unit; 0 for a hard row."""
+    """Inverse weight of each soft row's slack in the row's new unit, (r,); 0 for a hard row."""
     kept: np.ndarray
-    """(r,) which rows of the structure these are."""
+    """Indices of these rows in the structure, (r,)."""
     scale: np.ndarray
-    """(r,) what each was multiplied by, as its bounds must be."""
+    """Factor by which each row was multiplied, (r,); its bounds take the same factor."""
 
     @property
     def capacity(self) -> int:
         """
-        Return how many rows can be active at once: the hard ones independent, the soft ones all.
+        Return the largest number of active rows: the hard ones independent, the soft ones all.
 
         At least 2, as compilers warn of loops over arrays of 1.
         """
@@ -74,13 +74,13 @@ class KnownColumns:
 
     gradient: np.ndarray
     shift: np.ndarray
-    """All columns but those of the references."""
+    """Columns of the bounds' shift, without those of the references."""
     slip_references: int
     rate_references: int
 
 
 def known_columns(program: CondensedProgram, states: int, settings: MpcSettings) -> KnownColumns:
-    """Return the program of a controller whose observer has `states` states."""
+    """Return the columns of a controller's program for an observer with `states` states."""
     slip, rate = _references(program.gradient, settings)
     inputs = len(settings.inputs)
     return KnownColumns(
@@ -96,7 +96,7 @@ def _known(matrix: np.ndarray, states: int, inputs: int, *, jump: bool = False) 
     Return the columns without references of `matrix`, which has them as `CondensedProgram` does.
 
     With C_m commanded the program's last two states are the demand and the deviation, and C_m is
-    not among the known inputs. The open loop is the clutch's target, which only the cost knows;
+    not among the known inputs. The open loop is the clutch's target, which enters the cost only;
     the engine's is zero. Only the clutch torque has a jump, and only the bounds depend on it.
     """
     own, rest = np.split(matrix, [states], axis=1)

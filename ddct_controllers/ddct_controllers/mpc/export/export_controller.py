@@ -40,11 +40,11 @@ def export_controller(
     overwrite: bool = False,
 ) -> list[Path]:
     """
-    Write `controller`, which `settings` built, into `folder`, with what calls it.
+    Write `controller`, which `settings` built, as C into `folder`, with an example.
 
-    Return the paths; docs/controllers/control_unit.md says what they are. Raise
-    ParameterError when the C cannot do what the controller does, DdctError when the folder holds
-    anything (with `overwrite`: a file in the way that is not such an export) or cannot be
+    Return the paths of the files, which docs/controllers/control_unit.md describes. Raise
+    ParameterError when the C lacks a feature of the controller, DdctError when the folder is not
+    empty (with `overwrite`: contains a file in the way that is not such an export) or cannot be
     written.
     """
     predictive, observer = exportable(controller, name)
@@ -101,7 +101,7 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
 
 
 def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
-    """Return what is written above every file."""
+    """Return the remark at the head of every file: origin, settings and version."""
     clutch = chosen.inputs[0]
     slip_limits = (terms.lowest for terms in chosen.outputs if terms.output == SLIP_SPEED)
     lowest_slip = max(slip_limits, default=-math.inf)
@@ -126,7 +126,7 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
 
 
 def c_part(name: str) -> str:
-    """Return the hand-written C in the file `name`."""
+    """Return the text of the hand-written C in the file `name`."""
     return (Path(__file__).parent / 'c' / name).read_text(encoding='utf-8')
 
 
@@ -159,7 +159,7 @@ def _constant(name: str, array: np.ndarray) -> str:
 
 
 def _value(value: int | float) -> str:
-    """Return what a macro stands for; a sign needs brackets, as an operator may precede it."""
+    """Return a macro's value; a sign needs brackets, as an operator may precede it."""
     text = str(value) if isinstance(value, int) else _number(value)
     return f'({text})' if text.startswith('-') else text
 

@@ -1,7 +1,7 @@
 """
 The sampled model that the predictive controllers and their observers share.
 
-Also with more states: disturbances, or an engine that is commanded.
+Variants have further states: disturbances, or an engine that is commanded.
 """
 
 from dataclasses import dataclass, field, replace
@@ -16,13 +16,17 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
 STATES = 9
-"""w_m, w_p, w_r in rad/s, theta_sr in rad, four of G_a, and the request that is being delayed."""
+"""Number of states: w_m, w_p, w_r in rad/s, theta_sr in rad, four of G_a, the delayed request."""
 MEASURED = 3
-"""The first states, w_m, w_p and w_r, are measured."""
+"""Number of measured states, which come first: w_m, w_p and w_r in rad/s."""
 REQUEST, ENGINE_TORQUE, LOAD_TORQUE = range(3)
-"""Inputs in N m: the saturated clutch torque request, C_m and C_load, held over a period."""
+"""
+Indices of the inputs in N m: saturated clutch torque request, C_m, C_load, held over a period.
+"""
 SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED = range(3)
-"""Outputs at the start of a period: w_d in rad/s, dw_d/dt in rad/s^2, w_sr in rad/s."""
+"""
+Indices of the outputs at the start of a period: w_d in rad/s, dw_d/dt in rad/s^2, w_sr in rad/s.
+"""
 DELAYED_REQUEST = STATES - 1
 
 
@@ -38,11 +42,11 @@ class TransmissionModel(StateSpace):
 
     period_s: float | None = PERIOD_S
     clutch: np.ndarray = field(kw_only=True)
-    """(n,) per N m of C_f, held over a period, on top of what the actuator's model gives."""
+    """Effect of 1 N m of C_f, held over a period, beside the actuator's torque, (n,)."""
 
     @property
     def disturbances(self) -> int:
-        """How many constant disturbances follow the nine states."""
+        """Number of constant disturbances, which follow the nine states."""
         return len(self.a) - STATES
 
     def at_rest(
@@ -57,7 +61,7 @@ class TransmissionModel(StateSpace):
         return state
 
     def without_load(self) -> 'TransmissionModel':
-        """Return the same with C_load, which then is not known, driving nothing."""
+        """Return the model with C_load as an input without effect, for a load that is unknown."""
         b, d = self.b.copy(), self.d.copy()
         b[:, LOAD_TORQUE], d[:, LOAD_TORQUE] = 0.0, 0.0
         return replace(self, b=b, d=d)
@@ -106,9 +110,9 @@ def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel
     """
     Return `model` with two more states, the driver's demand and the deviation before, in N m.
 
-    Its input ENGINE_TORQUE is the deviation u that is asked for. With s = `lag_share`, the share
-    that comes about within a period (1 without a lag), C_m = demand + (1 - s) deviation + s u over
-    the period, and the deviation after it is (1 - s) deviation + s u. The demand stays as it is.
+    Its input ENGINE_TORQUE is the requested deviation u. With s = `lag_share`, the share that
+    comes about within a period (1 without a lag), C_m = demand + (1 - s) deviation + s u over the
+    period, and the deviation after it is (1 - s) deviation + s u. The demand stays as it is.
     """
     kept = 1.0 - lag_share
     states = len(model.a)
@@ -141,10 +145,10 @@ def offset_free_model(driveline: DrivelineParameters) -> TransmissionModel:
     """
     Return the sampled model with errors of C_f and C_load, in N m, as its states 10 and 11.
 
-    They are estimated so that no constant error of a torque leaves a slip error. Two, because the
-    measured speeds tell no more than two constant torques along the shaft apart: what flows from
-    the engine to the wheels without accelerating anything only twists the half-shafts. So an error
-    of C_m, or of a friction torque, appears as a pair of these two.
+    They are estimated so that no constant error of a torque leaves a slip error. Two, because no
+    more than two constant torques along the shaft are observable from the measured speeds: a
+    torque that flows from the engine to the wheels without accelerating anything only twists the
+    half-shafts. So an error of C_m, or of a friction torque, appears as a pair of these two.
     """
     model = transmission_model(driveline)
     columns = np.column_stack([model.clutch, model.b[:, LOAD_TORQUE]])

@@ -1,1 +1,1 @@
-"""From cost, horizon and limits to a quadratic program, and to what it holds at each step."""
+"""The quadratic program of cost, horizon and limits, and its data at each step."""

@@ -16,7 +16,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 
 DECIDED = (REQUEST, ENGINE_TORQUE)
-"""Inputs that a controller may decide, in their order; it knows the others."""
+"""Model inputs that a controller may decide, in their order; the others are known inputs."""
 INPUT_NAMES = ('the clutch torque request', 'C_m')
 
 
@@ -30,19 +30,19 @@ class Prediction:
     """
 
     from_moves: np.ndarray
-    """(p outputs, m inputs)."""
+    """Effect of the moves on the outputs, (p outputs, m inputs)."""
     from_known: np.ndarray
-    """(p outputs, n + inputs + known inputs)."""
+    """Effect of v on the outputs, (p outputs, n + inputs + known inputs)."""
 
 
 @dataclass(frozen=True, eq=False)
 class CondensedProgram:
     """
-    The program whose solution z are the moves; what changes from step to step is linear.
+    The program whose solution z are the moves; its data at each step are linear in v.
 
     With v as in `Prediction`: f = gradient @ (v, the inputs' targets, the outputs' references
     period by period), and the bounds are `lower` and `upper` less shift @ (v, jump), where jump is
-    what the inputs change by before the first move, because the open loop does.
+    the change of the inputs before the first move, caused by the open loop.
     """
 
     structure: QpStructure
@@ -51,18 +51,20 @@ class CondensedProgram:
     upper: np.ndarray
     shift: np.ndarray
     level_rows: tuple[np.ndarray, ...]
-    """Per input the rows that limit it at the moves 1..m, (m,), or (0,) without such a limit."""
+    """
+    Rows that limit each input's level at the moves 1..m: per input (m,), or (0,) without a limit.
+    """
 
 
 def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
-    """Return the program; raise ParameterError when horizons or weights leave moves open."""
+    """Return the program; raise ParameterError when horizons or weights leave moves free."""
     inputs = len(settings.inputs)
     prediction = predict(model, settings)
     weights = np.tile([terms.weight**2 for terms in settings.outputs], settings.prediction_steps)
     weights[-len(settings.outputs) :] += [terms.final_weight**2 for terms in settings.outputs]
     hessian, gradient = _cost(model, settings, prediction, weights)
-    _require_felt(settings, prediction, weights > 0.0)
-    _require_weighed(settings, hessian)
+    _require_effect(settings, prediction, weights > 0.0)
+    _require_weighted_moves(settings, hessian)
     hard, soft = _input_rows(model, settings), _output_rows(settings, prediction)
     rows, lower, upper, shift = (np.concatenate(pair) for pair in zip(hard, soft, strict=True))
     limited = np.flatnonzero(np.isfinite(lower) | np.isfinite(upper))
@@ -79,7 +81,7 @@ def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgra
 
 
 def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
-    """Return how the weighted outputs follow from moves, state and inputs."""
+    """Return the weighted outputs over the horizon as a linear map of moves, state and inputs."""
     inputs = len(settings.inputs)
     decided = list(DECIDED[:inputs])
     known = [column for column in (ENGINE_TORQUE, LOAD_TORQUE) if column not in decided]
@@ -113,8 +115,8 @@ def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np
     return moves.reshape(horizon * outputs, control_steps * inputs)
 
 
-def _require_felt(settings: MpcSettings, prediction: Prediction, weighted: np.ndarray) -> None:
-    """Raise ParameterError when outputs are `weighted`, but no move can change one of them."""
+def _require_effect(settings: MpcSettings, prediction: Prediction, weighted: np.ndarray) -> None:
+    """Raise ParameterError when no move can change one of the outputs that are `weighted`."""
     felt = prediction.from_moves[weighted, : len(settings.inputs)].any(axis=0)
     if weighted.any() and not felt.all():
         name = INPUT_NAMES[int(np.argmin(felt))]
@@ -124,8 +126,8 @@ def _require_felt(settings: MpcSettings, prediction: Prediction, weighted: np.nd
         )
 
 
-def _require_weighed(settings: MpcSettings, hessian: np.ndarray) -> None:
-    """Raise ParameterError when nothing weighs the last moves, as they act too late."""
+def _require_weighted_moves(settings: MpcSettings, hessian: np.ndarray) -> None:
+    """Raise ParameterError when the last moves have no weight, as they act too late."""
     weighed = np.diag(hessian) > 0.0
     longest = int(np.argmin(weighed)) // len(settings.inputs)
     if not weighed.all() and longest > 0:
@@ -152,7 +154,9 @@ def _cost(
 
 
 _Rows = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-"""Constraint rows, their lower and upper bounds, and what (v, jump) shifts the bounds by."""
+"""
+Constraint rows, their lower and upper bounds, and the map from (v, jump) to the bounds' shift.
+"""
 
 
 def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
@@ -184,5 +188,5 @@ def _output_rows(settings: MpcSettings, prediction: Prediction) -> _Rows:
 
 
 def _levels(moves: int, inputs: int) -> np.ndarray:
-    """Return the map from moves to what the inputs have changed by, period by period."""
+    """Return the map from moves to the change of the inputs' levels, period by period."""
     return np.kron(np.tril(np.ones((moves, moves))), np.eye(inputs))

@@ -1,4 +1,4 @@
-"""What a predictive controller minimises, over which horizon and limits; its options of these."""
+"""Cost, horizon, limits and solver of a predictive controller, and its options for them."""
 
 import math
 from collections.abc import Mapping
@@ -47,11 +47,11 @@ class InputTerms:
     target_weight: float = 0.0
     """Weight of the deviation from the target per N m: C_fOL for the clutch, 0 for the engine."""
     lowest: float = 0.0
-    """Limit in N m; -inf for none."""
+    """Lower limit in N m; -inf for none."""
     highest: float = math.inf
-    """Limit in N m; inf for none."""
+    """Upper limit in N m; inf for none."""
     rate_n_m_s: float = math.inf
-    """Largest rate of change, which goes before both levels; inf for none."""
+    """Largest rate of change in N m/s, which goes before both levels; inf for none."""
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
@@ -73,13 +73,17 @@ class OutputTerms:
     output: int
     """Row of the model's outputs, such as SLIP_SPEED."""
     weight: float
-    """Weight of the deviation from the reference, per unit; 0 leaves the output free."""
+    """
+    Weight of the deviation from the reference, per unit of the output; 0 leaves the output free.
+    """
     final_weight: float = 0.0
-    """Weight of the deviation at the end of the horizon, beside `weight`."""
+    """
+    Weight of the deviation at the end of the horizon, per unit of the output, beside `weight`.
+    """
     lowest: float = -math.inf
-    """Soft limit; -inf for none."""
+    """Soft lower limit in the output's unit; -inf for none."""
     highest: float = math.inf
-    """Soft limit; inf for none."""
+    """Soft upper limit in the output's unit; inf for none."""
 
     def __post_init__(self) -> None:
         """Check every value; raise ParameterError that names a bad one."""
@@ -99,13 +103,13 @@ class MpcSettings(OptionGroup, prefix='MPC: '):
 
     J = sum over i = 1..p of the outputs' squared weighted deviations from their references, plus
     sum over i = 0..m-1 of the inputs' squared weighted moves and deviations from their targets,
-    plus at i = p the outputs' deviations once more with their final weights.
-    Weights are squared with what they weigh, as in MATLAB's mpcDesigner.
+    plus at i = p the outputs' deviations once more with their final weights. Weights are squared
+    together with the weighted quantity, as in MATLAB's mpcDesigner.
     """
 
     outputs: tuple[OutputTerms, ...]
     inputs: tuple[InputTerms, ...]
-    """The clutch torque request, then C_m if it is commanded."""
+    """Weights and limits of the clutch torque request, then of C_m if it is commanded."""
     prediction_steps: int = option(
         REQUIRED,
         'p: number of periods over which the outputs are weighted',
@@ -139,7 +143,7 @@ class MpcSettings(OptionGroup, prefix='MPC: '):
     )
 
     def __post_init__(self) -> None:
-        """Check every value; raise ParameterError that names a bad one and what fits."""
+        """Check every value; raise ParameterError that names a bad one and the valid range."""
         super().__post_init__()
         if self.control_steps > self.prediction_steps:
             raise ParameterError(
@@ -151,7 +155,7 @@ class MpcSettings(OptionGroup, prefix='MPC: '):
 
 
 def weight(default: float | None, meaning: str, otherwise: str = '') -> Any:
-    """Return the field of an option group for a weight, which is squared with what it weighs."""
+    """Return the field of an option group for a weight, squared together with its quantity."""
     return option(default, meaning, otherwise=otherwise, at_least=0.0, at_most=MOST)
 
 

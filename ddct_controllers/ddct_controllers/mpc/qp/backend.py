@@ -16,22 +16,26 @@ from ddct_plant.base.options import REQUIRED, Option
 Vector = np.ndarray | Sequence[float]
 
 BACKENDS = ('daqp', 'osqp')
-"""Their names, which are those of the packages that do the work."""
+"""Names of the backends, which are those of the solvers' packages."""
 DEFAULT_BACKEND = 'daqp'
-"""The fastest at equal accuracy; `make bench` measures both."""
+"""Name of the backend that is fastest at equal accuracy; `make bench` measures both."""
 ITERATION_LIMITS = {'daqp': 1000, 'osqp': 20_000}
-"""Ten and four times what the hardest programs of `make bench` need; OSQP's are far cheaper."""
+"""
+Limits by backend, ten and four times what the hardest programs of `make bench` need.
+
+OSQP's iterations are far cheaper.
+"""
 _ITERATION_LIMIT = Option(REQUIRED, 'iterations of a solver', kind=int, at_least=1)
 _LARGEST = sys.float_info.max
 
 
 class QpBackend(ABC):
     """
-    Solves programs of one structure, each solve starting from the solution of the last one.
+    Solve programs of one structure, each solve starting from the solution of the last one.
 
-    A solve that fails forgets the start. Deterministic: the same solves after `reset` give the
-    same bits. Raise ParameterError when `iteration_limit` is below 1, DdctError when the solver's
-    package is missing.
+    After a solve that fails the next one starts anew. Deterministic: the same solves after `reset`
+    give the same bits. Raise ParameterError when `iteration_limit` is below 1, DdctError when the
+    solver's package is missing.
 
     The solver gets the program in y = z / variables, each row of G multiplied by its entry of
     `rows`. Solvers compare residuals with absolute tolerances: so these mean the same for every
@@ -47,15 +51,15 @@ class QpBackend(ABC):
         lengths = np.linalg.norm(constraints, axis=1)
         rows = 1.0 / np.where(lengths > 0.0, lengths, 1.0)
         self._variables, self._rows = variables, rows
-        """(n,) and (m,), above 0."""
+        """Scale factors of the variables, (n,), and of the rows, (m,), above 0."""
         self._hessian = structure.hessian * variables * variables[:, None]
-        """(n, n), unit diagonal."""
+        """Scaled Hessian, (n, n), with a unit diagonal."""
         self._constraints = constraints * rows[:, None]
-        """(m, n), rows of unit length; a row of zeros stays one."""
+        """Scaled constraints, (m, n), rows of unit length; a row of zeros stays one."""
         self._soft_rows = structure.soft_rows
         weight = structure.soft_weight or 0.0  # None when no row is soft
         self._soft_weights = weight / rows[self._soft_rows] ** 2
-        """(number of soft rows,) w of each, for slacks multiplied like their rows."""
+        """Weight w of each soft row, (soft rows,), for slacks multiplied like their rows."""
         self.reset()
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""A quadratic program: what of it stays the same from step to step, and its solution."""
+"""A quadratic program: the structure, which is constant over the steps, and the solution."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,9 +11,11 @@ from ddct_plant.linear.lti import own_matrices
 QpStatus = Literal['solved', 'iteration limit', 'infeasible']
 
 WORST_CONDITION = 1e10
-"""Condition of the Hessian with a unit diagonal; above it, a solution has less than six digits."""
+"""
+Largest condition of the Hessian with a unit diagonal; above it a solution has under six digits.
+"""
 _ASYMMETRY = 1e-9
-"""Relative; condensing rounds far below this."""
+"""Largest asymmetry of the Hessian, relative; condensing rounds far below this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +38,13 @@ class QpStructure:
     """
 
     hessian: np.ndarray
-    """H, (n, n), symmetric and positive definite."""
+    """Hessian H, (n, n), symmetric and positive definite."""
     constraints: np.ndarray
-    """G, (m, n), m may be 0."""
+    """Constraint rows G, (m, n); m may be 0."""
     soft: np.ndarray | None = None
-    """(m,) bool, True for a soft row; None makes every row hard."""
+    """Which rows are soft, (m,) bool; None makes every row hard."""
     soft_weight: float | None = None
-    """w, above 0; needed when a row is soft."""
+    """Weight w of the squared slacks, above 0; needed when a row is soft."""
 
     def __post_init__(self) -> None:
         own_matrices(self, 'QP', hessian='nn', constraints='mn')
@@ -62,20 +64,22 @@ class QpStructure:
 
     @property
     def soft_rows(self) -> np.ndarray:
-        """(number of soft rows,) their indices."""
+        """Indices of the soft rows, (soft rows,)."""
         return np.flatnonzero(np.asarray(self.soft))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class QpSolution:
-    """The minimiser, or why there is none; `z` is NaN unless solved."""
+    """The minimiser, or the reason why there is none; `z` is NaN unless solved."""
 
     z: np.ndarray
-    """(n,)."""
+    """Minimiser, (n,)."""
     iterations: int
-    """In the solver's own unit: changes of its active set (DAQP), or ADMM steps (OSQP)."""
+    """Number of changes of the active set (DAQP), or of ADMM steps (OSQP)."""
     status: QpStatus
     """
+    Reason for the end: 'solved', or one of the following.
+
     'iteration limit' when the solver stopped short of its tolerance, 'infeasible' when the hard
     rows contradict each other.
     """

@@ -12,7 +12,7 @@ from ddct_controllers.mpc.qp.problem import QpStatus
 from ddct_plant.base.errors import DdctError
 
 _SOFT = 8
-"""DAQP's mark of a soft row."""
+"""DAQP's flag of a soft row."""
 _UNBOUNDED = 1e30
 _DAQP_SETTINGS = {
     'primal_tol': 1e-9,
@@ -25,7 +25,7 @@ _DAQP_STATUS: dict[int, QpStatus] = {
     -1: 'infeasible',
     -6: 'infeasible',  # equality rows that contradict each other
 }
-"""All other flags say that it stopped without an answer."""
+"""Status by DAQP's exit flag; all other flags are ends without a solution."""
 _OSQP_SETTINGS = {
     'eps_abs': 1e-6,
     'eps_rel': 1e-6,
@@ -38,15 +38,15 @@ _OSQP_SETTINGS = {
     'verbose': False,
 }
 _OSQP_STATUS: dict[int, QpStatus] = {1: 'solved', 3: 'infeasible'}
-"""All other values say that it stopped without an answer."""
+"""Status by OSQP's exit value; all other values are ends without a solution."""
 
 
 class Daqp(QpBackend):
     """
-    Active sets are warm-started; the factorisation of the hessian is made once.
+    Solver DAQP with warm-started active sets; the Hessian is factorised once.
 
-    Arnström, Bemporad, Axehill, "A Dual Active-Set Solver for Embedded Quadratic Programming
-    Using Recursive LDL' Updates", IEEE TAC 67(8), 2022.
+    Arnström, Bemporad, Axehill, "A Dual Active-Set Solver for Embedded Quadratic Programming Using
+    Recursive LDL' Updates", IEEE TAC 67(8), 2022.
     """
 
     def reset(self) -> None:
@@ -75,8 +75,8 @@ class Daqp(QpBackend):
         changes = {'f': f, 'bupper': upper, 'blower': lower} if len(upper) else {'f': f}
         bounded = np.isfinite([lower, upper]).tobytes()
         if bounded != self._bounded:
-            # A row held at a bound that is now infinite would spoil the start: a given sense
-            # empties the active set.
+            # A row that is active at a bound that is now infinite would spoil the start: passing a
+            # sense empties the active set.
             changes['sense'], self._bounded = self._sense, bounded
         flag = self._model.update(**changes)
         if flag < 0:
@@ -88,7 +88,7 @@ class Daqp(QpBackend):
 
 class Osqp(QpBackend):
     """
-    Primal and dual iterates and the step size are warm-started; soft rows get slack variables.
+    Solver OSQP with warm-started iterates and step size; soft rows get slack variables.
 
     Stellato et al., "OSQP: an operator splitting solver for quadratic programs", Mathematical
     Programming Computation 12, 2020.
@@ -128,4 +128,4 @@ class Osqp(QpBackend):
 
 
 SOLVERS: dict[str, type[QpBackend]] = {'daqp': Daqp, 'osqp': Osqp}
-"""By the names of the backends."""
+"""Classes of the solvers by the names of the backends."""

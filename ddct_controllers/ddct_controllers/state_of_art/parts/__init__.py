@@ -1,1 +1,1 @@
-"""What several of these controllers are composed of."""
+"""Parts that several controllers of the state of the art share."""

@@ -21,23 +21,27 @@ class RigidTransmission:
 
     @property
     def engine_inertia(self) -> float:
-        """J_m in kg m^2."""
+        """Engine inertia J_m in kg m^2."""
         return self.driveline.engine_inertia
 
     @property
     def vehicle_inertia(self) -> float:
-        """J_eq in kg m^2, primary shaft and vehicle seen at the primary shaft."""
+        """Inertia J_eq of primary shaft and vehicle, referred to the primary shaft, in kg m^2."""
         p = self.driveline
         return p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
 
     @property
     def slip_gain(self) -> float:
-        """1/J_m + 1/J_eq, by which slip falls, in rad/s^2 per N m of clutch torque."""
+        """Slip deceleration per clutch torque, 1/J_m + 1/J_eq, in rad/s^2 per N m."""
         return 1.0 / self.engine_inertia + 1.0 / self.vehicle_inertia
 
     @property
     def rigid_below_rad_s(self) -> float:
-        """sqrt(k_sa/J_v): below it the vehicle follows the shaft, above it hangs on a spring."""
+        """
+        Frequency sqrt(k_sa/J_v) in rad/s below which the vehicle follows the shaft.
+
+        Above it the vehicle is decoupled by the compliance of the half-shaft.
+        """
         return math.sqrt(self.driveline.halfshaft_stiffness / self.driveline.vehicle_inertia)
 
     def constant_slip_acceleration(self, measurement: Measurement) -> float:
@@ -75,9 +79,9 @@ class SpeedPlan:
     The engine speed reference w_m* and its rate, step by step.
 
     Without points in the scenario, w_m* = (H + J_eq s)/(J_m + J_eq), s the slip reference: the
-    speed at which the transmission has the slip asked for and the momentum H that the driver's
-    demand and the load give it, dH/dt = C_m - C_load/tau. Followed exactly, it needs no other
-    engine torque than the demand. H starts as measured when control starts.
+    speed at which the transmission has that slip and the momentum H that results from the driver's
+    demand and the load, dH/dt = C_m - C_load/tau. Followed exactly, it needs no other engine
+    torque than the demand. H starts as measured when control starts.
     """
 
     def __init__(self, transmission: RigidTransmission, given: EngineSpeedReference) -> None:
@@ -87,14 +91,14 @@ class SpeedPlan:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the momentum; the next update measures it."""
+        """Clear the momentum; the next update computes it from the measured speeds."""
         self._momentum: float | None = None
 
     def update(self, measurement: Measurement, *, afresh: bool = False) -> tuple[float, float]:
         """
         Return w_m* in rad/s and its rate over the coming period in rad/s^2.
 
-        `afresh` measures the momentum anew.
+        With `afresh` the momentum is computed anew from the measured speeds.
         """
         if self._given.given:
             now, then = (

@@ -1,4 +1,4 @@
-"""The clutch's share of two-input control: a slow speed, which follows a plan."""
+"""The clutch's share of two-input control: it makes a slow speed follow a plan."""
 
 import numpy as np
 
@@ -24,32 +24,32 @@ ACTUATION_LAG_S = (
     + sum(_time_constant_s(factor) for factor in ACTUATOR.denominator)
     - sum(_time_constant_s(factor) for factor in ACTUATOR.numerator)
 )
-"""From request to torque, about 43 ms: the delay and -d ln G_a/ds at s = 0 (Section 1.4.2)."""
+"""Time in s from request to torque, 43 ms: the delay and -d ln G_a/ds at s = 0 (Section 1.4.2)."""
 
 
 class SlowClutch:
     """
-    C_f = C_load/tau + J_eq (a_0 + W (a - a_0)) for a wanted shaft acceleration a.
+    C_f = C_load/tau + J_eq (a_0 + W (a - a_0)) for a desired shaft acceleration a.
 
     a_0 is that of constant slip. Above sqrt(k_sa/J_v) the inverse of a rigid driveline is wrong by
-    far, as the vehicle then hangs on the half-shaft like on a spring; so W = w^2/(s + w)^2 passes
-    what lies below half of that frequency, and the engine makes up for the rest. Without W the
-    loops are unstable from bandwidths of 0.5 to 1 rad/s on.
+    far, as the compliance of the half-shaft then decouples the vehicle; so W = w^2/(s + w)^2
+    passes frequencies below half of that, and the engine supplies the rest. Without W the loops
+    are unstable from bandwidths of 0.5 to 1 rad/s on.
     """
 
     def __init__(self, context: ControllerContext, bandwidth_rad_s: float) -> None:
-        """Start as the run does; the bandwidth is that of the speed that `pid` controls."""
+        """Start as the run does, with the bandwidth of the loop of `pid` in rad/s."""
         self._initial_request = initial_state(context.settings).torque_request
         scenario = context.settings.scenario
         transmission = self.transmission = RigidTransmission(scenario.driveline)
-        """Transmission for which it plans and asks."""
+        """Rigid transmission that plan and request are computed for."""
         self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
         """Plan of the engine speed."""
         corner = 0.5 * transmission.rigid_below_rad_s
-        # At low frequency the shaft's acceleration is so far behind the wanted one.
+        # At low frequency the shaft's acceleration is so far behind the desired one.
         lag_s = 2.0 / corner + ACTUATION_LAG_S
         self.pid = Pid(bandwidth_rad_s, lag_s)
-        """From the error of the slow speed in rad/s to an acceleration in rad/s^2."""
+        """Controller from the error of the slow speed in rad/s to an acceleration in rad/s^2."""
         self._filter = DiscreteFilter(_low_pass(corner))
         self.reset()
 
@@ -60,7 +60,7 @@ class SlowClutch:
         self._actuator = Actuator(self._initial_request)
 
     def torque(self, measurement: Measurement, acceleration: float) -> float:
-        """Return C_f in N m for a wanted shaft acceleration in rad/s^2."""
+        """Return C_f in N m for a desired shaft acceleration in rad/s^2."""
         constant_slip = self.transmission.constant_slip_acceleration(measurement)
         passed = constant_slip + self._filter.update(acceleration - constant_slip)
         return (
@@ -69,7 +69,7 @@ class SlowClutch:
         )
 
     def request(self, measurement: Measurement, acceleration: float, more: float) -> float:
-        """Return the request in N m that gives this acceleration, and `more` N m beside it."""
+        """Return the request in N m for this acceleration in rad/s^2, plus `more` in N m."""
         torque = self.torque(measurement, acceleration) + more
         request = max(torque, 0.0)
         self.pid.unwind((torque - request) / self.transmission.vehicle_inertia)
@@ -77,7 +77,7 @@ class SlowClutch:
 
     def nominal(self, request: float) -> float:
         """
-        Return the torque in N m of a clutch without wear, and take the request in N m in.
+        Return the torque in N m of a clutch without wear, and store the request in N m.
 
         It is the actuator's mean over the coming period, which moves the engine; the request acts
         one period later.

@@ -1,4 +1,4 @@
-"""What loops of two speeds are built of: a PID, the engine's share, an estimator of the clutch."""
+"""Parts of the loops of two speeds: a PID, the engine's share, an estimator of the clutch."""
 
 import math
 
@@ -8,7 +8,9 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority, EngineResponse
 
 TAKEOVER_BANDWIDTH_RAD_S = 5.0
-"""Crossover of the slip loop through the clutch, whose 43 ms then cost it 12 degrees."""
+"""
+Crossover in rad/s of the slip loop through the clutch; its lag of 43 ms costs 12 degrees there.
+"""
 NEGLIGIBLE_RAD_S2 = 1e-6
 
 
@@ -22,14 +24,14 @@ class Pid:
     """
 
     def __init__(self, bandwidth_rad_s: float, lag_s: float = 0.0) -> None:
-        """Start without memory."""
+        """Start with an empty integral and no last error."""
         proportional = 2.0 * bandwidth_rad_s
         self.integral = bandwidth_rad_s**2
-        """K_i in 1/s^2."""
+        """Integral gain K_i in 1/s^2."""
         self.proportional = proportional + self.integral * lag_s
-        """K_p in 1/s."""
+        """Proportional gain K_p in 1/s."""
         self.derivative = proportional * lag_s
-        """K_d without unit."""
+        """Derivative gain K_d, without unit."""
         self.reset()
 
     def reset(self) -> None:
@@ -47,7 +49,7 @@ class Pid:
 
     def unwind(self, excess: float) -> None:
         """
-        Take back what could not be carried out, `excess` in rad/s^2 of the last action.
+        Reduce the integral by the part of the last action that saturated, `excess` in rad/s^2.
 
         Back-calculation (Astrom and Hagglund) with the tracking time K_p/K_i.
         """
@@ -56,18 +58,18 @@ class Pid:
 
 class EngineShare:
     """
-    An engine that moves the slip as a PID asks, as far as its authority goes.
+    An engine that moves the slip as a PID requests, within its authority.
 
-    Beyond it the slip would run away. Then `lacking`, the slip acceleration that was asked for and
-    cannot be had, goes to the clutch through a PI: with the PID's anti-windup it is K_p times the
-    slip error, and C_f = -(w/(g K_p)) (1 + w/(4 s)) lacking, g = 1/J_m + 1/J_eq, makes a slip loop
-    of crossover w. A lag of the engine is not counted as lacking.
+    Beyond it the slip would diverge. Then `lacking`, the requested slip acceleration that the
+    engine cannot supply, goes to the clutch through a PI: with the PID's anti-windup it is K_p
+    times the slip error, and C_f = -(w/(g K_p)) (1 + w/(4 s)) lacking, g = 1/J_m + 1/J_eq, makes a
+    slip loop of crossover w. A lag of the engine is not counted as lacking.
     """
 
     def __init__(
         self, transmission: RigidTransmission, authority: EngineAuthority, bandwidth_rad_s: float
     ) -> None:
-        """Take the bandwidth of the PID that acts on the slip; start on the demand."""
+        """Take the bandwidth in rad/s of the PID that acts on the slip; start on the demand."""
         self._transmission = transmission
         self._authority = authority
         self._pid = pid = Pid(bandwidth_rad_s, authority.lag_s)
@@ -91,11 +93,11 @@ class EngineShare:
 
     @property
     def clutch_torque(self) -> float:
-        """What the clutch transmits more in its place, in N m."""
+        """Additional torque of the clutch in place of the engine, in N m."""
         return -self._proportional * self._lacking - self._taken_over
 
     def hold(self, measurement: Measurement) -> float:
-        """Return C_m in N m over a period in which the demand is asked for."""
+        """Return C_m in N m over a period with the driver's demand as the request."""
         return self._response.deliver(measurement.engine_torque, measurement.engine_torque)
 
     def update(
@@ -106,7 +108,7 @@ class EngineShare:
         slip_rate: float,
     ) -> tuple[float, float]:
         """
-        Return the C_m to ask for and the C_m that comes, in N m over the coming period.
+        Return the request for C_m and the C_m that follows, in N m over the coming period.
 
         The slip shall have the rate `slip_rate` in rad/s^2 and lose the error in rad/s, with
         `clutch_torque` N m transmitted.
@@ -128,13 +130,13 @@ class ClutchTorqueEstimator:
     """
     A Luenberger observer of J_m dw_m/dt = C_m - C_n - d, with d constant.
 
-    C_n is the clutch torque that the actuator's model gives, d what the clutch transmits beyond
-    it, which wear or another fault makes. Both poles of the sampled observer are at
-    exp(-bandwidth T). Damping of the engine counts as part of d.
+    C_n is the clutch torque of the actuator's model, d the torque that the clutch transmits beyond
+    it because of wear or another fault. Both poles of the sampled observer are at exp(-bandwidth
+    T). Damping of the engine counts as part of d.
     """
 
     def __init__(self, engine_inertia: float, bandwidth_rad_s: float) -> None:
-        """Take J_m in kg m^2 and the bandwidth."""
+        """Take J_m in kg m^2 and the bandwidth in rad/s."""
         pole = math.exp(-bandwidth_rad_s * PERIOD_S)
         self._speed_gain = 1.0 - pole**2
         self._torque_gain = -engine_inertia * (1.0 - pole) ** 2 / PERIOD_S
@@ -142,7 +144,7 @@ class ClutchTorqueEstimator:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything; the next speed starts an estimate with d = 0."""
+        """Clear the estimate; the next speed starts one with d = 0."""
         self._speed: float | None = None
         self._deviation = 0.0
 

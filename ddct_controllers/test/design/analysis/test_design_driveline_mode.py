@@ -1,4 +1,4 @@
-"""The driveline's mode in a closed loop is found, and rings in w_sr as much as is said."""
+"""The driveline's mode in a closed loop is found, with its amplitude in w_sr."""
 
 import numpy as np
 import pytest
@@ -35,14 +35,14 @@ def torsion_rpm(loop: StateSpace, steps: int) -> np.ndarray:
 
 @pytest.mark.parametrize('name', ['ls4', 'ls8', 'hinf1', 'hinf3'])
 def test_controllers_that_cancel_the_locked_driveline_keep_its_mode(name):
-    """2.93 Hz, damping 0.145: their own poles stay on the zeros of P_2."""
+    """It has 2.93 Hz and a damping of 0.145: their own poles stay on the zeros of P_2."""
     mode = driveline_mode(sampled(PRINTED_CONTROLLERS[name]))
     assert mode.frequency_hz == pytest.approx(2.93, abs=0.01)
     assert mode.damping == pytest.approx(0.145, abs=0.002)
 
 
-def test_the_cancelled_mode_rings_in_w_sr_with_the_amplitude_that_is_said():
-    """LS8: fit the mode and the other slow poles to w_sr from 0.3 s on; within 2 %."""
+def test_the_cancelled_mode_rings_in_w_sr_with_the_computed_amplitude():
+    """For LS8 the mode and the other slow poles are fitted to w_sr from 0.3 s on; within 2 %."""
     loop = sampled(PRINTED_CONTROLLERS['ls8'])
     mode = driveline_mode(loop)
     steps = np.arange(30, 400)
@@ -57,7 +57,7 @@ def test_the_cancelled_mode_rings_in_w_sr_with_the_amplitude_that_is_said():
 
 
 def test_a_controller_of_high_gain_pushes_poles_to_the_zeros():
-    """An ideal lead at growing gain: the distance to the locked driveline's zero shrinks."""
+    """With an ideal lead at growing gain the distance to the locked driveline's zero shrinks."""
     zero = locked_driveline_zero(IDENTIFIED_DRIVELINE)
     distances = []
     for gain in (-0.02, -0.1, -0.3):

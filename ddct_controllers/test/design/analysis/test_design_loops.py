@@ -31,7 +31,7 @@ from ddct_plant.models.parameters import VehicleParameters
 OMEGA = np.geomspace(1e-3, 300.0, 200)
 LS2 = PRINTED_CONTROLLERS['ls2']
 BASE_TORQUE = 100.0
-"""Keeps the request away from saturation; its own response is subtracted."""
+"""Constant torque in N m that avoids saturation; its own response is subtracted."""
 
 
 PRINTED = ActuatorParameters()
@@ -65,7 +65,7 @@ def slip_rpm_as_run(
 
 
 SWING = 10.0 * (1.0 - np.cos(2.0 * math.tau * PERIOD_S * np.arange(200)))
-"""A torque in N m that swings at 2 Hz."""
+"""Torque in N m that swings at 2 Hz, (steps,)."""
 
 
 def response(plant: StateSpace, torque: np.ndarray) -> np.ndarray:
@@ -79,7 +79,11 @@ def response(plant: StateSpace, torque: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
 def test_the_sampled_plant_is_the_plant_that_runs(wear_gain):
-    """Within 1e-4 of the peak for a torque swinging at 2 Hz; the run's 1 ms lines cost that."""
+    """
+    They agree within 1e-4 of the peak for a torque swinging at 2 Hz.
+
+    The difference comes from the run's 1 ms lines.
+    """
     expected = response(sampled_plant(wear_gain=wear_gain), SWING)
     found = slip_rpm_as_run(SWING, wear_gain)
     assert found == pytest.approx(expected, abs=1e-4 * np.abs(found).max())
@@ -88,7 +92,7 @@ def test_the_sampled_plant_is_the_plant_that_runs(wear_gain):
 @pytest.mark.parametrize('delay_s', [0.0, 0.003, 0.01, 0.013, 0.027, 0.05])
 @pytest.mark.parametrize('bandwidth_factor', [0.5, 1.0, 1.3])
 def test_the_sampled_plant_has_the_actuator_that_runs(delay_s, bandwidth_factor):
-    """Delays that are no whole number of samples too; 1 ms more is 100 times the tolerance."""
+    """Also with delays of no whole number of samples; 1 ms more is 100 times the tolerance."""
     actuator = ActuatorParameters(delay_s, bandwidth_factor)
     expected = response(sampled_plant(actuator=actuator), SWING)
     found = slip_rpm_as_run(SWING, 1.0, actuator)
@@ -96,7 +100,7 @@ def test_the_sampled_plant_has_the_actuator_that_runs(delay_s, bandwidth_factor)
 
 
 def test_the_request_of_a_step_moves_nothing_for_a_whole_period():
-    """Delay of one sample and a strictly proper plant: two zero samples, then slip falls."""
+    """Delay of one sample and a strictly proper plant give two zero samples, then slip falls."""
     plant = sampled_plant()
     assert plant.d[0, 0] == 0.0
     assert (plant.c @ plant.b)[0, 0] == 0.0

@@ -115,7 +115,7 @@ LEADING_SECOND = FactoredTransferFunction(
 
 
 def test_phase_and_delay_margin_are_the_least_of_all_crossovers():
-    """Here those of the third of five."""
+    """Here those of the third of five crossovers are the least."""
     omega, angles = crossings_by_polynomials(THIRD_OF_FIVE)
     delays = np.mod(angles, math.tau) / omega
     assert len(omega) == 5
@@ -149,7 +149,7 @@ def test_a_lead_takes_nearly_a_turn_of_delay():
     ],
 )
 def test_of_several_critical_gains_the_nearest_is_the_margin(factored, least_increase):
-    """Stable at every gain on the way to it, by the closed loop's poles, and unstable beyond."""
+    """The loop is stable at every gain on the way to it, by its poles, and unstable beyond."""
     margins = loop_margins(ContinuousLoop(factored))
     if least_increase:
         critical = 10.0 ** (margins.gain_margin_db / 20.0)
@@ -169,7 +169,7 @@ def by_poles(factored: FactoredTransferFunction, gain: float) -> bool:
     return bool(np.all(roots.real < 0.0))
 
 
-def test_a_sampled_loop_is_looked_at_up_to_half_the_sampling_rate():
+def test_a_sampled_loop_is_evaluated_up_to_half_the_sampling_rate():
     """L = 0.4/(z - 0.5): closed-loop pole 0.5 - 0.4 k, at -1 for k = 3.75; M_s = 1/(1 + L(-1))."""
     one = np.ones((1, 1))
     margins = loop_margins(StateSpace(0.5 * one, one, 0.4 * one, 0.0 * one, PERIOD_S))
@@ -198,7 +198,7 @@ def test_a_closed_loop_pole_on_the_boundary_is_not_stable(a, c, period_s):
 
 @pytest.mark.parametrize('name', NAMES)
 def test_the_gain_margins_are_where_poles_reach_the_unit_circle(name):
-    """Stable 0.1 % inside both, unstable 0.1 % outside, by eigenvalues of the closed loop."""
+    """It is stable 0.1 % inside both and unstable 0.1 % outside, by the closed loop's poles."""
     loop = sampled(name)
     margins = loop_margins(loop)
     raising = 10.0 ** (margins.gain_margin_db / 20.0)
@@ -211,7 +211,7 @@ def test_the_gain_margins_are_where_poles_reach_the_unit_circle(name):
 
 
 @pytest.mark.parametrize('name', NAMES)
-def test_the_delay_margin_says_how_many_samples_of_delay_are_stable(name):
+def test_the_delay_margin_is_the_number_of_stable_samples_of_delay(name):
     loop = sampled(name)
     samples = math.floor(loop_margins(loop).delay_margin_s / PERIOD_S)
     assert closed_loop_stable(delayed(loop, samples))
@@ -267,7 +267,7 @@ def test_the_higher_of_two_peaks_is_found_where_the_grid_ranks_them_the_other_wa
     low, high = curve.omega[400], math.sqrt(curve.omega[700] * curve.omega[701])
 
     def two_peaks(values: np.ndarray) -> np.ndarray:
-        # |L|^2 = 1/(w^2 (w^2 + 1)) tells w; the second peak is between two points, which see 0.97.
+        # |L|^2 = 1/(w^2 (w^2 + 1)) gives w; the second peak is between two points of 0.97.
         square = np.abs(values) ** -2.0
         at = 0.5 * np.log((np.sqrt(1.0 + 4.0 * square) - 1.0) / 2.0)
         width = 3.0 * math.log(curve.omega[701] / curve.omega[700])
@@ -279,7 +279,7 @@ def test_the_higher_of_two_peaks_is_found_where_the_grid_ranks_them_the_other_wa
 
 
 def test_the_bandwidth_is_the_lowest_frequency_at_which_t_falls_by_3_db():
-    """Found on a grid of a million points; T rises through that level again later."""
+    """It is found on a grid of a million points; T rises through that level again later."""
     factored = THIRD_OF_FIVE
     omega = np.geomspace(1e-2, 1e2, 1_000_001)
     values = factored.frequency_response(omega)
@@ -304,7 +304,7 @@ def test_dead_time_around_an_integrator_moves_two_poles_at_a_time(delay_s, poles
     assert unstable_poles(loop) == poles
 
 
-def test_dead_time_can_stabilise_what_is_unstable_without():
+def test_dead_time_can_stabilise_a_loop_that_is_unstable_without():
     """L = -0.5/(s^2 - 0.02 s + 1): a delay makes the feedback of position one of speed."""
     oscillator = FactoredTransferFunction(-0.5, (), ((-0.02, 1.0),))
     stable = [closed_loop_stable(ContinuousLoop(oscillator, delay)) for delay in (0.0, 1.0, 6.2)]

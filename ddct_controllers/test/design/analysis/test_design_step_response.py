@@ -14,7 +14,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
 
 SECOND_ORDER = FactoredTransferFunction(25.0, (), (0.0, 5.0))
-"""Closed by unit feedback: w_n = 5 rad/s, zeta = 0.5."""
+"""Loop L that unit feedback closes to w_n = 5 rad/s, zeta = 0.5."""
 
 
 def test_a_second_order_loop_has_the_rise_time_and_overshoot_of_its_damping():
@@ -42,14 +42,18 @@ def test_a_second_order_loop_has_the_rise_time_and_overshoot_of_its_damping():
     ],
 )
 def test_rows_of_tables_2_1_and_3_1_come_out(name, rise, percent):
-    """Within 8.5 % or 0.02 s, and 1.5 points; not LS3's overshoot and Hinf1, which are errata."""
+    """
+    They agree within 8.5 % or 0.02 s, and 1.5 points.
+
+    LS3's overshoot and Hinf1 are errata, so they are left out.
+    """
     time, output = step_response(continuous_loop(PRINTED_CONTROLLERS[name]), 5.0)
     assert rise_time_s(time, output) == pytest.approx(rise, rel=0.085, abs=0.02)
     assert 100.0 * overshoot(time, output) == pytest.approx(percent, abs=1.5)
 
 
 def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
-    """19 % in Table 3.1, without hold and delay."""
+    """Table 3.1 has 19 %, without hold and delay."""
     controller = discretise_zoh(PRINTED_CONTROLLERS['hinf2'].to_state_space(), PERIOD_S)
     time, output = step_response(sampled_loop(controller), 2.0)
     assert time[1] == PERIOD_S
@@ -61,7 +65,7 @@ def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
 @pytest.mark.parametrize('name', ['ls2', 'hinf1'])
 @pytest.mark.parametrize('as_run', [False, True])
 def test_every_point_is_that_of_python_control(name, as_run, points):
-    """Also where one block of points ends and the next begins."""
+    """The points where one block ends and the next begins are included."""
     controller = PRINTED_CONTROLLERS[name]
     continuous = continuous_loop(controller)
     sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))

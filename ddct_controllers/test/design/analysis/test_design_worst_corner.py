@@ -1,4 +1,4 @@
-"""The worst corner is the worst: of the corners, over the wear range, and of what is inside."""
+"""No corner, wear gain of the range, or point inside the corners is worse than the worst one."""
 
 import itertools
 from types import SimpleNamespace
@@ -66,7 +66,7 @@ def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
 
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
 def test_no_corner_and_wear_gain_is_worse(name, corners):
-    """Every eighth corner, and four wear gains."""
+    """Every eighth corner and four wear gains are tried."""
     controller = sampled(name)
     worst = worst_corner(controller, corners).sensitivity_peak
     for parameters, gain in itertools.product(corners.parameters[::8], (0.7, 0.9, 1.1, 1.3)):
@@ -77,7 +77,11 @@ def test_no_corner_and_wear_gain_is_worse(name, corners):
 
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
 def test_nothing_inside_the_corners_is_worse(name, corners):
-    """100 random drivelines and wear gains; no proof, the corners need not hold the worst."""
+    """
+    100 random drivelines and wear gains are tried.
+
+    That is no proof: the worst driveline need not be at a corner.
+    """
     controller = sampled(name)
     worst = worst_corner(controller, corners).sensitivity_peak
     random = np.random.default_rng(1)

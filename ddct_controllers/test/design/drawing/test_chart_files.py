@@ -69,7 +69,7 @@ def test_a_reference_across_the_panel_is_no_data():
 
 
 def grid_labels() -> dict[str, tuple[float, float]]:
-    """Return phase and magnitude of the open loop where each label of the grid stands."""
+    """Return phase and magnitude of the open loop at each label of the grid."""
     figure, (axes,) = new_chart('Nichols')
     loop = nichols_curve(1.0 / (1j * np.geomspace(0.1, 10.0, 50)))
     draw_nichols(axes, {'L': loop}, TimeSpecifications(rise_time_s=0.3, overshoot=0.08))

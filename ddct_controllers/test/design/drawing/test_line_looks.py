@@ -107,14 +107,14 @@ def test_controllers_that_the_thesis_draws_together_differ_in_colour(together):
     assert len({controller_look(name).colour for name in together}) == len(together)
 
 
-def test_a_look_depends_on_the_name_alone():
+def test_a_line_depends_on_the_name_alone():
     for order in itertools.permutations(['pi', 'ls8', 'mine', 'mpc3']):
         for shown in range(1, 5):
             looks = dict(zip(order, looks_of(order[:shown]), strict=False))
             assert looks == {name: controller_look(name) for name in order[:shown]}
 
 
-def test_a_foreign_name_keeps_its_look_in_every_process_and_release():
+def test_a_foreign_name_keeps_its_line_in_every_process_and_release():
     assert controller_look('my_controller') == LineLook(4, (2, 2), 'circle', filled=True)
     assert controller_look('my_controller') != controller_look('my_other_controller')
 
@@ -135,7 +135,7 @@ def test_runs_of_one_controller_share_colour_and_dash_and_differ_in_the_mark(nam
 
 
 @pytest.mark.parametrize('name', ['pi', 'ls4', 'my_controller'])
-def test_the_sample_of_the_page_and_the_line_of_a_figure_say_the_same(name):
+def test_the_sample_of_the_page_and_the_line_of_a_figure_agree(name):
     look = controller_look(name)
     sample, style = ElementTree.fromstring(sample_svg(look)), controller_style(name)
     line, *marks = sample

@@ -12,12 +12,14 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 RAW_ZEROS = (0.7567, 0.009368, 0.004946, (82.23, 2563.0), (121.4, 7696.0), (134.1, 4.27e4))
 RAW_POLES = (1.418e5, 138.0, 89.52, 0.005905, (0.01896, 9.053e-5), (5.344, 339.4))
 RAW = FactoredTransferFunction(-434.85, RAW_ZEROS, (*RAW_POLES, (146.2, 2.914e4)))
-"""What `hinflmi` gave the thesis; the pair 0.01896, 9.053e-5 is that of epsilon = 0.0095."""
+"""
+Controller that `hinflmi` gave the thesis, with the pair of epsilon = 0.0095: 0.01896, 9.053e-5.
+"""
 NO_PAIR = FactoredTransferFunction(1.0, (0.001, 0.5), (0.5, 10.0, 20.0))
 
 
 def test_the_thesis_controller_is_cleaned_to_hinf1():
-    """The same poles and zeros; -434.85/1.418e5 = -0.003067 where the thesis prints -0.012266."""
+    """It has the same poles and zeros; -434.85/1.418e5 = -0.003067, printed as -0.012266."""
     cleaned, steps = clean(RAW, 0.0095)
     printed = H_INFINITY_CONTROLLERS['hinf1']
     assert sorted(cleaned.numerator, key=str) == sorted(printed.numerator, key=str)
@@ -30,13 +32,13 @@ def test_the_thesis_controller_is_cleaned_to_hinf1():
 
 
 def test_the_printed_gain_of_hinf1_is_four_times_what_cleaning_leaves():
-    """Its factor 4.0 belongs to no rule: an erratum of the gain, within 0.1 %."""
+    """Its factor 4.0 follows from no rule: an erratum of the gain, within 0.1 %."""
     cleaned, _ = clean(RAW, 0.0095)
     assert H_INFINITY_CONTROLLERS['hinf1'].gain / cleaned.gain == pytest.approx(4.0, rel=1e-3)
 
 
 def test_a_fast_pole_goes_by_its_gain_at_rest():
-    """(s + a) becomes a; what epsilon left changes 2 % at 1 rad/s and less above."""
+    """The factor (s + a) becomes a; epsilon's trace changes 2 % at 1 rad/s and less above."""
     cleaned, _ = clean(RAW, 0.0095)
     omega = np.geomspace(1.0, 100.0, 20)
     ratio = cleaned.frequency_response(omega) / RAW.frequency_response(omega)
@@ -71,7 +73,7 @@ def test_a_pair_within_a_thousandth_cancels_and_one_beyond_does_not():
         ),
     ],
 )
-def test_what_no_rule_fits_is_said(raw, complaint):
+def test_a_controller_that_no_rule_fits_is_an_error(raw, complaint):
     with pytest.raises(DdctError, match=complaint):
         clean(raw, 0.01)
 

@@ -32,7 +32,7 @@ HINF1 = H_INFINITY_CONTROLLERS['hinf1']
 STEP_S = 6.0
 
 
-def step_figures(controller: FactoredTransferFunction) -> tuple[float | None, float]:
+def rise_time_and_overshoot(controller: FactoredTransferFunction) -> tuple[float | None, float]:
     """Return t_r and overshoot in % of the loop as the thesis judges it."""
     response = step_response(continuous_loop(controller), STEP_S)
     return rise_time_s(*response), 100.0 * overshoot(*response)
@@ -95,7 +95,7 @@ def test_hinf_fitted_has_the_zero_of_hinf1():
 
 
 def test_the_printed_weights_put_that_zero_elsewhere():
-    """1.2 rad/s: Hinf1 was not made with K = 0.15 and w_1 = 2.98."""
+    """It is at 1.2 rad/s: Hinf1 was not made with K = 0.15 and w_1 = 2.98."""
     zero = real_roots(synthesised_design('hinf_thesis').cleaned.numerator, 0.1, 10.0)[0]
     assert zero > 1.5 * 0.7567
 
@@ -111,8 +111,12 @@ def test_hinf_fitted_is_hinf1_times_a_gain():
 
 
 def test_hinf_fitted_has_the_step_response_that_table_3_1_gives_hinf1():
-    """0.30 s and 8 %: within 0.02 s and 1 point; both specifications of Section 3.2 are met."""
-    rise_time, percent = step_figures(synthesised_design('hinf_fitted').cleaned)
+    """
+    Rise time 0.30 s and overshoot 8 % agree within 0.02 s and 1 point.
+
+    Both specifications of Section 3.2 are met.
+    """
+    rise_time, percent = rise_time_and_overshoot(synthesised_design('hinf_fitted').cleaned)
     assert rise_time == pytest.approx(0.30, abs=0.02)
     assert percent == pytest.approx(8.0, abs=1.0)
     assert rise_time < 0.3
@@ -121,17 +125,17 @@ def test_hinf_fitted_has_the_step_response_that_table_3_1_gives_hinf1():
 
 @pytest.mark.parametrize(('name', 'printed'), [('hinf2', (0.05, 19.0)), ('hinf3', (0.40, 7.0))])
 def test_two_rows_of_table_3_1_are_reproduced(name, printed):
-    """Within 8 % or 0.02 s, and 1.5 points."""
-    rise_time, percent = step_figures(H_INFINITY_CONTROLLERS[name])
+    """They agree within 8 % or 0.02 s, and 1.5 points."""
+    rise_time, percent = rise_time_and_overshoot(H_INFINITY_CONTROLLERS[name])
     assert abs(rise_time - printed[0]) <= max(0.02, 0.08 * printed[0])
     assert percent == pytest.approx(printed[1], abs=1.5)
 
 
 def test_the_row_of_hinf1_is_that_of_2_14_times_its_printed_gain():
-    rise_time, percent = step_figures(HINF1)
+    rise_time, percent = rise_time_and_overshoot(HINF1)
     assert rise_time == pytest.approx(0.550, abs=0.001)
     assert percent == pytest.approx(12.5, abs=0.05)
-    rise_time, percent = step_figures(FactoredTransferFunction(2.14) * HINF1)
+    rise_time, percent = rise_time_and_overshoot(FactoredTransferFunction(2.14) * HINF1)
     assert rise_time == pytest.approx(0.30, abs=0.005)
     assert percent == pytest.approx(8.0, abs=1.0)
 
@@ -144,13 +148,13 @@ def printed_norms(factor: float):
 
 
 def test_two_printed_norms_of_hinf1_are_those_of_2_45_times_its_gain():
-    """0.97 for W_s S and 0.32 for W_u T within 0.01."""
+    """The norms are 0.97 for W_s S and 0.32 for W_u T within 0.01."""
     assert printed_norms(2.45).sensitivity == pytest.approx(0.97, abs=0.01)
     assert printed_norms(2.45).uncertainty == pytest.approx(0.32, abs=0.01)
 
 
 def test_no_gain_of_hinf1_has_the_printed_norm_of_w_t_t():
-    """0.997 is printed; 1.041 is the least, as both pages say."""
+    """The printed norm is 0.997; 1.041 is the least, as both pages state."""
     least = minimize_scalar(
         lambda logarithm: printed_norms(math.exp(logarithm)).complementary,
         bounds=(-3.0, 4.0),

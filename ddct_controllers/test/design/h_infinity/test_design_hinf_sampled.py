@@ -22,7 +22,7 @@ from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 pytestmark = pytest.mark.slow
 
 HIGHEST_SENSITIVITY = 2.0
-"""At the worst corner, wanted of at least one of our controllers."""
+"""Highest M_s at the worst corner, required of at least one of our controllers."""
 
 
 @pytest.fixture(scope='module')
@@ -36,7 +36,7 @@ def worst(corners: PlantCorners) -> dict[str, WorstCorner]:
 
 
 def test_hinf_sampled_keeps_m_s_below_2_at_every_corner(worst, corners):
-    """Wear 0.7 to 1.3 and all 7 driveline parameters 20 % up and down: 128 corners."""
+    """Wear is 0.7 to 1.3 and all 7 driveline parameters 20 % up and down: 128 corners."""
     assert len(corners.varied) == 7
     assert len(corners.plants) == 128
     assert worst['hinf_sampled'].unstable_corners == 0
@@ -101,7 +101,7 @@ def test_the_weighted_norm_of_the_sampled_loop_is_the_one_designed():
 
 
 def test_an_input_disturbance_is_an_input_of_the_problem():
-    """One more input w; a disturbance of no size leaves the norm of the rest as it is."""
+    """It is one more input w; a disturbance of size zero does not change the norm of the rest."""
     weights = make_weights('sampled')
     parts = (
         to_w_plane(sampled_plant()),
@@ -120,10 +120,10 @@ def test_an_input_disturbance_is_an_input_of_the_problem():
 
 def test_an_input_disturbance_makes_the_worst_corner_worse_here(corners):
     """
-    0.004 N m per rpm of reference beside the weight on the torque: M_s rises.
+    With 0.004 N m per rpm of reference beside the weight on the torque M_s rises.
 
-    The weight already keeps the controller from cancelling the driveline's zeros, which is what
-    the disturbance would be for.
+    The weight already keeps the controller from cancelling the driveline's zeros, which would be
+    the purpose of the disturbance.
     """
     weights = make_weights('sampled')
     problem = sampled_sensitivity(

@@ -1,4 +1,4 @@
-"""Weights of Section 3.2.1: what they come to, and what cannot be a weight."""
+"""Weights of Section 3.2.1: their numbers, and parameters that make no weight."""
 
 import math
 
@@ -29,7 +29,7 @@ SLOW, FAST = np.array([1e-6]), np.array([1e6])
 
 
 def test_the_thesis_specifications_give_its_weights():
-    """S_p 1.33, T_p 1.02, w_1 2.98, w_2 28, as printed."""
+    """S_p 1.33, T_p 1.02, w_1 2.98 and w_2 28 are as printed."""
     weights = make_weights('thesis')
     assert weights.sensitivity.peak == pytest.approx(1.33, abs=0.005)
     assert weights.complementary.peak == pytest.approx(1.02, abs=0.005)
@@ -45,14 +45,14 @@ def test_the_inverse_of_w_s_is_k_s_squared_at_first_and_s_p_at_last():
     assert abs(inverse[1]) == pytest.approx(1.33, rel=1e-5)
 
 
-def test_w_s_has_two_poles_at_zero_where_the_text_says_one():
+def test_w_s_has_two_poles_at_zero_where_the_text_has_one():
     weight = SensitivityWeight(0.15, 1.33)
     assert np.count_nonzero(weight.transfer_function().poles == 0.0) == 2
     assert weight.shifted().poles == pytest.approx([-weight.offset_rad_s] * 2)
 
 
 def test_epsilon_changes_w_s_only_far_below_the_crossover():
-    """By less than 1 % from 1 rad/s on."""
+    """W_s changes by less than 1 % from 1 rad/s on."""
     weight = SensitivityWeight(0.15, 1.33)
     omega = np.geomspace(1.0, 1e3, 30)
     ratio = weight.shifted().frequency_response(omega)
@@ -61,7 +61,7 @@ def test_epsilon_changes_w_s_only_far_below_the_crossover():
 
 
 def test_the_inverse_of_w_t_is_t_p_at_rest_and_3_db_lower_at_w_2():
-    """By 3 dB with the Butterworth polynomial, by 6 dB with the double zero of `sderiv`."""
+    """It is 3 dB lower with the Butterworth polynomial, 6 dB with the double zero of `sderiv`."""
     for damping, fall in ((math.sqrt(0.5), math.sqrt(2.0)), (1.0, 2.0)):
         weight = ComplementaryWeight(1.02, 28.0, damping).transfer_function()
         at_rest, at_corner = 1.0 / np.abs(weight.frequency_response(np.array([1e-9, 28.0])))
@@ -70,7 +70,7 @@ def test_the_inverse_of_w_t_is_t_p_at_rest_and_3_db_lower_at_w_2():
 
 
 def test_a_longer_rise_time_slows_every_weight_alike():
-    """Time scales by 2: K by 4, all corners by 1/2, the torque per rpm by 1/2."""
+    """When time scales by 2, K does by 4, all corners and the torque per rpm by 1/2."""
     fast = make_weights('sampled')
     slow = make_weights('sampled', TimeSpecifications(0.6, 0.08))
     assert slow.sensitivity.low_frequency_gain == 4.0 * fast.sensitivity.low_frequency_gain
@@ -81,14 +81,14 @@ def test_a_longer_rise_time_slows_every_weight_alike():
 
 
 def test_the_effort_weight_costs_1_at_its_torque_and_rises_a_hundredfold_from_its_corner():
-    """(1 + s/w_c) / (1 + s/(100 w_c)) / u_max, by hand at 0, w_c, 100 w_c and infinity."""
+    """Compared by hand at 0, w_c, 100 w_c and infinity: (1 + s/w_c)/(1 + s/(100 w_c))/u_max."""
     weight = EffortWeight(torque_n_m_per_rpm=0.05, corner_rad_s=30.0).transfer_function()
     found = np.abs(weight.frequency_response(np.array([0.0, 30.0, 3000.0, 1e12])))
     by_hand = [20.0, 20.0 * math.sqrt(2.0 / 1.0001), 20.0 * math.sqrt(10001.0 / 2.0), 2000.0]
     assert found == pytest.approx(by_hand, rel=1e-9)
 
 
-def test_what_is_given_overrides_the_recipe():
+def test_arguments_override_the_recipe():
     weights = make_weights('sampled', THESIS_SPECIFICATIONS, 0.2, 30.0, 0.1, 1.05)
     assert weights.sensitivity.low_frequency_gain == 0.2
     assert weights.complementary.corner_rad_s == 30.0
@@ -107,7 +107,7 @@ def test_the_fitted_w_u_of_a_constant_error_is_that_constant():
 
 
 def test_a_first_order_error_is_fitted_by_itself():
-    """0.2 (1 + s/2)/(1 + s/50), whose pole is not on the grid of the fit: within 1 %."""
+    """0.2 (1 + s/2)/(1 + s/50), whose pole is not on the grid of the fit, agrees within 1 %."""
     error = np.abs(FactoredTransferFunction(5.0, (2.0,), (50.0,)).frequency_response(OMEGA))
     found = np.abs(fit_first_order(OMEGA, error).frequency_response(OMEGA))
     assert np.all(found >= error * (1.0 - 1e-9))
@@ -115,7 +115,7 @@ def test_a_first_order_error_is_fitted_by_itself():
 
 
 def test_the_printed_w_u_falls_short_by_0_4_percent():
-    """And from 6.3e3 rad/s on, before the 1.3e4 rad/s of its pole."""
+    """It does so from 6.3e3 rad/s on, before the 1.3e4 rad/s of its pole."""
     short = 1.0 - np.abs(PRINTED_W_U.frequency_response(FAST))[0] / 0.3
     assert short == pytest.approx(0.0043, abs=1e-4)
     assert shortfall_from_rad_s(PRINTED_W_U, 0.3) == pytest.approx(6.34e3, rel=0.01)

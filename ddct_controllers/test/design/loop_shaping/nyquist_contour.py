@@ -19,9 +19,9 @@ _REACH = 1e3
 _POINTS = 400
 """Points per part of the contour before it is refined."""
 _LARGEST_TURN = math.pi / 12.0
-"""Of 1 + L between two points of the refined contour, in rad."""
+"""Largest turn of 1 + L between two points of the refined contour, in rad."""
 _REFINEMENTS = 60
-"""Halvings of a step; after them 1 + L jumps, which means that it passes through 0."""
+"""Number of halvings of a step; after them 1 + L jumps, so it passes through 0."""
 
 _Path = Callable[[np.ndarray], np.ndarray]
 """A part of the contour: s for a parameter that runs from 0 to 1."""
@@ -68,7 +68,7 @@ def _axis(first: float, last: float) -> _Path:
 
 
 def _turn(loop: ContinuousLoop, path: _Path) -> float:
-    """Return by what angle 1 + L turns along the path, counterclockwise, in rad."""
+    """Return the angle in rad by which 1 + L turns along the path, counterclockwise."""
     share = np.linspace(0.0, 1.0, _POINTS)
     for _ in range(_REFINEMENTS):
         s = path(share)

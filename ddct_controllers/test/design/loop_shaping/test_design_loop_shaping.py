@@ -35,10 +35,10 @@ TABLE_2_1 = {
     'ls8': (0.47, 11.0),
     'ls9': (0.4, 10.0),
 }
-"""Printed t_r in s and overshoot in %."""
+"""Printed rise time t_r in s and overshoot in % by controller."""
 
 
-def step_figures(name: str) -> tuple[float, float]:
+def rise_time_and_overshoot(name: str) -> tuple[float, float]:
     time, output = step_response(continuous_loop(LOOP_SHAPING_CONTROLLERS[name]), 8.0)
     return rise_time_s(time, output), 100.0 * overshoot(time, output)
 
@@ -51,26 +51,28 @@ def sampled_margins(name: str) -> LoopMargins:
 @pytest.mark.parametrize('name', sorted(set(TABLE_2_1) - {'ls4'}))
 def test_rise_times_of_table_2_1_come_out_within_8_percent_or_20_ms(name):
     printed = TABLE_2_1[name][0]
-    assert step_figures(name)[0] == pytest.approx(printed, abs=max(0.02, 0.08 * printed))
+    assert rise_time_and_overshoot(name)[0] == pytest.approx(
+        printed, abs=max(0.02, 0.08 * printed)
+    )
 
 
 def test_ls4_rises_in_0_866_s_where_the_table_has_0_8():
-    """8.2 % more. LS5, with 1.2 times the gain, has the 0.75 s of its row."""
-    assert step_figures('ls4')[0] == pytest.approx(0.866, abs=5e-4)
-    assert step_figures('ls5')[0] == pytest.approx(0.766, abs=5e-4)
+    """That is 8.2 % more. LS5, with 1.2 times the gain, has the 0.75 s of its row."""
+    assert rise_time_and_overshoot('ls4')[0] == pytest.approx(0.866, abs=5e-4)
+    assert rise_time_and_overshoot('ls5')[0] == pytest.approx(0.766, abs=5e-4)
 
 
 @pytest.mark.parametrize('name', sorted(set(TABLE_2_1) - {'ls3'}))
 def test_overshoots_of_table_2_1_come_out_within_1_5_points(name):
-    assert step_figures(name)[1] == pytest.approx(TABLE_2_1[name][1], abs=1.5)
+    assert rise_time_and_overshoot(name)[1] == pytest.approx(TABLE_2_1[name][1], abs=1.5)
 
 
 def test_ls3_overshoots_by_28_8_percent_and_not_by_21():
-    assert step_figures('ls3')[1] == pytest.approx(28.8, abs=0.05)
+    assert rise_time_and_overshoot('ls3')[1] == pytest.approx(28.8, abs=0.05)
 
 
 def test_the_networks_make_g_c1_exactly():
-    """K_c/s, two leads from 1 rad/s and a lag from 0.6 rad/s, m = 16, and |K_c| = 0.3."""
+    """They are K_c/s, two leads from 1 rad/s, a lag from 0.6 rad/s, m = 16, and |K_c| = 0.3."""
     g_c1, printed = list(network_steps().values())[-1], PRINTED_CONTROLLERS['ls2']
     assert g_c1.gain == printed.gain == -4.8
     assert sorted(g_c1.numerator) == sorted(printed.numerator)
@@ -83,7 +85,7 @@ def test_the_steps_to_g_c1_end_with_a_stable_loop_and_the_crossover():
 
 
 def test_leads_from_w_c_on_as_the_text_has_them_are_unstable():
-    """z_d = w_c = 8 rad/s; G_c1 has z_d = 1 rad/s."""
+    """The text has z_d = w_c = 8 rad/s; G_c1 has z_d = 1 rad/s."""
     lead = lead_network(zero_rad_s=8.0, ratio=16.0)
     lag = lag_network(pole_rad_s=0.6, ratio=16.0)
     controller = FactoredTransferFunction(-0.3, (), (0.0,)) * lead * lead * lag
@@ -98,14 +100,14 @@ def test_the_loop_of_minus_1_over_s_lacks_about_70_degrees_at_8_rad_s():
 
 
 def test_the_largest_zero_for_14_percent_at_3_5_rad_s_is_that_of_g_c2():
-    """0.845 rad/s; the thesis prints 0.8361."""
+    """It is 0.845 rad/s; the thesis prints 0.8361."""
     zero = largest_zero_rad_s(3.5, 0.14, DRIVELINE)
     assert zero == pytest.approx(0.8361, rel=0.02)
     loop = continuous_loop(placement(3.5, zero, DRIVELINE))
     assert 100.0 * overshoot(*step_response(loop, 8.0)) == pytest.approx(14.0, abs=0.01)
 
 
-def test_the_placement_crosses_where_it_is_told_and_cancels_the_locked_driveline():
+def test_the_placement_has_the_given_crossover_and_cancels_the_locked_driveline():
     controller = placement(3.5, 0.8361, DRIVELINE)
     assert loop_margins(continuous_loop(controller)).crossover_rad_s == pytest.approx(3.5)
     assert controller.denominator[1] == pytest.approx((5.344, 339.4), abs=0.01)
@@ -144,7 +146,7 @@ def test_hold_and_sampled_controller_cost_two_to_four_degrees_more(name, phase_d
 
 
 def test_g_c_of_z_has_the_printed_digits():
-    """Each within half a unit of the last one; the thesis's `c2d` is a zero-order hold."""
+    """Each is within half a unit of the last one; the thesis's `c2d` is a zero-order hold."""
     pulse = pulse_transfer_function(PRINTED_CONTROLLERS['ls7'])
     zero, zeros = pulse.numerator
     pole, poles = pulse.denominator

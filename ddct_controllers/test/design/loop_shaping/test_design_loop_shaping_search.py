@@ -51,7 +51,7 @@ def test_specifications_are_met_in_the_loop_as_it_runs(
     first_above, highest = independent_figures(design.controller)
     assert first_above <= rise_time + PERIOD_S
     assert highest <= 1.0 + overshoot
-    assert design.verification.complaints == ()
+    assert design.verification.rejections == ()
     assert design.verification.margins.sensitivity_peak <= 2.0
     assert design.structure == structure
     assert np.count_nonzero(design.controller.poles == 0.0) == integrators
@@ -66,12 +66,12 @@ def test_a_loop_that_can_stays_out_of_both_curves():
 def test_the_time_specifications_come_first_where_both_curves_cannot_be_kept_out_of():
     """Two integrators in the loop make |T| exceed 1, the T_p of 2 % overshoot."""
     found = design_loop_shaping(TimeSpecifications(0.6, 0.02), 1, DRIVELINE).verification
-    assert found.complaints == ()
+    assert found.rejections == ()
     assert not found.respects_contours
 
 
 @pytest.mark.parametrize('structure', STRUCTURES)
-def test_one_structure_can_be_asked_for(structure):
+def test_one_structure_can_be_selected(structure):
     design = design_loop_shaping(TimeSpecifications(0.6, 0.14), 1, DRIVELINE, (structure,))
     assert design.structure == structure
 
@@ -83,16 +83,16 @@ def test_networks_alone_cannot_have_0_2_s_and_14_percent_as_the_thesis_found():
     assert design_loop_shaping(specifications, 1, DRIVELINE).structure == 'placement'
 
 
-def test_what_the_actuator_forbids_is_refused_at_once():
+def test_specifications_that_the_actuator_forbids_are_refused_at_once():
     with pytest.raises(ParameterError, match=r'right-half-plane zeros allow 24\.5 rad/s'):
         design_loop_shaping(TimeSpecifications(0.05, 0.14), 1, DRIVELINE)
 
 
-def test_between_bound_and_structure_the_error_says_what_can_be_had_and_it_can():
+def test_between_bound_and_structure_the_error_has_reachable_specifications():
     with pytest.raises(ParameterError, match=r'the fastest has 0\.104 s: allow that'):
         design_loop_shaping(TimeSpecifications(0.1, 0.14), 1, DRIVELINE)
     design = design_loop_shaping(TimeSpecifications(0.104, 0.14), 1, DRIVELINE)
-    assert design.verification.complaints == ()
+    assert design.verification.rejections == ()
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_between_bound_and_structure_the_error_says_what_can_be_had_and_it_can()
         (4.0, 1e-6, ('networks',), 'nor a slower one'),  # one structure: it tries every crossover
     ],
 )
-def test_what_no_loop_so_fast_can_have_is_named_with_what_can_be_had(
+def test_unreachable_specifications_are_named_with_reachable_ones(
     rise_time, overshoot, structures, reachable
 ):
     """Two integrators overshoot; 0.05 s would need an M_s above 2."""
@@ -119,15 +119,15 @@ def test_what_no_loop_so_fast_can_have_is_named_with_what_can_be_had(
         ('hinf2', 'sensitivity peak M_s above 2'),
     ],
 )
-def test_a_controller_that_fails_is_told_why(name, complaint):
+def test_a_refused_controller_comes_with_the_reason(name, complaint):
     found = verify(PRINTED_CONTROLLERS[name], TimeSpecifications(0.3, 0.2), DRIVELINE)
-    assert any(text.startswith(complaint) for text in found.complaints)
+    assert any(text.startswith(complaint) for text in found.rejections)
 
 
 def test_an_unstable_loop_is_never_accepted():
     flipped = FactoredTransferFunction(0.01, (0.8,), (0.0,))
     found = verify(flipped, TimeSpecifications(5.0, 0.9), DRIVELINE)
-    assert found.complaints == ('the closed loop is unstable',)
+    assert found.rejections == ('the closed loop is unstable',)
     assert not found.respects_contours
 
 
@@ -137,4 +137,4 @@ def test_a_loop_that_wear_makes_unstable_is_not_accepted():
     strong = FactoredTransferFunction(2.7 * g_c.gain, g_c.numerator, g_c.denominator)
     found = verify(strong, TimeSpecifications(5.0, 0.99), DRIVELINE)
     assert found.margins.stable
-    assert 'unstable with wear gain 1.3' in found.complaints
+    assert 'unstable with wear gain 1.3' in found.rejections

@@ -16,7 +16,7 @@ from ddct_plant.base.errors import ParameterError
 
 OMEGA = np.geomspace(1e-2, 1e3, 20001)
 HIGHEST_PHASE = math.asin(15.0 / 17.0)
-"""arcsin((m - 1)/(m + 1)) for m = 16, at sqrt(m) times the corner."""
+"""Phase arcsin((m - 1)/(m + 1)) in rad for m = 16, at sqrt(m) times the corner."""
 
 
 def test_m_d_of_16_gives_about_40_degrees_at_the_normalised_frequency_1():
@@ -27,7 +27,7 @@ def test_m_d_of_16_gives_about_40_degrees_at_the_normalised_frequency_1():
     assert math.degrees(phase) == pytest.approx(45.0 - 3.576, abs=1e-3)
 
 
-def test_a_lead_has_the_response_that_its_formula_says():
+def test_a_lead_has_the_response_of_its_formula():
     lead = lead_network(zero_rad_s=2.0, ratio=16.0)
     response = lead.frequency_response(OMEGA)
     expected = (1.0 + 1j * OMEGA / 2.0) / (1.0 + 1j * OMEGA / 32.0)

@@ -67,11 +67,11 @@ def crosses(name: str) -> tuple[bool, bool]:
     ],
 )
 def test_g_c1_and_g_c2_cross_the_t_p_circle_and_the_fastest_g_c2_does_not(name, expected):
-    """The thesis says it of G_c1; G_c2, M_t 1.150 above 1.112, does too."""
+    """The thesis states it for G_c1; so does G_c2, with M_t 1.150 above 1.112."""
     assert crosses(name) == expected
 
 
-def test_a_contour_tells_where_the_loop_is_inside():
+def test_a_contour_has_the_frequencies_at_which_the_loop_is_inside():
     curve = LoopCurve(continuous_loop(PRINTED_CONTROLLERS['ls2']))
     _, found = contours(curve, NETWORK_SPECIFICATIONS)
     ((first, last),) = found.inside_rad_s

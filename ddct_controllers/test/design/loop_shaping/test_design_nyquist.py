@@ -26,7 +26,7 @@ def test_k_c_of_1_gives_one_unstable_pole_and_minus_1_gives_two(gain, unstable):
 
 @pytest.mark.parametrize('delay_s', [0.0, 0.01, 0.3])
 @pytest.mark.parametrize('name', sorted(PRINTED_CONTROLLERS))
-def test_every_printed_loop_has_as_many_unstable_poles_as_the_count_says(name, delay_s):
+def test_every_printed_loop_has_as_many_unstable_poles_as_the_criterion_counts(name, delay_s):
     """The product counts without dead time; with one, our contour does."""
     loop = continuous_loop(PRINTED_CONTROLLERS[name], delay_s=delay_s)
     assert unstable_by_contour(loop) == unstable_poles(loop)

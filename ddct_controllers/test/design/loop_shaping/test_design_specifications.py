@@ -54,10 +54,10 @@ def test_the_formulas_are_those_of_the_prototype(damping):
     time, output = step_response(loop, 40.0)
     expected = math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2))
     assert overshoot(time, output) == pytest.approx(expected, rel=1e-5)
-    asked = TimeSpecifications(1.0, expected)
-    assert asked.damping == pytest.approx(damping, rel=1e-12)
-    assert asked.sensitivity_peak == pytest.approx(margins.sensitivity_peak, rel=1e-8)
-    assert asked.complementary_peak == pytest.approx(margins.complementary_peak, rel=1e-8)
+    specifications = TimeSpecifications(1.0, expected)
+    assert specifications.damping == pytest.approx(damping, rel=1e-12)
+    assert specifications.sensitivity_peak == pytest.approx(margins.sensitivity_peak, rel=1e-8)
+    assert specifications.complementary_peak == pytest.approx(margins.complementary_peak, rel=1e-8)
     assert math.degrees(prototype_phase_margin(damping)) == pytest.approx(
         margins.phase_margin_deg, abs=1e-6
     )
@@ -74,13 +74,13 @@ def test_t_r_w_c_of_2_02_belongs_to_a_damping_of_0_63_and_not_to_14_percent():
 
 
 def test_a_well_damped_prototype_has_no_peak_of_t():
-    asked = TimeSpecifications(1.0, overshoot=0.015)
-    assert asked.damping == pytest.approx(0.8, abs=0.001)
-    assert asked.complementary_peak == 1.0
+    specifications = TimeSpecifications(1.0, overshoot=0.015)
+    assert specifications.damping == pytest.approx(0.8, abs=0.001)
+    assert specifications.complementary_peak == 1.0
 
 
 @pytest.mark.parametrize(
-    ('rise_time', 'overshoot_asked', 'complaint'),
+    ('rise_time', 'specified_overshoot', 'complaint'),
     [
         (-0.1, 0.14, 'rise time is -0.1 s: it must be above 0'),
         (0.0, 0.14, 'rise time is 0 s: it must be above 0'),
@@ -93,9 +93,9 @@ def test_a_well_damped_prototype_has_no_peak_of_t():
         (0.25, '14', "overshoot is '14': give a number"),
     ],
 )
-def test_specifications_without_sense_are_named(rise_time, overshoot_asked, complaint):
+def test_specifications_without_sense_are_named(rise_time, specified_overshoot, complaint):
     with pytest.raises(ParameterError, match=complaint):
-        TimeSpecifications(rise_time, overshoot_asked)
+        TimeSpecifications(rise_time, specified_overshoot)
 
 
 def test_the_unavoidable_lag_is_that_of_delay_hold_and_the_right_half_plane_zeros():

@@ -46,7 +46,7 @@ def _leading_coefficient(transfer_function: FactoredTransferFunction) -> float:
     return float((transfer_function.gain * product).real)
 
 
-def test_a_step_of_engine_torque_needs_one_integrator_as_section_2_2_says():
+def test_a_step_of_engine_torque_needs_one_integrator_as_in_section_2_2():
     assert poles_at_zero(PLANT) == 1
     assert required_integrators(PLANT, ENGINE) == 1
 

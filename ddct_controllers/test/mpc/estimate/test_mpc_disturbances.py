@@ -113,7 +113,7 @@ def test_every_disturbance_needs_a_drift():
 
 
 def test_the_gain_is_what_the_covariance_recursion_settles_on():
-    """Joseph's form for 5000 periods, noise by its levels: no Riccati solver."""
+    """The recursion is Joseph's form for 5000 periods, noise by its levels: no Riccati solver."""
     model, noise = offset_free_model(DRIVELINE), OFFSET_FREE_NOISE
     columns = [
         noise.engine_torque_n_m * model.b[:, ENGINE_TORQUE],
@@ -139,7 +139,7 @@ def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
     assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.total_ratio)
 
 
-def test_options_change_what_they_say():
+def test_each_option_changes_its_own_setting():
     options = {'torsion_weight': 0.0, 'preview': False, 'load_drift_n_m': 1.0}
     controller = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, options))
     assert controller.settings.outputs[1].weight == 0.0
@@ -181,7 +181,7 @@ def test_a_torsion_weight_is_no_key_of_the_other_controller():
 
 
 def test_behind_a_stiffer_half_shaft_the_errors_are_found_too():
-    """Fifteen times as stiff: the rank condition must not take it for rigid."""
+    """It is fifteen times as stiff: the rank condition must not take it for rigid."""
     stiff = replace(DRIVELINE, halfshaft_stiffness=1e5)
     parts = {'drift': OFFSET_FREE_NOISE.drift, 'model': offset_free_model(stiff)}
     innovation, corrected = estimate({'clutch': -30.0, 'load': 200.0}, **parts, driveline=stiff)

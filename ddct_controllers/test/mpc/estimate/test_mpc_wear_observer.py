@@ -43,7 +43,7 @@ def make_observer(**noise):
 
 
 def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
-    """Let the observer follow a plant; return its gain and errors of C_f and C_load, (n, 3)."""
+    """Run the observer beside a plant; return its gain and errors of C_f and C_load, (n, 3)."""
     plant = transmission_model(DRIVELINE)
     transition, effect = plant.a.copy(), plant.a[:4, 4:]
     twist = LOAD_N_M / DRIVELINE.halfshaft_stiffness
@@ -60,7 +60,7 @@ def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
 
 
 def follow(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
-    """Return the gain alone, one per request."""
+    """Return the estimated gain alone, one value per request."""
     return estimates(observer, wear_gain, requests, load_error_n_m, noise)[:, 0]
 
 
@@ -68,13 +68,13 @@ RAMP = np.minimum(np.arange(100) * 5.0, 150.0)
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 0.85, 1.0, 1.15, 1.3])
-def test_it_knows_the_gain_a_fifth_of_a_second_after_torque_begins_to_flow(wear_gain):
+def test_the_gain_is_found_a_fifth_of_a_second_after_torque_begins_to_flow(wear_gain):
     gains = follow(make_observer(), wear_gain, RAMP)
     assert np.abs(gains[20:] - wear_gain).max() < 0.02
     assert gains[-1] == pytest.approx(wear_gain, abs=1e-4)
 
 
-def test_it_says_nothing_without_torque():
+def test_without_torque_the_gain_is_not_estimated():
     observer = make_observer()
     gains = follow(observer, 0.7, np.zeros(50), load_error_n_m=300.0)
     assert np.all(gains == 1.0)
@@ -86,7 +86,7 @@ def test_an_unknown_load_is_not_taken_for_wear():
     assert np.abs(gains[40:] - 0.85).max() < 0.005
 
 
-def test_its_errors_are_within_what_it_says_of_them():
+def test_its_errors_are_within_their_estimated_deviation():
     deviations = []
     for seed in range(30):
         observer = make_observer()
@@ -134,8 +134,8 @@ def test_after_a_bound_the_true_gain_is_found_once_the_torque_changes():
 
 
 @pytest.mark.parametrize(('ends_at_n_m', 'rank'), [(150.0, 6), (300.0, 7)])
-def test_gain_and_error_of_the_clutch_torque_are_told_apart_while_it_changes(ends_at_n_m, rank):
-    """Observability of (driveline, K_usura, both errors) from the speeds along a torque."""
+def test_gain_and_error_of_the_clutch_torque_are_observable_while_it_changes(ends_at_n_m, rank):
+    """Rank of the observability matrix of (driveline, K_usura, both errors) along a torque."""
     model = offset_free_model(DRIVELINE)
     transition = np.eye(7)
     transition[:4, :4], transition[:4, 5:] = model.a[:4, :4], model.a[:4, STATES:]
@@ -197,7 +197,7 @@ def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
 
 @pytest.mark.parametrize('periods', [3, 12, 30])
 def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
-    """And its deviation is that of the same Gaussian, over 30 periods of a rising torque."""
+    """Its deviation is that of the same Gaussian, over 30 periods of a rising torque."""
     rng, observer, wear = np.random.default_rng(8), make_observer(), WearNoise()
     requests, engine = 4.0 * np.arange(periods), rng.normal(120.0, 5.0, periods)
     loads = rng.normal(LOAD_N_M, 10.0, periods)
@@ -224,7 +224,7 @@ def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
 
 @pytest.mark.parametrize(('gain', 'bounded'), [(0.4, 0.5), (1.7, 1.5), (0.51, 0.51), (1.49, 1.49)])
 def test_the_bounds_leave_the_likeliest_state_that_keeps_them(gain, bounded):
-    """0.5 and 1.5; the least (x - x_0)' P^-1 (x - x_0) with that gain, by its normal equations."""
+    """Bounds 0.5 and 1.5; the least (x - x_0)' P^-1 (x - x_0) by its normal equations."""
     rng = np.random.default_rng(9)
     factor, state = rng.normal(size=(SIZE, SIZE)), rng.normal(size=SIZE)
     state[GAIN] = gain
@@ -271,7 +271,7 @@ def test_gain_drift_sets_how_fast_the_estimate_may_move():
 
 
 def test_a_request_that_no_clutch_can_carry_leaves_the_covariance_positive():
-    """A loop that diverges asks for 1e11 N m within three seconds, and twice that 0.1 s later."""
+    """A loop that diverges requests 1e11 N m within three seconds, and twice that 0.1 s later."""
     observer = make_observer()
     speeds = (500.0, 200.0, 20.0)
     for step in range(1000):

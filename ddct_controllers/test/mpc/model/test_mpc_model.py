@@ -116,7 +116,7 @@ def test_disturbances_are_constants_that_push_through_their_columns():
 
 
 def test_clutch_column_is_a_held_torque_beside_the_actuator():
-    """Held C_f of 1 N m pushes engine and shaft apart as the driveline's step does."""
+    """A C_f of 1 N m, held, pushes engine and shaft apart as the driveline's step does."""
     steps = np.full(11, 35.0)
     moved, still = (Driveline(DRIVELINE, VehicleParameters(), START) for _ in range(2))
     moved.step(40.0, 60.0, (steps + 1.0).tolist())
@@ -135,7 +135,7 @@ def test_the_delay_is_one_period_and_nothing_else():
     np.testing.assert_allclose(at_once[:, :8], delayed[:, :8], atol=1e-9)
 
 
-def test_a_load_that_is_not_known_drives_nothing():
+def test_an_unknown_load_drives_nothing():
     rows = inputs(50)
     unloaded = rows * [1.0, 1.0, 0.0]
     found = model_run(MODEL.without_load(), rows)
@@ -144,7 +144,7 @@ def test_a_load_that_is_not_known_drives_nothing():
 
 @pytest.mark.parametrize('load_known', [True, False])
 def test_unit_noise_is_of_one_n_m_on_each_known_input_and_of_one_rpm_on_the_slip(load_known):
-    """Against the filter that the doubling algorithm of Riccati's equation gives."""
+    """The reference is the filter by the doubling algorithm for Riccati's equation."""
     model = transmission_model(DRIVELINE, delay=False)
     model = model if load_known else model.without_load()
     output = rpm_from_rad_s(1.0) * np.array([1.0, -1.0, 0, 0, 0, 0, 0, 0, 0])
@@ -223,7 +223,7 @@ def test_noise_that_leaves_no_gain_is_refused():
         kalman_gain(MODEL, NoiseLevels(speed_rad_s=0.0, clutch_torque_n_m=float('nan')))
 
 
-def test_inputs_are_where_their_names_say():
+def test_inputs_have_the_indices_of_their_names():
     assert (REQUEST, ENGINE_TORQUE, LOAD_TORQUE) == (0, 1, 2)
     pushed = MODEL.b[:, ENGINE_TORQUE]
     assert pushed[0] == pytest.approx(0.01 / DRIVELINE.engine_inertia, rel=1e-3)

@@ -70,7 +70,7 @@ def test_prediction_is_the_simulated_model(settings):
 
 @pytest.mark.parametrize('settings', [ONE, TWO], ids=['one input', 'two inputs'])
 def test_program_is_the_stated_cost(settings):
-    """Half the cost of simulated outputs, moves and levels, up to what the moves do not change."""
+    """It is half the cost of simulated outputs, moves and levels, up to a constant."""
     before, known, moves, targets, references = case(settings)
     program = condense(MODEL, settings)
     f = program.gradient @ np.concatenate([STATE, before, known, targets, references.ravel()])
@@ -121,7 +121,7 @@ def test_inputs_without_limits_have_no_rows():
     assert condense(MODEL, free).structure.constraints.shape == (0, 3)
 
 
-def test_known_engine_torque_counts_as_the_model_says():
+def test_known_engine_torque_acts_as_in_the_model():
     more = replace(ONE, outputs=(OutputTerms(SLIP_SPEED, 1.0),))
     column = predict(MODEL, more).from_known[:, len(STATE) + 1]
     state = np.zeros(len(STATE))
@@ -199,7 +199,7 @@ def test_moves_that_nothing_weighs_are_refused(inputs):
 
 
 def test_weights_that_leave_the_program_singular_are_refused():
-    """Slip alone does not tell C_m from the clutch."""
+    """With weights on slip alone, C_m and the clutch have the same effect."""
     loose = MpcSettings((OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(), InputTerms()), 60, 20)
     with pytest.raises(ParameterError, match='hessian is singular'):
         condense(MODEL, loose)

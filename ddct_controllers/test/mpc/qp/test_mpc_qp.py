@@ -10,7 +10,11 @@ from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, QpBackend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
 ERROR = {'daqp': 1e-7, 'osqp': 1e-4}
-"""Of z relative to the oracle's: DAQP ends on the exact active set, OSQP on residuals of 1e-6."""
+"""
+Error of z relative to the oracle's by solver.
+
+DAQP ends on the exact active set, OSQP on residuals of 1e-6.
+"""
 LIMIT = 20_000
 INF = math.inf
 
@@ -40,14 +44,14 @@ class Program:
 
 
 def violation(structure: QpStructure, z: np.ndarray, lower, upper) -> float:
-    """Return by how much the worst soft row lies outside its bounds, in that row's unit."""
+    """Return the distance of the worst soft row from its bounds, in that row's unit."""
     values, soft = structure.constraints @ z, structure.soft_rows
     outside = np.maximum(values - upper, np.asarray(lower) - values)[soft]
     return max([0.0, *outside])
 
 
 def scalar(name: str, rows: list[float], soft: list[bool] | None = None, weight: float = 100.0):
-    """1/2 z^2 + f z with one variable; `rows` are the coefficients of G."""
+    """Return 1/2 z^2 + f z with one variable; `rows` are the coefficients of G."""
     mask = np.array(soft) if soft else None
     structure = QpStructure(np.eye(1), np.array(rows)[:, None], mask, weight)
     return make_backend(name, structure, LIMIT)
@@ -66,7 +70,7 @@ def random_program(
     Return a program whose last `soft` rows are soft.
 
     Units of variables and hard rows lie within +-`decades` of 1, those of soft rows, which set
-    their weights, within +-`soft_decades`. The hard rows hold a common point other than 0; the
+    their weights, within +-`soft_decades`. The hard rows have a common point other than 0; the
     soft ones are shifted from it, so that they may conflict.
     """
     random = np.random.default_rng(seed)
@@ -263,7 +267,7 @@ def test_bounds_that_close_open_and_vanish_between_solves_leave_it_right(name, s
 
 
 @backends
-def test_an_active_bound_that_becomes_infinite_lets_go(name):
+def test_an_active_bound_that_becomes_infinite_is_released(name):
     """DAQP calls this infeasible when it starts from its last active set."""
     backend = scalar(name, [1.0])
     assert backend.solve([-3.0], [-1.0], [1.0]).z[0] == pytest.approx(1.0, rel=1e-5)
@@ -311,7 +315,7 @@ def test_the_iteration_limit_is_reported_and_not_raised(name):
 
 @backends
 def test_the_iterations_that_a_solve_takes_are_a_limit_that_suffices(name):
-    """Five fewer are not enough; OSQP looks at its residuals every fifth."""
+    """Five fewer are not enough; OSQP checks its residuals every fifth."""
     program = random_program(5, 20, 40, soft=10)
     free = program.solve(program.backend(name))
     enough = program.solve(make_backend(name, program.structure, free.iterations))

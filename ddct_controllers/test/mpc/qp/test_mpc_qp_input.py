@@ -1,4 +1,4 @@
-"""What the quadratic programs refuse: bad structures, vectors, names, and absent solvers."""
+"""Input that the quadratic programs refuse: bad structures, vectors, names, absent solvers."""
 
 import math
 import subprocess

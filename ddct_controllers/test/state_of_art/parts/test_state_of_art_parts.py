@@ -1,4 +1,4 @@
-"""Parts of the controllers of the state of the art: what each promises by itself."""
+"""Parts of the controllers of the state of the art, each by itself."""
 
 import math
 
@@ -66,8 +66,8 @@ def test_the_points_of_a_scenario_prevail():
 
 
 @pytest.mark.parametrize('lag_s', [0.0, 0.1])
-def test_placed_gains_put_both_poles_where_they_are_wanted(lag_s):
-    """Of 1/(s (1 + lag s)), once the lag is cancelled."""
+def test_placed_gains_put_both_poles_at_the_given_places(lag_s):
+    """The plant is 1/(s (1 + lag s)), once the lag is cancelled."""
     gains = Pid(5.0, lag_s)
     numerator = np.array([gains.derivative, gains.proportional, gains.integral])
     denominator = np.polymul([lag_s, 1.0], [1.0, 0.0, 0.0])
@@ -77,16 +77,16 @@ def test_placed_gains_put_both_poles_where_they_are_wanted(lag_s):
     assert np.abs(poles.imag).max() < 1e-4 * 5.0
 
 
-def test_a_pid_that_is_held_at_a_limit_does_not_wind_up():
+def test_a_pid_at_a_limit_does_not_wind_up():
     pid, limit = Pid(10.0), 1.0
     for _ in range(500):
         action = pid.update(3.0)
         pid.unwind(action - min(action, limit))
-    # The integral stands where the action was at its proportional part beyond the limit.
+    # The integral is such that the action exceeded the limit by its proportional part.
     assert pid.update(-1.0) < limit
 
 
-def test_the_estimator_finds_what_the_clutch_transmits_beyond_its_model():
+def test_the_estimator_finds_the_torque_that_the_clutch_transmits_beyond_its_model():
     inertia, beyond, speed = RIGID.engine_inertia, -80.0, 200.0
     estimator = ClutchTorqueEstimator(inertia, 30.0)
     found = []
@@ -134,8 +134,8 @@ def test_a_lag_alone_is_no_limit():
 
 
 @pytest.mark.parametrize(('slip_error', 'sign'), [(5.0, -1.0), (-5.0, 1.0)])
-def test_what_the_engine_cannot_do_the_clutch_does(slip_error, sign):
-    """Too little slip wants less clutch torque; in the end K_p times the error is lacking."""
+def test_the_clutch_supplies_what_the_engine_cannot(slip_error, sign):
+    """Too little slip needs less clutch torque; in the end K_p times the error is lacking."""
     engine = share(deviation_n_m=0.0)
     for _ in range(300):
         _, delivered = engine.update(measurement(), 270.0, slip_error, 0.0)
@@ -152,7 +152,7 @@ def test_what_the_engine_cannot_do_the_clutch_does(slip_error, sign):
 
 
 def test_an_engagement_ends_at_rest_for_the_least_squared_moves():
-    """The program's requests, held over the horizon in the model, bring the slip to zero."""
+    """The program's requests, each held over its periods, bring the model's slip to zero."""
     model = transmission_model(DRIVELINE)
     horizon = 60
     program = engagement_programs(model, horizon, horizon)[horizon]

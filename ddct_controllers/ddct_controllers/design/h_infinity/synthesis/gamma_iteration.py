@@ -1,4 +1,4 @@
-"""H-infinity synthesis by gamma-iteration: nothing is accepted that the closed loop denies."""
+"""H-infinity synthesis by gamma-iteration; every controller is verified in the closed loop."""
 
 import math
 from dataclasses import dataclass, replace
@@ -18,35 +18,35 @@ from ddct_plant.linear.lti import StateSpace
 
 BACK_OFF = 1.01
 """
-How far above the optimum the controller is made by default.
+Level of the controller over the optimum, by default, as a factor.
 
 At the optimum its fastest pole runs off to infinity; 1 % above it is at some 200 rad/s, and
 nothing is left to be cleaned there.
 """
 _TOLERANCE = 1e-4
-"""Relative width of the last interval of the iteration."""
+"""Width of the last interval of the iteration, relative."""
 _AGREEMENT = 1e-6
-"""Relative excess of the closed loop's norm over the level that rounding may cause."""
+"""Excess of the closed loop's norm over the level that rounding may cause, relative."""
 _FACTOR = 4.0
 _NORM_TOLERANCE = 1e-7
-"""Relative: the norm is at least what is returned and at most this much higher."""
+"""Largest excess of the norm over the value returned, which is a lower bound; relative."""
 _ON_AXIS = 1e-7
 """Real part, relative to the magnitude, below which an eigenvalue may be on the axis."""
 _ROUNDS = 50
 _LOWEST, _HIGHEST = 1e-6, 1e6
-"""Levels between which an optimum is looked for."""
+"""Levels between which the optimum is sought."""
 
 
 @dataclass(frozen=True, eq=False)
 class Synthesis:
-    """A controller, and the norms that its closed loop was found to have."""
+    """A controller, and the norms computed from its closed loop."""
 
     controller: StateSpace
-    """From v to u, continuous."""
+    """Controller from v to u, continuous."""
     gamma: float
-    """||T_wz|| of the loop with this controller, computed from the closed loop."""
+    """Norm ||T_wz|| of the loop with this controller, computed from the closed loop."""
     optimum: float
-    """Least ||T_wz|| that a verified controller reached."""
+    """Least norm ||T_wz|| that a verified controller reached."""
     lower_bound: float
     """Highest level that was refused; for the LMIs their optimum, to the solver's tolerance."""
     method: str
@@ -62,8 +62,8 @@ def synthesise(plant: GeneralisedPlant, back_off: float = BACK_OFF) -> Synthesis
     Return the central controller at `back_off` times the least level that verifies.
 
     A level counts as reached when its controller's closed loop is stable and has at most that
-    norm; what the Riccati solutions promise does not count. Raise DdctError for a
-    plant without a solution, and when no level verifies.
+    norm; the Riccati solutions alone do not count. Raise DdctError for a plant without a solution,
+    and when no level verifies.
     """
     require_number('back-off from the optimum', back_off, at_least=1.0, at_most=100.0)
     plant.require_solvable()
@@ -98,7 +98,7 @@ def _first_reached(plant: GeneralisedPlant) -> Synthesis:
 
 
 def _reached(plant: GeneralisedPlant, gamma: float) -> Synthesis | None:
-    """Return the central controller for a level if its closed loop keeps it."""
+    """Return the central controller for a level if the norm of its closed loop is within it."""
     try:
         controller = central_controller(plant, gamma, *stabilising_solutions(plant, gamma))
     except (np.linalg.LinAlgError, ParameterError):

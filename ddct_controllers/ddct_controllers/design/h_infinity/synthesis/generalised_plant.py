@@ -9,9 +9,9 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import StateSpace
 
 _RANK = 1e-10
-"""Singular values below this, relative to the largest, count as zero."""
+"""Singular value, relative to the largest, below which one counts as zero."""
 DISCOUNT_RAD_S = 30.0
-"""Decay rate of the Gramians, about the bandwidth of W_t."""
+"""Decay rate of the Gramians in rad/s, about the bandwidth of W_t."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,50 +24,50 @@ class GeneralisedPlant:
     """
 
     system: StateSpace
-    """From (w, u) to (z, v), continuous."""
+    """State-space system from (w, u) to (z, v), continuous."""
 
     @property
     def b1(self) -> np.ndarray:
-        """(n, inputs w)."""
+        """Matrix from w to the states' rates, (n, inputs w)."""
         return self.system.b[:, :-1]
 
     @property
     def b2(self) -> np.ndarray:
-        """(n, 1)."""
+        """Matrix from u to the states' rates, (n, 1)."""
         return self.system.b[:, -1:]
 
     @property
     def c1(self) -> np.ndarray:
-        """(outputs z, n)."""
+        """Matrix from the states to z, (outputs z, n)."""
         return self.system.c[:-1]
 
     @property
     def c2(self) -> np.ndarray:
-        """(1, n)."""
+        """Matrix from the states to v, (1, n)."""
         return self.system.c[-1:]
 
     @property
     def d11(self) -> np.ndarray:
-        """(outputs z, inputs w)."""
+        """Feedthrough from w to z, (outputs z, inputs w)."""
         return self.system.d[:-1, :-1]
 
     @property
     def d12(self) -> np.ndarray:
-        """(outputs z, 1)."""
+        """Feedthrough from u to z, (outputs z, 1)."""
         return self.system.d[:-1, -1:]
 
     @property
     def d21(self) -> np.ndarray:
-        """(1, inputs w)."""
+        """Feedthrough from w to v, (1, inputs w)."""
         return self.system.d[-1:, :-1]
 
     @property
     def d22(self) -> np.ndarray:
-        """(1, 1)."""
+        """Feedthrough from u to v, (1, 1)."""
         return self.system.d[-1:, -1:]
 
     def require_solvable(self) -> None:
-        """Check what synthesis assumes; raise DdctError that names what is missing."""
+        """Check the assumptions of the synthesis; raise DdctError that names the violated one."""
         _require_all_moved(self.system.a, self.b2, 'stabilisable', 'moved by the control')
         _require_all_moved(
             self.system.a.T, self.c2.T, 'detectable', 'seen in what the controller measures'
@@ -120,9 +120,9 @@ def balanced(plant: GeneralisedPlant, discount: float = DISCOUNT_RAD_S) -> Gener
     """
     Return the plant in coordinates whose Gramians, discounted at a rate in rad/s, are equal.
 
-    X and Y of the Riccati equations shrink from 1e16 to some hundreds by it, and R and S of the
-    LMIs likewise. The discount keeps modes near the axis, whose Gramians are huge, from
-    dominating. A plant with modes that nothing moves or shows is returned as it is.
+    X and Y of the Riccati equations shrink from 1e16 to some hundreds by it, and so do R and S of
+    the LMIs. The discount keeps modes near the axis, whose Gramians are huge, from dominating. A
+    plant with modes that are not controllable or not observable is returned unchanged.
     """
     system = plant.system
     _, diagonal = scipy.linalg.matrix_balance(system.a, permute=False)

@@ -19,9 +19,9 @@ from ddct_controllers.design.h_infinity.synthesis.riccati import central_control
 from ddct_plant.base.errors import DdctError, ParameterError
 
 _DISCOUNTS_RAD_S = (30.0, 10.0, 3.0, 50.0)
-"""Decay rates of the discounted Gramians that the coordinates are balanced by, tried in turn."""
+"""Decay rates in rad/s of the Gramians that balance the coordinates, tried in turn."""
 _EXCESS = 1.01
-"""Norm over the optimum of the LMIs up to which a controller is accepted."""
+"""Ratio of the norm to the optimum of the LMIs up to which a controller is accepted."""
 _Affine = Callable[[np.ndarray, np.ndarray, float, float], np.ndarray]
 """A symmetric matrix, affine in R, S and gamma; the last argument multiplies its constants."""
 
@@ -64,7 +64,7 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
 
 
 def _solved(clarabel: Any, plant: GeneralisedPlant) -> tuple[float, np.ndarray, np.ndarray] | None:
-    """Return gamma, R and S, (n, n) each, or None when the solver gives up."""
+    """Return gamma, R and S, (n, n) each, or None when the solver finds no solution."""
     size = len(plant.system.a)
     basis, none = list(_symmetric_basis(size)), np.zeros((size, size))
     unknowns = [(matrix, none, 0.0) for matrix in basis]

@@ -41,13 +41,13 @@ typedef struct {
 
 /* The answer, which holds over the coming period. Both are NaN before the call. */
 typedef struct {
-    /* N m: the clutch is asked for open_loop_torque + clutch_torque. */
+    /* N m: the request to the clutch is open_loop_torque + clutch_torque. */
     double clutch_torque;
     /* C_m, N m: read only where `commands_engine` is 1. */
     double engine_torque;
 } ddct_command;
 
-/* What the library says of itself; DDCT_DESCRIPTION fills it in. */
+/* Description of the library; DDCT_DESCRIPTION fills it in. */
 typedef struct {
     int32_t interface_version;
     int32_t measurement_bytes;

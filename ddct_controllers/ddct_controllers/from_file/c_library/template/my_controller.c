@@ -24,7 +24,7 @@ int32_t ddct_controller_update(void *state, const ddct_measurement *m, ddct_comm
     my_state *s = state;
     const double slip = m->engine_speed - m->shaft_speed;
     const double error_rpm = (m->slip_reference[0] - slip) * RPM_PER_RAD_S;
-    /* Too little slip, an error above 0, asks for less torque. */
+    /* Too little slip, an error above 0, needs less torque. */
     command->clutch_torque =
         -(proportional_gain * error_rpm + integral_gain * s->integral_rpm_s);
     s->integral_rpm_s += PERIOD_S * error_rpm;

@@ -136,9 +136,9 @@ static void follow_plan(ddct_mpc *s, const double *known, double *moves)
     level = smaller(larger(before + s->plan[0], LEAST_CLUTCH), MOST_CLUTCH);
     moves[0] = smaller(larger(level, last - CLUTCH_CHANGE), last + CLUTCH_CHANGE) - before;
 #if DDCT_MPC_COMMANDS_ENGINE
-    const double demand = known[ENGINE], asked = known[BEFORE + 1];
-    level = larger(asked + s->plan[1], reachable(s, demand, LEAST_TORQUE, 1.0));
-    moves[1] = smaller(level, reachable(s, demand, MOST_TORQUE, 1.0)) - asked;
+    const double demand = known[ENGINE], requested = known[BEFORE + 1];
+    level = larger(requested + s->plan[1], reachable(s, demand, LEAST_TORQUE, 1.0));
+    moves[1] = smaller(level, reachable(s, demand, MOST_TORQUE, 1.0)) - requested;
 #endif
     if (s->fallbacks < ULONG_MAX) {
         ++s->fallbacks;

@@ -3,7 +3,7 @@
 
 @SIZES@
 
-/* What the controller must be told of one period. Every number must lie within +-1e9. */
+/* Inputs of the controller for one period. Every number must lie within +-1e9. */
 typedef struct {
     /* w_m, rad/s: measured speed of the engine. */
     double engine_speed;
@@ -37,7 +37,7 @@ typedef struct {
     /* N m. Ask the clutch for open_loop_torque + clutch_torque, at least 0, over the coming
      * period. After a bad measurement it is that of the period before. */
     double clutch_torque;
-    /* C_m, N m, to ask of the engine over the coming period; 0 and without meaning where
+    /* Request for C_m in N m over the coming period; 0 and without meaning where
      * DDCT_MPC_COMMANDS_ENGINE is 0. */
     double engine_torque;
     ddct_mpc_status status;
@@ -45,27 +45,27 @@ typedef struct {
     int iterations;
 } ddct_mpc_command;
 
-/* All that is kept from call to call. The caller owns it and need not look inside. */
+/* State from call to call. The caller owns it and need not read it. */
 typedef struct {
     /* Observer's estimate for the coming period, in the model's coordinates. */
     double state[DDCT_MPC_STATES];
     /* The solver's last solution, N m: moves still to come. */
     double plan[DDCT_MPC_MOVES];
-    /* Of the period before, N m. */
+    /* Torques of the period before, N m. */
     double own_torque;
     double open_loop_torque;
-    /* C_m asked for, its deviation from the demand without and with the engine's lag; N m, 0 where
-     * DDCT_MPC_COMMANDS_ENGINE is 0. */
+    /* Request for C_m, its deviation from the demand without and with the engine's lag; N m, 0
+     * where DDCT_MPC_COMMANDS_ENGINE is 0. */
     double engine_request;
     double engine_asked;
     double engine_deviation;
-    /* How often a plan was followed for want of a solution; stays at its largest value. */
+    /* Number of steps on a plan for want of a solution; stays at its largest value. */
     unsigned long fallbacks;
     /* Whether there was a measurement since the reset. */
     int started;
 } ddct_mpc;
 
-/* Forget everything. Call it once before the first of the others. */
+/* Clear the state. Call it once before the first of the others. */
 void ddct_mpc_reset(ddct_mpc *s);
 
 /* Call every DDCT_MPC_PERIOD_S while only the open-loop torque acts on the clutch and the engine

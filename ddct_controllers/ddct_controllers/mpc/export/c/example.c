@@ -3,7 +3,7 @@
  *
  *     cc -std=c99 -O2 ddct_mpc.c ddct_mpc_example.c -o example && ./example < measurements.csv
  *
- * Columns: 1 while the controller acts and 0 while it is held off, then the fields of
+ * Columns: 1 with feedback on and 0 with feedback off, then the fields of
  * ddct_mpc_measurement in their order, an array's entries one after the other. Printed are
  * clutch_torque, engine_torque, status and iterations.
  */

@@ -24,7 +24,7 @@ def test_a_resonance_has_its_peak(damping):
 
 
 def test_the_higher_of_two_distant_peaks_is_found():
-    """A broad one of 3 at 1 rad/s, a sharp one of 5 at 1000 rad/s."""
+    """One is broad, 3 at 1 rad/s, the other sharp, 5 at 1000 rad/s."""
     broad = FactoredTransferFunction(3.0, (0.0,), ((1.0, 1.0),))
     sharp = FactoredTransferFunction(5.0, (0.0,), ((1.0, 1e6),))
     one, two = broad.to_state_space(), sharp.to_state_space()
@@ -54,7 +54,7 @@ def test_a_loop_that_is_not_stable_has_no_norm(pole):
 
 
 def test_the_bilinear_transform_keeps_the_norm():
-    """That of a sampled system over the unit circle, by a fine sweep."""
+    """The norm of a sampled system over the unit circle is found by a fine sweep."""
     a, b = np.array([[0.9, 0.2], [-0.3, 0.8]]), np.array([[1.0], [0.5]])
     system = StateSpace(a, b, np.array([[1.0, 0.0]]), np.array([[0.2]]), 0.01)
     z = np.exp(1j * np.linspace(0.0, math.pi, 100001)).reshape(-1, 1, 1)
@@ -63,7 +63,7 @@ def test_the_bilinear_transform_keeps_the_norm():
 
 
 def test_the_way_to_the_w_plane_and_back_changes_nothing():
-    """The plant with hold and delay, whose delay is a pole at z = 0; within 1e-9 of each entry."""
+    """The plant has hold and delay, a pole at z = 0; each entry agrees within 1e-9."""
     plant = sampled_plant()
     back = from_w_plane(to_w_plane(plant))
     for name in 'abcd':

@@ -40,7 +40,7 @@ PRINTED_OPTIMUM = 1.105
 
 
 def simple_plant(**changes: Any) -> GeneralisedPlant:
-    """dx/dt = x + w_1 + u, v = x + w_2, z = [x; u]: unstable, every matrix by hand."""
+    """Return dx/dt = x + w_1 + u, v = x + w_2, z = [x; u]: unstable, every matrix by hand."""
     parts: dict[str, Any] = {
         'a': [[1.0]],
         'b': [[1.0, 0.0, 1.0]],
@@ -72,14 +72,14 @@ def test_a_problem_with_a_closed_form_is_solved():
 
 
 def test_the_printed_weights_have_the_optimum_1_105():
-    """Above 1: no controller has the norm below 1 that Section 3.1 wants of the stack."""
+    """It is above 1: no controller has the norm below 1 that Section 3.1 requires of the stack."""
     assert optimum(PRINTED) == pytest.approx(PRINTED_OPTIMUM, abs=5e-4)
     assert synthesise(generalised_plant(PRINTED)).lower_bound > 1.0
 
 
 @pytest.mark.parametrize('shift', [1e-6, 1e-3])
 def test_where_the_plants_pole_at_zero_is_moved_to_does_not_matter(monkeypatch, shift):
-    """To 0.1 % of the optimum."""
+    """The optimum changes by less than 0.1 %."""
     monkeypatch.setattr(hinf_problem, 'AXIS_SHIFT_RAD_S', shift)
     assert optimum(PRINTED) == pytest.approx(PRINTED_OPTIMUM, rel=1e-3)
 
@@ -119,7 +119,7 @@ def test_the_closed_loop_has_the_level_that_the_riccati_equations_promise():
 
 
 def test_below_the_optimum_the_riccati_equations_have_solutions_and_the_loop_is_unstable():
-    """So that a controller may only be accepted by its closed loop."""
+    """So a controller may only be accepted by its closed loop."""
     problem = balanced(generalised_plant(PRINTED))
     controller = central_controller(problem, 1.08, *stabilising_solutions(problem, 1.08))
     assert verified_norm(problem, controller) == math.inf
@@ -127,24 +127,24 @@ def test_below_the_optimum_the_riccati_equations_have_solutions_and_the_loop_is_
 
 @pytest.mark.parametrize(('method', 'excess'), [('riccati', 2e-5), ('lmi', 0.02)])
 def test_a_closed_loop_above_the_promised_level_is_refused(monkeypatch, method, excess):
-    """Stable, but above: neither the Riccati solutions nor the LMIs are taken at their word."""
+    """It is stable, but above the level of the Riccati solutions or the LMIs."""
     if method == 'lmi':
         pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
-    asked = []
+    levels = []
 
     def promised(plant, gamma, x, y):
-        asked.append(gamma)
+        levels.append(gamma)
         return central_controller(plant, gamma, x, y)
 
     for module in (riccati_synthesis, lmi_synthesis):
         monkeypatch.setattr(module, 'central_controller', promised)
-        monkeypatch.setattr(module, 'verified_norm', lambda *_: asked[-1] * (1.0 + excess))
+        monkeypatch.setattr(module, 'verified_norm', lambda *_: levels[-1] * (1.0 + excess))
     with pytest.raises(DdctError, match='closed loop'):
         (synthesise_by_lmi if method == 'lmi' else synthesise)(simple_plant())
 
 
 def test_one_percent_above_the_optimum_the_fast_pole_is_gone():
-    """From above 1e5 to below 300 rad/s."""
+    """The fastest pole moves from above 1e5 to below 300 rad/s."""
     problem = generalised_plant(PRINTED)
     at_optimum, above = (
         np.abs(np.linalg.eigvals(synthesise(problem, factor).controller.a)).max()
@@ -155,7 +155,7 @@ def test_one_percent_above_the_optimum_the_fast_pole_is_gone():
 
 
 def test_feedthrough_of_the_plant_is_taken_into_account():
-    """D22: the closed loop with it, and the optimum, are those without it."""
+    """The closed loop with D22, and the optimum, are those without it."""
     d22 = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.7]]
     found = synthesise(simple_plant(d=d22), 1.0)
     assert found.optimum == pytest.approx(synthesise(simple_plant(), 1.0).optimum, rel=2e-4)
@@ -256,7 +256,7 @@ def test_a_peak_below_one_is_refused_before_any_synthesis():
         SensitivityWeight(0.15, 1.0)
 
 
-def test_without_clarabel_the_lmi_method_says_what_to_install(monkeypatch):
+def test_the_error_of_the_lmi_method_without_clarabel_names_the_package(monkeypatch):
     original = builtins.__import__
 
     def missing(name, *args, **kwargs):

@@ -1,4 +1,4 @@
-"""When the plates of a clutch that sticks meet and part, by the exact events of the driveline."""
+"""Instants at which the plates of a stick-slip clutch lock, release or pass through zero slip."""
 
 from collections.abc import Iterator
 
@@ -11,29 +11,29 @@ SLIPPING, LOCKED = PHASES.index(driveline.SLIPPING), PHASES.index(driveline.LOCK
 
 
 def events_of(trajectory: Trajectory, kind: str, after: int = 0) -> Iterator[PhaseEvent]:
-    """Yield the events of a kind after a step, in the order of time; none of a linear clutch."""
+    """Yield the events of a kind after a step in order of time; none for a linear clutch."""
     periods = (trajectory.phase_events or ())[after + 1 :]
     return (event for events in periods for event in events if event.kind == kind)
 
 
 def locked_at(trajectory: Trajectory, step: int) -> bool:
-    """Say whether the plates are locked at a step; False for a linear clutch."""
+    """Return whether the plates are locked at a step; False for a linear clutch."""
     phase = trajectory.clutch_phase
     return phase is not None and len(phase) > step and phase[step] == LOCKED
 
 
 def first_lock(trajectory: Trajectory, start: int) -> PhaseEvent | None:
-    """Return the first lock after step `start`; None without, and where locked there already."""
+    """Return the first lock after step `start`; None without one, or if locked at `start`."""
     if locked_at(trajectory, start):
         return None
     return next(events_of(trajectory, LOCK, after=start), None)
 
 
-def first_meeting(trajectory: Trajectory, start: int) -> tuple[int, PhaseEvent] | None:
+def first_zero_slip(trajectory: Trajectory, start: int) -> tuple[int, PhaseEvent] | None:
     """
-    Return the first lock or reversal after step `start`, and the step at the end of its period.
+    Return the first lock or reversal after step `start`, and the step that ends its period.
 
-    None without, and where the slip is zero at `start`.
+    None without one, and where the slip is zero at `start`.
     """
     if trajectory.steps < start or trajectory.slip_speed[start] == 0.0:
         return None

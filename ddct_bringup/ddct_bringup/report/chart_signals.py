@@ -1,4 +1,4 @@
-"""The signals that the page draws, one chart each."""
+"""Signals that the page draws, one chart each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,33 +6,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.meeting import LOCKED
+from ddct_bringup.verdict.zero_slip import LOCKED
 from ddct_plant.base.units import rpm_from_rad_s
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """What one chart shows."""
+class ChartSignal:
+    """Signal of one chart."""
 
     key: str
     title: str
     symbol: str
     unit: str
     meaning: str
-    """What it is measured between, and what its sign says."""
+    """Meaning of the signal: where it is measured, and its sign."""
     values: Callable[[Trajectory], np.ndarray]
-    """(N+1,) in the unit."""
+    """Function that returns the signal, (N+1,), in the unit."""
     limit: Callable[[Trajectory], np.ndarray] | None = None
-    """(N+1,) in the unit: what bounds its magnitude, drawn beside it."""
+    """Function that returns the bound of the magnitude, (N+1,), in the unit."""
 
     @property
     def limit_key(self) -> str:
-        """Name of the limit's column."""
+        """Name of the column of the limit."""
         return f'{self.key}_limit'
 
 
-QUANTITIES = (
-    Quantity(
+CHART_SIGNALS = (
+    ChartSignal(
         'w_d',
         'Slip speed of the clutch',
         'w_d',
@@ -40,7 +40,7 @@ QUANTITIES = (
         'speed of the engine less that of the primary shaft. Above zero the engine is faster.',
         lambda run: rpm_from_rad_s(run.slip_speed),
     ),
-    Quantity(
+    ChartSignal(
         'error',
         'Slip error',
         'e',
@@ -48,7 +48,7 @@ QUANTITIES = (
         'reference less w_d. Below zero the clutch slips more than it should.',
         lambda run: rpm_from_rad_s(run.slip_reference[:, 0] - run.slip_speed),
     ),
-    Quantity(
+    ChartSignal(
         'w_sr',
         'Twist rate of the driveshaft',
         'w_sr',
@@ -56,7 +56,7 @@ QUANTITIES = (
         'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',
         lambda run: rpm_from_rad_s(run.joint_speed[:, 3]),
     ),
-    Quantity(
+    ChartSignal(
         'A_x',
         'Acceleration of the vehicle',
         'A_x',
@@ -64,7 +64,7 @@ QUANTITIES = (
         'above zero the car gets faster.',
         lambda run: run.vehicle_accel,
     ),
-    Quantity(
+    ChartSignal(
         'C_f_request',
         'Clutch torque: requested',
         'C_f',
@@ -72,7 +72,7 @@ QUANTITIES = (
         'what the controller asks for. It acts from the engine on the shaft.',
         lambda run: run.torque_request,
     ),
-    Quantity(
+    ChartSignal(
         'C_f_actuator',
         'Clutch torque: from the actuator',
         'C_f',
@@ -80,7 +80,7 @@ QUANTITIES = (
         'what the actuator gives, after its delay and its dynamics.',
         lambda run: run.actuator_torque[:, 0],
     ),
-    Quantity(
+    ChartSignal(
         'C_f_clutch',
         'Clutch torque: after wear',
         'C_f',
@@ -88,7 +88,7 @@ QUANTITIES = (
         'what the clutch can transmit: that of the actuator times the wear gain.',
         lambda run: run.clutch_torque[:, 0],
     ),
-    Quantity(
+    ChartSignal(
         'C_m',
         'Engine torque',
         'C_m',
@@ -97,14 +97,14 @@ QUANTITIES = (
         lambda run: run.engine_torque,
     ),
 )
-"""Of every run."""
+"""Signals of every run."""
 
 
 def _capacity(run: Trajectory) -> np.ndarray:
     """
-    Return what the friction can carry in N m: the static capacity while it is locked.
+    Return the friction torque capacity in N m: the static capacity while locked.
 
-    NaN where that is not known, as of a log.
+    NaN where it is not known, as for a log.
     """
     if run.clutch_phase is None:
         return np.full(run.steps + 1, np.nan)
@@ -112,7 +112,7 @@ def _capacity(run: Trajectory) -> np.ndarray:
     return np.where(locked, run.clutch_static_torque[:, 0], run.clutch_torque[:, 0])
 
 
-TRANSMITTED = Quantity(
+TRANSMITTED = ChartSignal(
     'C_f_transmitted',
     'Clutch torque: transmitted',
     'C_f',
@@ -122,9 +122,9 @@ TRANSMITTED = Quantity(
     _capacity,
 )
 
-CLUTCH_QUANTITIES = (
+CLUTCH_SIGNALS = (
     TRANSMITTED,
-    Quantity(
+    ChartSignal(
         'friction_energy',
         'Friction energy of the clutch',
         'E_f',
@@ -132,7 +132,7 @@ CLUTCH_QUANTITIES = (
         'heat of the clutch since the start of the run.',
         lambda run: np.cumsum(run.friction_work) / 1e3,
     ),
-    Quantity(
+    ChartSignal(
         'temperature',
         'Temperature of the facing',
         'T_f',
@@ -141,11 +141,11 @@ CLUTCH_QUANTITIES = (
         lambda run: run.clutch_temperature,
     ),
 )
-"""Of runs with a clutch that sticks."""
+"""Signals of runs with a stick-slip clutch."""
 
 
-SENSOR_QUANTITIES = (
-    Quantity(
+SENSOR_SIGNALS = (
+    ChartSignal(
         'w_d_sensed',
         'Slip speed as measured, less the true one',
         'w_d',
@@ -154,11 +154,11 @@ SENSOR_QUANTITIES = (
         lambda run: rpm_from_rad_s(run.sensed_slip_speed - run.slip_speed),
     ),
 )
-"""Of runs with sensors."""
+"""Signals of runs with sensors."""
 
 
-LOG_QUANTITIES = (
-    Quantity(
+LOG_SIGNALS = (
+    ChartSignal(
         'w_m',
         'Engine speed',
         'w_m',
@@ -166,7 +166,7 @@ LOG_QUANTITIES = (
         'speed of the engine.',
         lambda run: rpm_from_rad_s(run.joint_speed[:, 0]),
     ),
-    Quantity(
+    ChartSignal(
         'V_x',
         'Speed of the vehicle',
         'V_x',
@@ -175,7 +175,7 @@ LOG_QUANTITIES = (
         lambda run: 3.6 * run.vehicle_speed,
     ),
     TRANSMITTED,
-    Quantity(
+    ChartSignal(
         'driveshaft_torque',
         'Torque of the driveshaft',
         'C_s',
@@ -184,16 +184,16 @@ LOG_QUANTITIES = (
         lambda run: run.joint_effort[:, 3],
     ),
 )
-"""Of logs of a car, and of the runs beside them."""
+"""Signals of logs of a car, and of the runs compared with them."""
 
 
-def quantities_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[Quantity, ...]:
-    """Return what there is to draw of a run; `with_log`: of a log, or of a run beside one."""
+def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[ChartSignal, ...]:
+    """Return the signals of a run that are drawn; `with_log`: it is a log or compared with one."""
     possible = (
-        *QUANTITIES,
-        *(() if trajectory.clutch_phase is None else CLUTCH_QUANTITIES),
-        *(SENSOR_QUANTITIES if trajectory.sensed else ()),
-        *(LOG_QUANTITIES if with_log else ()),
+        *CHART_SIGNALS,
+        *(() if trajectory.clutch_phase is None else CLUTCH_SIGNALS),
+        *(SENSOR_SIGNALS if trajectory.sensed else ()),
+        *(LOG_SIGNALS if with_log else ()),
     )
     return tuple(
         each for each in dict.fromkeys(possible) if np.isfinite(each.values(trajectory)).any()

@@ -1,4 +1,4 @@
-"""Definitions and words of what the summary holds, for the page and the terminal."""
+"""Definitions and texts of a summary for the page and the terminal."""
 
 import shlex
 
@@ -40,7 +40,7 @@ RULES = {
     'difference interval': f'Of the median, by the sign test, {100.0 * CONFIDENCE:g} %. '
     'It does not cover zero where one of the two is better in the middle.',
 }
-"""Definitions by what they define."""
+"""Definitions by term."""
 
 
 def replay_command(folder: str, index: int | str) -> str:
@@ -62,9 +62,9 @@ def interval_text(interval: list[float] | None) -> str:
 
 
 def states_text(failed: Summary) -> str:
-    """Return how many runs are in which state other than engaged, with the shares of a sample."""
+    """Return the numbers of runs in states other than engaged, with the shares of a sample."""
     return ', '.join(
-        f'{found["runs"]} {spoken(state)}'
+        f'{found["runs"]} {state_text(state)}'
         + (f' ({interval_text(found["interval"])})' if found['interval'] else '')
         for state, found in failed['states'].items()
         if state != 'engaged'
@@ -77,11 +77,11 @@ def boundary_text(side: Summary) -> str:
         return 'no run on this side' if side['last_good'] is None else 'none in the range'
     several = f', {side["failed"]} of {side["runs"]} runs' if side['runs'] > 1 else ''
     first = _apart(side['first_failure'], side['last_good'])
-    return f'{first} ({spoken(side["state"])}, run {side["index"]}{several})'
+    return f'{first} ({state_text(side["state"])}, run {side["index"]}{several})'
 
 
 def good_text(side: Summary) -> str:
-    """Return the last good value on one side of a line, and how many runs do not count."""
+    """Return the last good value on one side of a line, and the number of invalid runs."""
     invalid = f', {side["invalid"]} invalid on the way' if side['invalid'] else ''
     if side['last_good'] is None:
         return f'no good value before{invalid}' if side['first_failure'] is not None else ''
@@ -89,7 +89,7 @@ def good_text(side: Summary) -> str:
 
 
 def _apart(value: float, other: float | None) -> str:
-    """Return a value with as many digits as it takes to differ from another one."""
+    """Return a value with enough digits to differ from another one."""
     if other is None or value_text(value) != value_text(other):
         return value_text(value)
     return next(
@@ -113,27 +113,27 @@ def p_text(p_value: float) -> str:
 
 
 def part_text(part: Summary) -> str:
-    """Return in which part of a key's range failure is most frequent."""
+    """Return the part of a key's range in which failure is most frequent."""
     return f'{part["failed"]} of {part["runs"]} at {range_text(part["low"], part["high"])}'
 
 
-def spoken(state: str) -> str:
-    """Return the name of a state in words."""
+def state_text(state: str) -> str:
+    """Return the name of a state as text."""
     return state.replace('_', ' ')
 
 
 def label_of(group: Summary) -> str:
-    """Return what a table calls a group of a summary."""
+    """Return the label of a group of a summary in tables."""
     return ', '.join([group['controller'], *group['varied'].values()])
 
 
 def pair_label(pair: Summary) -> str:
-    """Return what a table calls a pair of controllers."""
+    """Return the label of a pair of controllers in tables."""
     return ', '.join([f'{pair["first"]} less {pair["second"]}', *pair['varied'].values()])
 
 
-def together_text(pair: Summary) -> str:
-    """Return in how many cases which of two controllers engaged."""
+def joint_outcomes_text(pair: Summary) -> str:
+    """Return the number of cases in which both, one or none of two controllers engaged."""
     return (
         f'{pair["both"]} of {pair["cases"]} cases (only {pair["first"]} {pair["first_only"]}, '
         f'only {pair["second"]} {pair["second_only"]}, neither {pair["neither"]})'
@@ -141,7 +141,7 @@ def together_text(pair: Summary) -> str:
 
 
 def notes_of(summary: Summary) -> list[str]:
-    """Return what a reader has to know beside the tables, a line each."""
+    """Return notes to be shown next to the tables, a line each."""
     other = summary['other_version']
     found = [
         f'no interval: {reason}'

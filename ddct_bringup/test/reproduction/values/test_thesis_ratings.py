@@ -1,4 +1,4 @@
-"""The words of Table 5.2 and the orders behind claims in words."""
+"""The ratings of Table 5.2 and the orders behind qualitative claims."""
 
 import math
 from types import SimpleNamespace
@@ -10,49 +10,49 @@ from ddct_bringup.reproduction.values.orders import (
     below,
     each_lower,
     is_extreme,
-    judge_words,
+    judge_ratings,
+    ratings_of,
     sigma_text,
     text,
-    words_of,
 )
 
-WORDS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
+RATINGS = {'ls8': 'bad', 'hinf2': 'good', 'mpc3': 'bad', 'mpc4': 'average'}
 SLIPS = {'ls8': 30.0, 'hinf2': 1.0, 'mpc3': 20.0, 'mpc4': 10.0}
 
 
 def judged(**changed: float) -> dict[str, bool]:
-    findings = judge_words(WORDS, [('rad/s', {**SLIPS, **changed})])
+    findings = judge_ratings(RATINGS, [('rad/s', {**SLIPS, **changed})])
     return {name: finding.holds for name, finding in findings.items()}
 
 
-def test_words_hold_where_the_figures_grow_with_them():
+def test_ratings_hold_where_the_values_increase_with_them():
     assert all(judged().values())
 
 
-def test_word_that_stands_on_the_wrong_side_of_another_misses_and_so_does_the_other():
+def test_rating_in_the_wrong_order_to_another_misses_and_so_does_the_other():
     assert judged(mpc4=25.0) == {'ls8': True, 'hinf2': True, 'mpc3': False, 'mpc4': False}
 
 
 @pytest.mark.parametrize(('slip', 'holds'), [(40.0, True), (40.1, False)])
-def test_figures_of_one_word_are_at_most_twice_one_another(slip, holds):
+def test_values_of_one_rating_are_at_most_twice_one_another(slip, holds):
     assert judged(ls8=slip)['mpc3'] is holds
 
 
-def test_one_word_for_four_spreads_that_differ_more_is_a_miss():
+def test_one_rating_for_four_spreads_that_differ_more_is_a_miss():
     spreads = {'ls8': 1.0, 'hinf2': 4.6, 'mpc3': 1.2, 'mpc4': 1.5}
-    findings = judge_words(dict.fromkeys(spreads, 'average'), [('rpm', spreads)])
+    findings = judge_ratings(dict.fromkeys(spreads, 'average'), [('rpm', spreads)])
     assert not any(finding.holds for finding in findings.values())
 
 
-def test_word_about_two_quantities_must_be_right_in_both_and_shows_both():
+def test_rating_of_two_quantities_must_be_right_in_both_and_shows_both():
     rows = [('rpm', SLIPS), ('m/s^2', {**SLIPS, 'mpc4': 50.0})]
-    finding = judge_words(WORDS, rows)['mpc4']
-    assert not finding.holds and finding.figures == '10 rpm, 50 m/s^2'
+    finding = judge_ratings(RATINGS, rows)['mpc4']
+    assert not finding.holds and finding.evidence == '10 rpm, 50 m/s^2'
 
 
-def test_figure_that_does_not_exist_is_the_worst():
+def test_value_that_does_not_exist_is_the_worst():
     assert not judged(mpc4=math.inf)['mpc4']
-    figures = judge_words(WORDS, [('rad/s', {**SLIPS, 'mpc4': math.inf})])['mpc4'].figures
+    figures = judge_ratings(RATINGS, [('rad/s', {**SLIPS, 'mpc4': math.inf})])['mpc4'].evidence
     assert figures == 'no figure'
 
 
@@ -80,7 +80,7 @@ def test_extreme_must_be_one_in_every_row_and_alone():
     assert not is_extreme('pi', max, [{**ROW, 'ls8': 4.0}])
 
 
-def test_controller_without_a_figure_is_not_lower():
+def test_controller_without_a_value_is_not_lower():
     row = {**ROW, 'mpc4': math.inf}
     assert below('ls8', 'mpc4', [row]) and not below('mpc4', 'ls8', [row])
     assert text('s', row) == 'pi 4, ls8 2, mpc4 - s'
@@ -90,7 +90,7 @@ def test_each_lower_counts_those_that_are_lower_in_every_row():
     lower = {'pi': 3.0, 'ls8': 1.0, 'mpc4': 0.5}
     assert each_lower([lower], [ROW]).holds
     mixed = each_lower([lower, ROW], [ROW, ROW])
-    assert not mixed.holds and mixed.figures == '0 of 3 lower in both'
+    assert not mixed.holds and mixed.evidence == '0 of 3 lower in both'
     assert each_lower([lower, ROW], [ROW, ROW], wanted=False).holds
     assert not each_lower([lower], [ROW], wanted=False).holds
 
@@ -99,18 +99,18 @@ def test_standard_deviations_are_shown_with_their_units():
     assert sigma_text((ROW, ROW), ('pi',)) == 'w_sr pi 4 rpm; A_x pi 4 m/s^2'
 
 
-def test_figure_that_does_not_exist_is_infinite(monkeypatch):
+def test_value_that_does_not_exist_is_infinite(monkeypatch):
     none = SimpleNamespace(metrics=SimpleNamespace(engagement_time_s=None))
     monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: none)
     assert orders.metric('engagement_time_s', ('mpc4',)) == {'mpc4': math.inf}
 
 
-def test_figures_within_twice_the_least_share_a_word():
+def test_values_within_twice_the_smallest_have_one_rating():
     row = {'a': 1.0, 'b': 2.0, 'c': 2.1, 'd': 9.0, 'e': math.inf}
     expected = {'a': 'good', 'b': 'good', 'c': 'average', 'd': 'average', 'e': 'bad'}
-    assert words_of(row) == expected
+    assert ratings_of(row) == expected
 
 
-def test_no_word_tells_figures_apart_that_are_alike():
-    assert set(words_of({'a': 0.0, 'b': 0.0}).values()) == {'alike'}
-    assert words_of({'a': 0.0, 'b': 0.1}) == {'a': 'good', 'b': 'bad'}
+def test_similar_values_have_no_different_ratings():
+    assert set(ratings_of({'a': 0.0, 'b': 0.0}).values()) == {'alike'}
+    assert ratings_of({'a': 0.0, 'b': 0.1}) == {'a': 'good', 'b': 'bad'}

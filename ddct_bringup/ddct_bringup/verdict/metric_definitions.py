@@ -1,4 +1,4 @@
-"""The metrics of a run as figures: name, unit, format, meaning, and why one may be undefined."""
+"""Table of the metrics of a run: name, unit, format, meaning, and why one may be undefined."""
 
 from ddct_plant.program.table import PURE, Quantity
 
@@ -11,7 +11,11 @@ NO_WINDOW = 'the run ends before the score window does, or a value is not finite
 NOT_FINITE = 'a value is not finite'
 NO_TIMING = 'there is no timing.json'
 VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
-"""The limit lies above the 50 Hz that a 100 Hz recording holds."""
+"""
+Frequency weighting of the vibration dose value.
+
+The omitted 100 Hz limit is above 50 Hz, the highest frequency in a 100 Hz recording.
+"""
 
 TABLE_5_1 = (
     Quantity(
@@ -40,7 +44,7 @@ TABLE_5_1 = (
         NO_WINDOW,
     ),
 )
-"""Those that the thesis prints."""
+"""Metrics that the thesis prints in Table 5.1."""
 FURTHER = (
     Quantity(
         'slip_rmse_rpm',
@@ -103,7 +107,7 @@ FURTHER = (
     ),
     Quantity('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
 )
-"""The others but those of `timing.json`."""
+"""Metrics that are neither in Table 5.1 nor computed from `timing.json`."""
 METRICS = {
     figure.key: figure
     for figure in (
@@ -119,4 +123,4 @@ METRICS = {
         ),
     )
 }
-"""What tables show, by name."""
+"""Metrics shown in tables, by name."""

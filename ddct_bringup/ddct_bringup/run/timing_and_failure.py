@@ -1,4 +1,4 @@
-"""What lies beside a bag: `timing.json`, and `failed_run.json` of a run that failed."""
+"""Files beside a bag: `timing.json`, and `failed_run.json` of a run that failed."""
 
 import json
 from collections.abc import Mapping
@@ -14,19 +14,19 @@ TIMING_FILE = 'timing.json'
 NOTE_FILE = 'failed_run.json'
 _ADVICE = 'choose another output folder'
 MOST_BYTES = 50_000_000
-"""Of `timing.json`; an hour's run has an eighth of that."""
+"""Largest size of `timing.json` in bytes; an hour's run has an eighth of that."""
 
 
 @dataclass
 class RunTiming(RealtimeCounts):
-    """What `timing.json` holds: wall-clock figures, without which the bag is deterministic."""
+    """Content of `timing.json`: wall-clock times and counts, kept out of the deterministic bag."""
 
     update_times_us: list[float] = field(default_factory=list)
-    """Wall time of each controller update, in order."""
+    """Wall time of each controller update in us, in order."""
     refused_messages: int = 0
-    """Messages with a stamp that could not be true, real time only."""
+    """Number of messages refused for an impossible stamp; real time only."""
     wall_time_s: float = 0.0
-    """From the first tick to the last."""
+    """Wall time from the first tick to the last, s."""
     steps: int = 0
 
     def write(self, folder: Path) -> None:
@@ -35,7 +35,7 @@ class RunTiming(RealtimeCounts):
 
 
 def read_timing(folder: Path) -> RunTiming | None:
-    """Return the timing of a bag folder, None without one; raise DdctError if it is unusable."""
+    """Return the timing of a bag folder, None without one; raise DdctError for invalid content."""
     path = folder / TIMING_FILE
     try:
         text = read_text_file(path, MOST_BYTES)
@@ -78,16 +78,16 @@ def _count(name: str, value: object) -> int:
 
 @dataclass(frozen=True)
 class FailedRun:
-    """What is known of a run that failed."""
+    """Reason of a failed run, and its planned facts."""
 
     reason: str
     facts: RunFacts | None = None
-    """What the run was to be; None where the note cannot be read."""
+    """Planned facts of the run; None where the note cannot be read."""
 
 
 def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> None:
     """
-    Say in a run's folder why it failed; `custom_data` is what its bag should have held.
+    Write the reason of a failure into a run's folder; `custom_data` is that of its bag.
 
     Raise DdctError when that fails.
     """
@@ -96,9 +96,9 @@ def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> N
 
 def failed_run(folder: Path) -> FailedRun | None:
     """
-    Return what the note in a run's folder says, None without one.
+    Return the failure noted in a run's folder; None without a note.
 
-    A note that cannot be read still says that the run failed.
+    A note that cannot be read still marks the run as failed.
     """
     path = folder / NOTE_FILE
     try:
