@@ -24,7 +24,7 @@ from ddct_plant.graph.topics import (
     SLIP_REFERENCE,
     TORQUE_DEMAND,
     TORQUE_REQUEST,
-    seen_topics,
+    measurement_topics,
 )
 
 TIMING_BATCH = 20
@@ -54,7 +54,7 @@ class ControllerNode(FollowerNode):
         )
         self._controller, info = self._make_controller(name)
         self._architecture = make_architecture(self.settings, self._controller)
-        self._measured_topics = seen_topics(sensed=self.settings.sensed)
+        self._measured_topics = measurement_topics(sensed=self.settings.sensed)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
             self._engine_request = Output(self, ENGINE_REQUEST)

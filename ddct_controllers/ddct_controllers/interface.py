@@ -11,7 +11,7 @@ from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import PlantSight
+from ddct_plant.scenario.whole_plant import Observation
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,19 +52,19 @@ class Measurement:
     def of_plant(
         cls,
         step: int,
-        sight: PlantSight,
+        observation: Observation,
         slip_reference: Sequence[float],
         slip_reference_rate: Sequence[float],
     ) -> 'Measurement':
         """Return the measured signals of a plant at step k, with the reference of that step."""
-        engine_speed, shaft_speed, wheel_speed = sight.seen.joint_speed[:3]
+        engine_speed, shaft_speed, wheel_speed = observation.measured.joint_speed[:3]
         return cls(
             step=step,
             engine_speed=engine_speed,
             shaft_speed=shaft_speed,
             wheel_speed=wheel_speed,
-            vehicle_speed=sight.seen.vehicle_speed,
-            engine_torque=sight.told,
+            vehicle_speed=observation.measured.vehicle_speed,
+            engine_torque=observation.engine_torque,
             slip_reference=slip_reference,
             slip_reference_rate=slip_reference_rate,
         )

@@ -67,11 +67,11 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
     slips = []
     for step in range(scenario.control_start_step + 1):
-        sight = plant.look(step)
-        slips.append(sight.now.slip_speed)
-        engine_speed, shaft_speed = sight.now.joint_speed[:2]
-        load_torque = load.torque(sight.now.vehicle_speed, time_of_step(step))
-        assert sight.delivered is not None
-        request = static.torque(sight.delivered, load_torque, engine_speed, shaft_speed)
-        plant.advance(plant.reply(step, sight, request, None))
+        observation = plant.observe(step)
+        slips.append(observation.true.slip_speed)
+        engine_speed, shaft_speed = observation.true.joint_speed[:2]
+        load_torque = load.torque(observation.true.vehicle_speed, time_of_step(step))
+        assert observation.delivered is not None
+        request = static.torque(observation.delivered, load_torque, engine_speed, shaft_speed)
+        plant.advance(plant.reply(step, observation, request, None))
     return slips

@@ -8,7 +8,7 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import SLIP_REFERENCE, seen_topics
+from ddct_plant.graph.topics import SLIP_REFERENCE, measurement_topics
 from ddct_reference.factory import make_reference
 
 
@@ -33,7 +33,7 @@ class ReferenceNode(FollowerNode):
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info({'preview_steps': str(preview_steps)})
-        self._seen = seen_topics(sensed=self.settings.sensed)
+        self._seen = measurement_topics(sensed=self.settings.sensed)
         shafts = (self._seen.joint_states,) if self._reference.follows_shaft else ()
         self.follow(self._seen.slip, *shafts)
 

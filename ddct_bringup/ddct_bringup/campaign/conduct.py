@@ -88,7 +88,7 @@ def _begin(
     progress = Progress('planned', campaign.cases)
     for done in campaign.plan():
         require_going_on(stopped)
-        progress.tell(done)
+        progress.update(done)
     progress.end()
     mark_folder(out)
     (out / SHARDS).mkdir(exist_ok=True)
@@ -129,7 +129,7 @@ class _Conduct:
                     done += job.last - job.first
                     deaths = 0
                     left_s = self.time_left.left_s(missing.values(), self.workers.count)
-                    self.progress.tell(done, left_s)
+                    self.progress.update(done, left_s)
             except (BrokenExecutor, CancelledError) as error:
                 self.workers.require_alive()
                 deaths += 1

@@ -1,4 +1,4 @@
-"""Figure of a campaign: distributions of the main metrics, a curve for each controller."""
+"""Quantity of a campaign: distributions of the main metrics, a curve for each controller."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,7 +16,7 @@ from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, look_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 PICTURES = ('.png', '.svg')
 _DRAWN = (
@@ -85,7 +85,7 @@ def _conditions(results: Results) -> str:
 
 
 def _draw(
-    axes: Axes, results: Results, group: Group, quantity: Figure, style: Mapping[str, Any]
+    axes: Axes, results: Results, group: Group, quantity: Quantity, style: Mapping[str, Any]
 ) -> None:
     """Draw one curve; a controller without an engaged run has a line at zero."""
     outcomes = results.outcomes[group.rows]

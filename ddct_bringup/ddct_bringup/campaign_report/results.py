@@ -13,7 +13,7 @@ from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 _NOT_JUDGED = ('steps',)
 """Metrics for which more is not worse."""
@@ -65,7 +65,7 @@ class Results:
         return outcomes_of(self.columns['valid'], self.columns['verdict_state'])
 
     @cached_property
-    def quantities(self) -> list[Figure]:
+    def quantities(self) -> list[Quantity]:
         """Evaluated quantities for which at least one run has a value."""
         return [
             each

@@ -20,7 +20,7 @@ from ddct_bringup.campaign_report.outcome import (
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.spread import ONE_IN, spread_of
 from ddct_bringup.verdict.state import INVALID, STATES
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 Summary = dict[str, Any]
 """Content of `summary.json` or a part of it; the page on campaigns describes its keys."""
@@ -159,7 +159,7 @@ def _attribution(results: Results, group: Group) -> Summary:
     }
 
 
-def _quantity(results: Results, group: Group, quantity: Figure) -> Summary:
+def _quantity(results: Results, group: Group, quantity: Quantity) -> Summary:
     """Return the distribution of a quantity over the engaged runs, and its worst cases."""
     values = results.columns[quantity.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])

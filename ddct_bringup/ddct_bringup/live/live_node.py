@@ -66,7 +66,7 @@ class LiveNode(GraphNode):
         for topic in all_topics():
             if topic.latched == latched:
                 receive = special.get(topic, partial(self._pass_on, topic))
-                self.listen(topic, receive, LIVE_QOS, raw=True)
+                self.subscribe_messages(topic, receive, LIVE_QOS, raw=True)
 
     def _pass_on(self, topic: Topic, cdr: bytes) -> None:
         self._server.send(topic.name, stamp_of_cdr(cdr), cdr)

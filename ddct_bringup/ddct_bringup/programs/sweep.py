@@ -41,7 +41,7 @@ from ddct_plant.files.output_file import (
 )
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
-from ddct_plant.program.table import Figure, drawn_by_rich
+from ddct_plant.program.table import Quantity, drawn_by_rich
 
 PROGRAM = 'ddct sweep'
 _PICTURES = ('.png', '.svg')
@@ -120,7 +120,7 @@ def _carried_out(sweep: Sweep) -> list[Entry]:
     return done
 
 
-def _metrics(text: str) -> list[Figure]:
+def _metrics(text: str) -> list[Quantity]:
     names = [name.strip() for name in text.split(',') if name.strip()]
     with located('--metrics'):
         require_known(names, METRICS, 'metric')

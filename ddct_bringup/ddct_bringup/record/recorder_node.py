@@ -144,7 +144,7 @@ class RecorderNode(GraphNode):
                 continue
             usual = self._on_tick if topic.every_tick else self._record_unordered
             receive = special.get(topic, partial(usual, topic))
-            self.listen(topic, receive, RECORDER_QOS, raw=True)
+            self.subscribe_messages(topic, receive, RECORDER_QOS, raw=True)
 
     def _on_tick(self, topic: Topic, cdr: bytes) -> None:
         stamp = stamp_of_cdr(cdr)

@@ -8,7 +8,7 @@ from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_definitions import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_FIGURES
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def _criteria() -> tuple[Definition, ...]:
     )
 
 
-def _defined(quantity: Figure) -> Definition:
+def _defined(quantity: Quantity) -> Definition:
     meaning = quantity.meaning.removeprefix(f'{quantity.symbol}, ')
     missing = f' No value: {quantity.undefined}.' if quantity.undefined else ''
     return Definition(quantity.symbol, f'{meaning}.{missing}', unit_text(quantity.unit))

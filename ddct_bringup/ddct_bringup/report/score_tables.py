@@ -11,7 +11,7 @@ from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 _NO_PHASES = 'a log does not tell when the plates were locked'
 OF_NO_LOG = {
@@ -56,7 +56,7 @@ def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
 
 
 def metric_cells(
-    column: Figure, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
+    column: Quantity, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.entry['metrics'][column.key] for run in runs]
@@ -72,7 +72,7 @@ def metric_cells(
 
 
 def _cell(
-    column: Figure,
+    column: Quantity,
     value: float | None,
     row: ThesisRow | None,
     largest: float,
@@ -114,7 +114,7 @@ class VerdictCell:
 class VerdictRow:
     """One criterion, or the traction, for all runs."""
 
-    criterion: Figure
+    criterion: Quantity
     limit: str
     """Limit as text, empty where none applies."""
     source: str
@@ -129,7 +129,7 @@ class VerdictRow:
         return '; '.join(each for each in found if each not in ('', NOT_JUDGED))
 
 
-_TRACTION = Figure(
+_TRACTION = Quantity(
     TRACTION,
     TRACTION,
     'm/s^2',
@@ -159,7 +159,7 @@ def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
 
 
 def _verdict_row(
-    criterion: Figure, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
+    criterion: Quantity, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
 ) -> VerdictRow:
     # All runs of a page have one scenario, so one limit applies to all.
     limited = next((each for each in found if each and each['limit'] is not None), None)

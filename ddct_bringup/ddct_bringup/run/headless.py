@@ -33,14 +33,17 @@ class ClosedLoop:
 
     def reply(self, step: int) -> dict[str, Any]:
         """Return every signal of step k by its name in `Trajectory`; advance all but the plant."""
-        sight = self.plant.look(step)
-        slip_speed, shaft_speed = sight.seen.slip_speed, sight.seen.joint_speed[1]
+        observation = self.plant.observe(step)
+        slip_speed, shaft_speed = (
+            observation.measured.slip_speed,
+            observation.measured.joint_speed[1],
+        )
         speeds, rates = self._reference.update(step, slip_speed, shaft_speed)
-        measurement = Measurement.of_plant(step, sight, speeds, rates)
+        measurement = Measurement.of_plant(step, observation, speeds, rates)
         started = time.perf_counter()
         request = self._architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
-        reply = self.plant.reply(step, sight, request.torque, request.engine_torque)
+        reply = self.plant.reply(step, observation, request.torque, request.engine_torque)
         reply['slip_reference'] = speeds
         reply['slip_reference_rate'] = rates
         reply['status'] = request.status

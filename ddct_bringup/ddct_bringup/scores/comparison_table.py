@@ -24,7 +24,7 @@ from ddct_bringup.thesis.table_5_1 import (
     thesis_row,
 )
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
-from ddct_plant.program.table import Column, Figure
+from ddct_plant.program.table import Column, Quantity
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -76,7 +76,7 @@ def _with_range(column: RunColumn, name: str) -> RunColumn:
     return replace(column, below=lambda run: predicted_range(run['controller'], name))
 
 
-def _thesis(quantity: Figure) -> RunColumn:
+def _thesis(quantity: Quantity) -> RunColumn:
     """Return the column of the printed value, with hit or miss below where it is predicted."""
 
     def value(run: Entry) -> float | None:

@@ -12,7 +12,7 @@ from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, TRACTION
 from ddct_plant.base.errors import printable
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.program.table import UNDEFINED, Column, Figure, drawn_by_rich, table_of
+from ddct_plant.program.table import UNDEFINED, Column, Quantity, drawn_by_rich, table_of
 from ddct_plant.scenario.differences import scenario_title
 
 _PIPED_WIDTH = 200
@@ -28,7 +28,7 @@ def fact(name: str, heading: str, form: str = '', *, number: bool = False) -> Ru
     return Column(heading, form, lambda run: run[name], number=number)
 
 
-def metric(quantity: Figure, heading: str = '') -> RunColumn:
+def metric(quantity: Quantity, heading: str = '') -> RunColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
     return Column(
         heading or f'{quantity.symbol}\n{quantity.unit}',

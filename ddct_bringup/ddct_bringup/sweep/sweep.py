@@ -20,7 +20,7 @@ from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.table import Column, Figure, Table, table_of
+from ddct_plant.program.table import Column, Quantity, Table, table_of
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
@@ -129,7 +129,7 @@ def sweep_csv(runs: Sequence[Entry]) -> str:
     return rows_csv([result_row(run, run[OVER]) for run in runs])
 
 
-def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Table:
+def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Table:
     """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
     columns = [CONTROLLER, *map(_place, sweep.axes), *map(metric, metrics), STATE]
@@ -141,7 +141,7 @@ def _place(axis: Axis) -> RunColumn:
     return Column(heading, '', lambda run: value_text(run[OVER][axis.key]), number=axis.numeric)
 
 
-def sweep_notes(runs: Sequence[Entry], metrics: Sequence[Figure]) -> list[str]:
+def sweep_notes(runs: Sequence[Entry], metrics: Sequence[Quantity]) -> list[str]:
     """Return notes on dashes, and on invalid runs with their values, as `wear_gain=0.7`."""
     failed: dict[str, list[str]] = {}
     for run in runs:

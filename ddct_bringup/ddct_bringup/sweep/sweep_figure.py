@@ -1,4 +1,4 @@
-"""Figure of `sweep`: metrics as lines over one key, states as maps over two."""
+"""Quantity of `sweep`: metrics as lines over one key, states as maps over two."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -29,7 +29,7 @@ from ddct_controllers.design.drawing.chart_style import (
     save_chart,
 )
 from ddct_controllers.registry import controller_label
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 _WIDTH_IN, _PANEL_IN, _LANE_IN = 8.0, 2.3, 0.32
 _MAP_IN, _ACROSS = 3.0, 3
@@ -50,7 +50,7 @@ runaway would leave no room for the others.
 
 
 def write_sweep_figure(
-    sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure], path: Path
+    sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity], path: Path
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
@@ -62,7 +62,7 @@ def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Figure]) -> Drawing:
+def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Drawing:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
     states = np.array([run['verdict']['state'] for run in runs]).reshape(len(names), -1)

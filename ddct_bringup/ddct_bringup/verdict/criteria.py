@@ -12,14 +12,14 @@ from ddct_bringup.verdict.judged_run import JudgedRun, Values
 from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_negative_jerk
 from ddct_bringup.verdict.metric_definitions import METRICS, NO_WINDOW
 from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
-from ddct_plant.program.table import Figure
+from ddct_plant.program.table import Quantity
 
 AXIS_FACTOR = 1.4
 """Factor of longitudinal vibration in a dose for health (2002/44/EC, Annex, part B, 1)."""
 
 
 @dataclass(frozen=True)
-class Criterion(Figure):
+class Criterion(Quantity):
     """One criterion of an engagement; its key is its name in `verdict`."""
 
     value: Callable[[JudgedRun], Values | None] = field(kw_only=True)

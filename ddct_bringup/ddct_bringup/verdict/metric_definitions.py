@@ -1,6 +1,6 @@
 """Table of the metrics of a run: name, unit, format, meaning, and why one may be undefined."""
 
-from ddct_plant.program.table import PURE, Figure
+from ddct_plant.program.table import PURE, Quantity
 
 NO_CROSSING = 'after control start w_d never changed its sign, or it was zero there'
 NO_LOCKUP = (
@@ -18,7 +18,7 @@ The omitted 100 Hz limit is above 50 Hz, the highest frequency in a 100 Hz recor
 """
 
 TABLE_5_1 = (
-    Figure(
+    Quantity(
         'engagement_time_s',
         't_a',
         's',
@@ -27,7 +27,7 @@ TABLE_5_1 = (
         'exact instant at which they first lock or pass through zero',
         NO_CROSSING,
     ),
-    Figure(
+    Quantity(
         'torsion_speed_std_rpm',
         'std w_sr',
         'rpm',
@@ -35,7 +35,7 @@ TABLE_5_1 = (
         'standard deviation of w_sr over the score window',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'acceleration_std_m_s2',
         'std A_x',
         'm/s^2',
@@ -46,7 +46,7 @@ TABLE_5_1 = (
 )
 """Metrics that the thesis prints in Table 5.1."""
 FURTHER = (
-    Figure(
+    Quantity(
         'slip_rmse_rpm',
         'RMSE w_d',
         'rpm',
@@ -54,8 +54,8 @@ FURTHER = (
         'root mean square of reference less w_d over the score window',
         NO_WINDOW,
     ),
-    Figure('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'w_d at the end of the run', NOT_FINITE),
-    Figure(
+    Quantity('slip_final_rpm', 'final w_d', 'rpm', '.2f', 'w_d at the end of the run', NOT_FINITE),
+    Quantity(
         'peak_jerk_m_s3',
         'peak jerk',
         'm/s^3',
@@ -64,7 +64,7 @@ FURTHER = (
         'without delay',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'vdv_m_s1_75',
         'VDV',
         'm/s^1.75',
@@ -72,7 +72,7 @@ FURTHER = (
         f'vibration dose over the score window, weighted by {VDV_WEIGHTING}',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'weighted_acceleration_m_s2',
         'weighted A_x',
         'm/s^2',
@@ -80,7 +80,7 @@ FURTHER = (
         'r.m.s. of A_x over the score window, weighted by W_d of ISO 2631-1',
         NO_WINDOW,
     ),
-    Figure(
+    Quantity(
         'friction_energy_j',
         'friction energy',
         'J',
@@ -88,7 +88,7 @@ FURTHER = (
         'friction work of the clutch, whole run',
         NOT_FINITE,
     ),
-    Figure(
+    Quantity(
         'lockup_slip_acceleration_rad_s2',
         'dw_d/dt at lock-up',
         'rad/s^2',
@@ -97,7 +97,7 @@ FURTHER = (
         'before the first lock',
         NO_LOCKUP,
     ),
-    Figure(
+    Quantity(
         'torque_total_variation_n_m',
         'variation C_f',
         'N m',
@@ -105,7 +105,7 @@ FURTHER = (
         'sum of all changes of the torque request, whole run',
         NOT_FINITE,
     ),
-    Figure('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
+    Quantity('steps', 'steps', PURE, '.0f', 'length of the run in periods of 10 ms'),
 )
 """Metrics that are neither in Table 5.1 nor computed from `timing.json`."""
 METRICS = {
@@ -113,7 +113,7 @@ METRICS = {
     for figure in (
         *TABLE_5_1,
         *FURTHER,
-        Figure(
+        Quantity(
             'missed_steps',
             'missed',
             PURE,

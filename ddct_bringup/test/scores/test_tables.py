@@ -8,7 +8,7 @@ from printed_table import value_under
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, metric, print_runs
 from ddct_bringup.verdict.verdict import verdict_of_unreadable
-from ddct_plant.program.table import Column, Figure
+from ddct_plant.program.table import Column, Quantity
 
 
 def run(
@@ -147,7 +147,7 @@ def test_a_real_time_run_shows_misses_lateness_and_safe_state_each_in_its_column
 
 @pytest.mark.parametrize('name', METRIC_NAMES)
 def test_every_metric_can_be_a_column(name):
-    column = metric(Figure(name, 'symbol', 'unit', '.1f', 'meaning'), 'heading')
+    column = metric(Quantity(name, 'symbol', 'unit', '.1f', 'meaning'), 'heading')
     assert isinstance(column, Column)
     assert column.text(run(**{name: 2})) == '2.0'
 

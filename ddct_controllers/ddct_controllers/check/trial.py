@@ -109,22 +109,22 @@ def closed_trial(
     start, probe = settings.scenario.control_start_step, probe_step(settings)
     from_speed = 0.0
     for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
-        sight = plant.look(step)
+        observation = plant.observe(step)
         if step <= start:
-            from_speed = sight.now.slip_speed
+            from_speed = observation.true.slip_speed
         ahead = np.arange(step, step + controller.preview_steps + 1)
         left = 1.0 - np.maximum(ahead - start, 0) * PERIOD_S / RAMP_S
         speeds = from_speed * np.maximum(left, 0.0)
         if reference_step:
             speeds -= PROBE_RAD_S * (ahead >= probe)
         rates = np.where((left > 0.0) & (ahead >= start), -from_speed / RAMP_S, 0.0)
-        measurement = Measurement.of_plant(step, sight, speeds.tolist(), rates.tolist())
+        measurement = Measurement.of_plant(step, observation, speeds.tolist(), rates.tolist())
         request = architecture.update(measurement)
-        log.slip.append(sight.now.slip_speed)
+        log.slip.append(observation.true.slip_speed)
         log.request.append(request.torque)
         if log.too_slow:
             break
-        plant.advance(plant.reply(step, sight, request.torque, request.engine_torque))
+        plant.advance(plant.reply(step, observation, request.torque, request.engine_torque))
     return log
 
 

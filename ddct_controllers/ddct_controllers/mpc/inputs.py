@@ -155,7 +155,7 @@ class CommandedEngine:
 
     def known(self, level: float, ahead: Measurement, gain: float) -> tuple[float, ...]:
         """Return the demand and the deviation, both inputs before the first move, and C_load."""
-        deviation, request = self._response.deviation / gain, self._response.asked / gain
+        deviation, request = self._response.deviation / gain, self._response.requested / gain
         return ahead.engine_torque, deviation, level, request, ahead.load_torque
 
     def bounds(self, bounds: Bounds, measurement: Measurement, gain: float) -> Bounds:
@@ -175,7 +175,7 @@ class CommandedEngine:
 
         A move that is not of a solution is limited to what the engine can reach.
         """
-        demand, before, change = measurement.engine_torque, self._response.asked, move[0]
+        demand, before, change = measurement.engine_torque, self._response.requested, move[0]
         if not solved:
             lowest, highest = self.reachable[:, 0].tolist()
             change = min(max(before / gain + change, lowest), highest) - before / gain

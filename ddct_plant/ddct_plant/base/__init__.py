@@ -1,1 +1,1 @@
-"""What everything else stands on: errors, checks, units and the time base."""
+"""Errors, checks, options, units and the time base: the foundation of all packages."""

@@ -1,4 +1,4 @@
-"""Errors that a user can mend, printed in one line, and the checks of values that raise them."""
+"""Errors for users, printed in one line, and the checks of values that raise them."""
 
 import math
 import re
@@ -6,29 +6,30 @@ from collections.abc import Sequence
 from numbers import Real
 
 LONGEST_LINE = 4000
-"""Longer text loses its middle: the beginning says what is wrong, the end what to do."""
+"""Largest length of an error text; a longer one loses its middle, as the beginning has the error
+and the end the advice."""
 _KEPT_AT_END = 1000
 _CUT = ' [...] '
 LONGEST_NAME = 64
-"""Longest name: a file name has two names and an ending, and may have 255 bytes."""
+"""Largest length of a name: a file name has two names and an ending, and at most 255 bytes."""
 _NAME = re.compile(rf'[A-Za-z0-9_][A-Za-z0-9._-]{{0,{LONGEST_NAME - 1}}}')
 
 
 class DdctError(Exception):
     """
-    Say what is wrong, where, and what to do about it, in one line.
+    Error for users: what is wrong, where, and what to do about it, in one line.
 
-    The text may hold what came from a file or a message: whatever a terminal would not show as it
-    stands is escaped here, so that it cannot reach a terminal, a log or a page.
+    The text may contain parts of a file or a message. Characters that a terminal would not print
+    are escaped here, so that they cannot reach a terminal, a log or a page.
     """
 
     def __init__(self, text: object) -> None:
-        """Keep `text`, made printable."""
+        """Make `text` printable and store it."""
         super().__init__(printable(text))
 
 
 class ForeignError(DdctError):
-    """Code of a third party raised, which is the cause; a node's log keeps its traceback."""
+    """Error of a third party's code, which is its cause; a node's log has the traceback."""
 
 
 class ParameterError(DdctError, ValueError):
@@ -36,15 +37,15 @@ class ParameterError(DdctError, ValueError):
 
 
 FOREIGN_FAILURES = (Exception, SystemExit)
-"""What code of a third party may raise: sys.exit would end the program without a word."""
+"""Exceptions to catch from a third party's code: sys.exit would end the program silently."""
 
 
 def printable(text: object) -> str:
     r"""
     Return text from files, bags and messages as one line without control characters.
 
-    What a terminal would obey or not show (ANSI codes, line ends, marks of direction, lone
-    surrogates) is written as an escape such as \x1b.
+    Control and invisible characters (ANSI codes, line ends, marks of direction, lone surrogates)
+    are written as an escape such as \x1b.
     """
     line = str(text)
     if len(line) > LONGEST_LINE:
@@ -67,7 +68,7 @@ def require_number(
     at_most: float | None = None,
 ) -> float:
     """
-    Return `value` as a float, or raise ParameterError that names it.
+    Return `value` as a finite float; raise ParameterError that names it otherwise.
 
     `above` is an exclusive lower bound; `at_least` and `at_most` are inclusive.
     """
@@ -89,7 +90,7 @@ def require_number(
 
 
 def require_name(what: str, name: object) -> None:
-    """Raise ParameterError unless `name` of `what` is plain: it becomes the name of a file."""
+    """Raise ParameterError unless `name`, called `what`, can be a part of a file name."""
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise ParameterError(
             f'{what} is {name!r}: use up to {LONGEST_NAME} letters (A to Z, a to z), digits, '
@@ -98,7 +99,7 @@ def require_name(what: str, name: object) -> None:
 
 
 def require_rising(name: str, times: Sequence[float]) -> None:
-    """Raise ParameterError where one of `times`, called `name`, is not later than the last."""
+    """Raise ParameterError unless `times`, called `name`, rise strictly."""
     for earlier, later in zip(times, times[1:], strict=False):
         if later <= earlier:
             raise ParameterError(f'{name} goes from {earlier:g} to {later:g}: it must rise')
@@ -111,7 +112,7 @@ def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
 
 
 def require_finite(source: str, value: float) -> float:
-    """Return a number that `source` gave; raise DdctError when it is NaN or infinite."""
+    """Return the number of `source`; raise DdctError when it is NaN or infinite."""
     if not math.isfinite(value):
         raise DdctError(f'{source} is {value}: mend what computes it')
     return value

@@ -1,5 +1,5 @@
 """
-What a user may set, described once: for files, programs, nodes, controllers and pages.
+Options that a user can set, described once for files, programs, nodes, controllers and pages.
 
 An `Option` describes one value. Frozen dataclasses carry it in their fields (`option`, in an
 `OptionGroup`, which checks itself when it is built); a controller declares a mapping of them.
@@ -16,52 +16,57 @@ from ddct_plant.base.errors import ParameterError, require_choice, require_numbe
 from ddct_plant.base.timebase import steps_in
 
 REQUIRED: Any = dataclasses.MISSING
-"""Default of an option that must be given."""
+"""Default of a required option."""
 ASSUMED = 'assumed'
-"""Source of a value that we chose because nobody prints it."""
+"""Source of a value that is assumed, because no published value exists."""
 Options = Mapping[str, 'Option']
-"""Described values by name."""
+"""Options by name."""
 _GIVE = {bool: 'true or false', str: 'text'}
-"""What must be given for an option that is no number, by its kind."""
+"""Accepted values of an option that is no number, by its kind, for errors."""
 OPTION_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
 """Headers of the rows that `option_rows` returns."""
 
 
 @dataclass(frozen=True)
 class Option:
-    """One value that may be set: its default, meaning, unit, range and where it comes from."""
+    """One value that can be set: its default, meaning, unit, range and source."""
 
     default: Any
-    """REQUIRED, or None for nothing."""
+    """Default value; REQUIRED for a required option, None for no value."""
     meaning: str
+    """Meaning in a few words, as in help and on pages."""
     unit: str = ''
+    """Unit, empty for none."""
     source: str = ''
     """Source of the default: a section of the thesis, a program, or ASSUMED."""
     otherwise: str = ''
-    """What holds where nothing is given and there is no default to show."""
+    """Text in place of the default, where no value is given and the default cannot be shown."""
     kind: type = float
-    """float, int, bool or str; without REQUIRED or None it is that of the default."""
+    """Type of the value: float, int, bool or str; taken from the default if that is a value."""
     above: float | None = None
     """Exclusive lower bound."""
     at_least: float | None = None
+    """Inclusive lower bound."""
     at_most: float | None = None
+    """Inclusive upper bound."""
     choices: Sequence[str] = ()
+    """Allowed values; empty for any."""
     many: bool = False
-    """Whether it is a list of such values."""
+    """Whether the value is a list."""
     rising: bool = False
     """Whether the values of the list must rise."""
     whole_periods: bool = False
-    """Whether it is a time in s that must be a multiple of 10 ms."""
+    """Whether the value is a time in s that must be a multiple of 10 ms."""
     live: bool = False
-    """Whether a controller takes another value while it runs."""
+    """Whether the value of a controller can be changed while it runs."""
 
     def __post_init__(self) -> None:
-        """Take the kind of the default."""
+        """Set the kind to that of the default."""
         if self.default is not REQUIRED and self.default is not None and not self.many:
             object.__setattr__(self, 'kind', type(self.default))
 
     def checked(self, name: str, value: Any) -> Any:
-        """Return `value` of the option called `name`; raise ParameterError that says why not."""
+        """Return the checked `value` of the option `name`; raise ParameterError for a bad one."""
         if value is None:
             raise ParameterError(f'{name} is empty: give a value')
         if not self.many:
@@ -98,7 +103,7 @@ class Option:
 
     @property
     def default_text(self) -> str:
-        """The default as a page or a terminal shows it."""
+        """Text of the default for pages and terminals."""
         if self.otherwise:
             return self.otherwise
         if self.default is REQUIRED:
@@ -109,7 +114,7 @@ class Option:
 
     @property
     def range_text(self) -> str:
-        """What it may be, short: `0 to 3`, `above 0`, the choices; empty for anything."""
+        """Text of the range: `0 to 3`, `above 0`, the choices; empty for no limit."""
         if self.choices:
             return ', '.join(self.choices)
         if self.kind is bool:
@@ -121,7 +126,7 @@ class Option:
 
     @property
     def description(self) -> str:
-        """Meaning, unit and range in one line."""
+        """Text of meaning, unit and range in one line."""
         unit = f' [{self.unit}]' if self.unit else ''
         limits = f' ({self.range_text})' if self.range_text else ''
         live = '; may be changed while it runs' if self.live else ''
@@ -131,12 +136,12 @@ class Option:
 def option(
     default: Any, meaning: str, unit: str = '', *, left_out: bool = False, **description: Any
 ) -> Any:
-    """Return the field of a dataclass for the `Option` that these describe."""
+    """Return the field of a dataclass with the `Option` of these arguments."""
     return option_field(Option(default, meaning, unit, **description), left_out=left_out)
 
 
 def option_field(described: Option, *, left_out: bool = False) -> Any:
-    """Return the field for an option; files and hashes may leave it out while it is off."""
+    """Return the field for an option; with `left_out` files and hashes omit its default."""
     metadata = {'option': described, 'left_out': left_out}
     return dataclasses.field(default=described.default, metadata=metadata)
 
@@ -145,13 +150,13 @@ def section(default: 'OptionGroup | None', **marks: bool) -> Any:
     """
     Return the field of a dataclass for a group of options.
 
-    Of the marks `left_out` lets files and hashes leave it out while it is the default.
+    `marks` are metadata of the field; with `left_out` files and hashes omit the default.
     """
     return dataclasses.field(default=default, metadata=marks)
 
 
 def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
-    """Return the group of options that a field of a dataclass holds, always or as an option."""
+    """Return the type of a field's group of options, also if it may be None; else None."""
     for kind in (field.type, *typing.get_args(field.type)):
         if isinstance(kind, type) and issubclass(kind, OptionGroup):
             return kind
@@ -159,20 +164,20 @@ def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
 
 
 def options_of(group: type) -> Options:
-    """Return the options that the fields of a dataclass carry, in their order."""
+    """Return the options in the fields of a dataclass, in their order."""
     fields = dataclasses.fields(group)
     return {f.name: f.metadata['option'] for f in fields if 'option' in f.metadata}
 
 
 @dataclass(frozen=True)
 class OptionGroup:
-    """Base of frozen dataclasses whose fields are options: they are checked when it is built."""
+    """Base of frozen dataclasses whose fields are options, checked when an instance is made."""
 
     prefix: ClassVar[str] = ''
-    """Stands before the names of the fields where a user reads or writes them."""
+    """Prefix of the field names for users, such as `load.`."""
 
     def __init_subclass__(cls, prefix: str = '') -> None:
-        """Take the prefix, such as `load.`."""
+        """Set the prefix of the subclass, such as `load.`."""
         cls.prefix = prefix
 
     def __post_init__(self) -> None:
@@ -183,7 +188,7 @@ class OptionGroup:
                 described.checked(f'{self.prefix}{name}', value)
 
     def require_pairs(self, xs_name: str, ys_name: str) -> None:
-        """Raise ParameterError unless the list called `ys_name` has a value for each of the xs."""
+        """Raise ParameterError unless the lists called `xs_name` and `ys_name` have one length."""
         xs, ys = getattr(self, xs_name), getattr(self, ys_name)
         if len(xs) != len(ys):
             raise ParameterError(
@@ -193,7 +198,7 @@ class OptionGroup:
 
     @property
     def options(self) -> Options:
-        """Its options, with its values as their defaults."""
+        """Options of the group by name, with the values of this instance as defaults."""
         return {
             name: dataclasses.replace(described, default=getattr(self, name))
             for name, described in options_of(type(self)).items()
@@ -204,7 +209,7 @@ Group = TypeVar('Group', bound=OptionGroup)
 
 
 def with_values(group: Group, values: Mapping[str, Any]) -> Group:
-    """Return the group with those of `values` that are called like options of it."""
+    """Return the group with the values whose names are options of it; ignore the others."""
     given = {name: values[name] for name in options_of(type(group)) if name in values}
     return dataclasses.replace(group, **given)
 
@@ -212,7 +217,7 @@ def with_values(group: Group, values: Mapping[str, Any]) -> Group:
 def require_known(
     names: Iterable[object], known: Iterable[str], what: str = 'key', prefix: str = ''
 ) -> None:
-    """Raise ParameterError for the first name that is not known, with what may be meant."""
+    """Raise ParameterError for the first unknown name, with a hint of a similar one."""
     known = list(known)
     for name in names:
         if name not in known:
@@ -221,7 +226,7 @@ def require_known(
 
 
 def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:
-    """Return what may have been meant by `name`, or else everything that is known."""
+    """Return a hint for an unknown name: the closest known one, or else all known names."""
     known = list(known)
     close = difflib.get_close_matches(str(name), known, n=1)
     return f'did you mean {prefix}{close[0]}?' if close else f'known: {", ".join(known)}'

@@ -1,4 +1,4 @@
-"""A value over scenario time, linear between points: of the brake, the road, a slip reference."""
+"""A profile over scenario time, linear between points: engine, brake, road, slip reference."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,11 +9,12 @@ import numpy as np
 from ddct_plant.base.options import OptionGroup, option, options_of
 
 TIME = 'time_s'
+"""Name of the option with the times of a profile."""
 
 
 @dataclass(frozen=True)
 class Profile(OptionGroup):
-    """Scenario times, and in the field that a subclass adds the values; the ends hold outside."""
+    """Points over scenario time; a subclass adds the field of values. The ends hold outside."""
 
     time_s: tuple[float, ...] = option(
         (), 'scenario times of the points', 's', many=True, rising=True
@@ -26,24 +27,24 @@ class Profile(OptionGroup):
 
     @property
     def given(self) -> bool:
-        """Whether it has points."""
+        """Whether the profile has points."""
         return bool(self.time_s)
 
     def at(self, time_s: float) -> float:
-        """Return the value at a scenario time; there must be points."""
+        """Return the value at a scenario time in s; the profile must have points."""
         return float(np.interp(time_s, self.time_s, self._values))
 
     def over(self, times_s: np.ndarray) -> np.ndarray:
-        """Return the values at scenario times, (n,)."""
+        """Return the values (n,) at scenario times (n,) in s; the profile must have points."""
         return np.interp(times_s, self.time_s, self._values)
 
     @cached_property
     def _values(self) -> Any:
-        # `at` wants them at every step, and for every step of a preview.
+        # `at` needs them at every step, and for every step of a preview.
         return getattr(self, value_name(type(self)))
 
 
 def value_name(group: type) -> str:
-    """Return the name of the option of a profile that is not its times."""
+    """Return the name of the option with the values of a profile."""
     (name,) = (name for name in options_of(group) if name != TIME)
     return name

@@ -10,15 +10,21 @@ from functools import lru_cache
 from ddct_plant.base.errors import DdctError, ParameterError
 
 START_NS = 1_000_000_000
+"""Stamp t_0 in ns."""
 PERIOD_NS = 10_000_000
+"""Period in ns."""
 PERIOD_S = 0.01
+"""Period in s."""
 STEPS_PER_S = 100
+"""Periods per second."""
 LONGEST_S = 3600.0
-"""Longest time in a scenario."""
+"""Longest time in s of a scenario."""
 SUBSTEPS = 10
 """Sub-intervals of one period over which the actuator torque is piecewise linear."""
 SUBSTEP_NS = PERIOD_NS // SUBSTEPS
+"""Length of a sub-interval in ns."""
 SUBSTEP_S = 0.001
+"""Length of a sub-interval in s."""
 
 
 def stamp_of_step(step: int) -> int:
@@ -44,7 +50,7 @@ def time_of_step(step: int) -> float:
 
 
 def steps_in(name: str, duration_s: float) -> int:
-    """Return how many periods `duration_s` is; raise ParameterError unless a whole number."""
+    """Return `duration_s` in periods; raise ParameterError unless it is a whole number of them."""
     steps = round(duration_s * STEPS_PER_S)
     if abs(duration_s * STEPS_PER_S - steps) > 1e-6:
         raise ParameterError(f'{name} is {duration_s:g} s: give a multiple of {PERIOD_S} s')

@@ -1,4 +1,4 @@
-"""Conversions between SI and the units people read; nothing else converts."""
+"""All conversions between SI units and those of users."""
 
 import math
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ _IN_SI: Mapping[str, Mapping[str, float]] = {
     'm/s': {'m/s': 1.0, 'km/h': 1.0 / 3.6},
     'm/s^2': {'m/s^2': 1.0, 'g': 9.80665},
 }
-"""Units that a user's file may have for an SI unit, and their size in it."""
+"""Accepted units of a user's file and their size in the SI unit, by SI unit."""
 
 
 Speed = TypeVar('Speed', float, np.ndarray)
@@ -38,7 +38,7 @@ def rad_s_from_rpm(speed_rpm: Speed) -> Speed:
 
 
 def si_values(values: np.ndarray, unit: object, si_unit: str) -> np.ndarray:
-    """Return values of a user's file in `si_unit`; raise ParameterError for an unfit `unit`."""
+    """Convert values of a user's file to `si_unit`; raise ParameterError for an unknown unit."""
     units = _IN_SI[si_unit]
     if not isinstance(unit, str) or unit not in units:
         raise ParameterError(f'unit {unit!r}: choose from {", ".join(units)}')

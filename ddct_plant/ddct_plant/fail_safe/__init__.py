@@ -1,1 +1,1 @@
-"""What a run in real time does when requests or torques stop; no ROS."""
+"""Fail-safe of a real-time run whose requests or torques stop; no ROS."""

@@ -1,4 +1,4 @@
-"""Actuator and engine with their safe states, on the grid of the ticks; knows nothing of ROS."""
+"""Actuator and engine with their safe states, on the grid of the ticks; independent of ROS."""
 
 from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
@@ -14,30 +14,30 @@ from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.engine import Engine
 
 Answer = TypeVar('Answer')
-"""What is delivered over one period."""
+"""Type of the torque that a device delivers over one period."""
 
 
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> dict[str, str]:
-    """Return what the engine says of itself: whether it waits for requests, and how long [s]."""
+    """Return the engine's `run_info` entries: two inputs or not, and timeout of requests in s."""
     return {'two_input': str(two_input).lower(), 'request_timeout_s': repr(request_timeout_s)}
 
 
 def steps_to_make_up(next_step: int, step: int) -> range:
-    """Return the steps before `step`, from the first not yet answered, that still count."""
+    """Return the unanswered steps before `step`, at most the last `MOST_CATCH_UP_STEPS`."""
     return range(max(next_step, step - MOST_CATCH_UP_STEPS), step)
 
 
 class Guarded(ABC, Generic[Answer]):
     """
-    A device as requests and ticks drive it.
+    A device that requests and ticks advance, with a safe state.
 
-    In lock-step only requests do. In real time, steps without a request hold the last one; when
-    requests stop for longer than the timeout, the safe state takes over and no request is obeyed
-    any more.
+    In lock-step only requests advance it. In real time, steps without a request hold the last one;
+    when requests stop for longer than the timeout, the safe state takes over and later requests
+    are ignored.
     """
 
     def __init__(self, watch: RequestWatch, held_request: float | None) -> None:
-        """Start at step 0 with what is held until the first request: None for the safe state."""
+        """Start at step 0 with `held_request` in N m until the first one; None: safe state."""
         self.watch = watch
         self._held_request = held_request
         self._next_step = 0
@@ -45,9 +45,9 @@ class Guarded(ABC, Generic[Answer]):
 
     def request(self, step: int, torque: float) -> Answer | None:
         """
-        Return what is delivered over the period of `step`, for a request in N m.
+        Return the delivered torque over the period of `step`, for a request in N m.
 
-        None where the request is not obeyed: it is late, or the safe state has taken over.
+        None where the request is ignored: it is late, or the safe state has taken over.
         """
         self.watch.request(step)
         if self.watch.stopped or step < self._next_step:
@@ -55,20 +55,20 @@ class Guarded(ABC, Generic[Answer]):
         return self._advance(step, torque)
 
     def tick(self, step: int) -> Answer | None:
-        """Return the same at a tick, None as long as requests are waited for or obeyed."""
+        """Return the torque at a tick without request, None while requests are expected."""
         if not self._goes_without(step):
             return None
         if step >= self._next_step:
             self._advance(step, None)
-        # A tick that comes again gets the same answer; an older one gets none.
+        # A repeated tick gets the same answer; an older one gets none.
         return self._answer if step == self._next_step - 1 else None
 
     def _goes_without(self, step: int) -> bool:
-        """Say at the start of `step` whether requests are waited for no longer."""
+        """Return at the start of `step` whether requests are no longer expected."""
         return self.watch.tick(step)
 
     def _advance(self, step: int, request: float | None) -> Answer:
-        """Make up for the steps before `step` with what was held, then deliver `request`."""
+        """Deliver the held request for the steps before `step`, then `request`."""
         for missed in steps_to_make_up(self._next_step, step):
             self._deliver(missed, self._held_request)
         self._held_request = request
@@ -78,23 +78,23 @@ class Guarded(ABC, Generic[Answer]):
 
     @abstractmethod
     def _deliver(self, step: int, request: float | None) -> Answer:
-        """Return what a request in N m, or without one the safe state, makes of one period."""
+        """Return the torque over one period for a request in N m, None: in the safe state."""
 
 
 class GuardedActuator(Guarded[list[float]]):
-    """The actuator; it delivers (11,) torques in N m, and its safe state opens the clutch."""
+    """The actuator: it delivers (11,) torques in N m, and opens the clutch in its safe state."""
 
     def __init__(
         self, actuator: Actuator, initial_request: float, settings: FailSafeSettings
     ) -> None:
-        """Guard an actuator that is at rest on `initial_request` in N m."""
+        """Guard an actuator in its steady state for `initial_request` in N m."""
         self._actuator = actuator
         self._fail_safe = FailSafe(settings)
         super().__init__(self._fail_safe, initial_request)
 
     def _advance(self, step: int, request: float | None) -> list[float]:
         if self._held_request is None:
-            # The ramp goes on over those steps too that are too many to be made up for.
+            # The ramp also goes on over the steps beyond the limit of the catch-up.
             forgotten = step - self._next_step - MOST_CATCH_UP_STEPS
             self._fail_safe.next_torque(max(forgotten, 0))
         return super()._advance(step, request)
@@ -108,20 +108,20 @@ class GuardedActuator(Guarded[list[float]]):
 
 class GuardedEngine(Guarded[float]):
     """
-    An engine with two inputs; it delivers C_m in N m, in its safe state for the driver's demand.
+    An engine with two inputs: it delivers C_m in N m, and follows the demand in its safe state.
 
-    Until the first request the demand holds too.
+    It follows the demand until the first request, too.
     """
 
     def __init__(self, engine: Engine, timeout_s: float) -> None:
-        """Wait for requests for `timeout_s` in s."""
+        """Guard an engine with a timeout of requests in s."""
         super().__init__(RequestWatch(timeout_s), None)
         self._engine = engine
         self.speed = 0.0
-        """w_m in rad/s over the periods that are delivered next."""
+        """Engine speed w_m in rad/s for the next delivered periods."""
 
     def _goes_without(self, step: int) -> bool:
-        return super()._goes_without(step) if self.watch.heard else self.watch.too_long(0, step)
+        return super()._goes_without(step) if self.watch.received else self.watch.too_long(0, step)
 
     def _deliver(self, step: int, request: float | None) -> float:
         if request is None:

@@ -1,4 +1,4 @@
-"""What actuator, engine and driveline do in real time when what they wait for stops coming."""
+"""Timeout of requests, and the ramp to an open clutch, of a run in real time."""
 
 import math
 from dataclasses import asdict, dataclass
@@ -7,17 +7,19 @@ from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_NS, PERIOD_S
 
 REQUEST_TIMEOUT_S = 0.05
-"""How long a missing request is waited for."""
+"""Default timeout in s of a missing request."""
 MOST_REQUEST_TIMEOUT_S = 10.0
+"""Largest timeout in s that may be chosen."""
 CLUTCH_TIMEOUT_S = 0.1
-"""How long the driveline waits for a missing clutch torque: the actuator's fail-safe is first."""
+"""Default timeout in s of a missing clutch torque, above that of the actuator's requests, so that
+the actuator's fail-safe comes first."""
 MOST_CATCH_UP_STEPS = round(MOST_REQUEST_TIMEOUT_S / PERIOD_S)
-"""Steps without a request that are made up for at most: none is held for longer."""
+"""Largest number of steps without a request that are computed afterwards: the longest hold."""
 
 
 @dataclass(frozen=True)
 class FailSafeSettings(OptionGroup):
-    """When and how fast the clutch opens."""
+    """Timeout of requests, and rate at which the clutch then opens."""
 
     request_timeout_s: float = option(
         REQUEST_TIMEOUT_S,
@@ -35,15 +37,15 @@ class FailSafeSettings(OptionGroup):
     )
 
     def info(self) -> dict[str, str]:
-        """Return both as text for `run_info`."""
+        """Return both values as text for `run_info`, by name."""
         return {name: repr(value) for name, value in asdict(self).items()}
 
 
 class RequestWatch:
     """
-    Notice that requests have stopped for longer than the timeout in s.
+    Detect that requests have stopped for longer than the timeout in s.
 
-    It ignores later requests until the node is started again.
+    Later requests are ignored until the node is started again.
     """
 
     def __init__(self, timeout_s: float) -> None:
@@ -51,39 +53,39 @@ class RequestWatch:
         self._timeout_ns = round(timeout_s * 1e9)
         self._last_step: int | None = None
         self.stopped = False
-        """Whether they have."""
+        """Whether requests have stopped."""
 
     @property
-    def heard(self) -> bool:
-        """Whether there was a request at all."""
+    def received(self) -> bool:
+        """Whether any request has been received."""
         return self._last_step is not None
 
     def request(self, step: int) -> None:
-        """Note that a request came for `step`."""
+        """Note the request of `step`."""
         self._last_step = step
 
     def tick(self, step: int) -> bool:
-        """Say at the start of `step` whether requests have stopped."""
+        """Return at the start of `step` whether requests have stopped."""
         if self._last_step is not None and not self.stopped:
             self.stopped = self.too_long(self._last_step, step)
         return self.stopped
 
     def too_long(self, since_step: int, step: int) -> bool:
-        """Say whether more than the timeout lies between two steps."""
+        """Return whether more than the timeout lies between two steps."""
         return (step - since_step) * PERIOD_NS > self._timeout_ns
 
 
 class FailSafe(RequestWatch):
-    """Watch the requests and, when they stop, ramp the last one down to an open clutch."""
+    """Watch of requests that ramps the last one to an open clutch when they stop."""
 
     def __init__(self, settings: FailSafeSettings) -> None:
         super().__init__(settings.request_timeout_s)
         self._most_change = settings.fail_safe_ramp_n_m_s * PERIOD_S
         self.torque = 0.0
-        """The last request in N m, from which the ramp begins."""
+        """Last request in N m, at which the ramp begins."""
 
     def next_torque(self, periods: int = 1) -> float:
-        """Return the request in N m on the way to an open clutch, so many periods later."""
+        """Return the request in N m on the ramp to an open clutch, `periods` of 10 ms later."""
         left = max(abs(self.torque) - periods * self._most_change, 0.0)
         self.torque = math.copysign(left, self.torque)
         return self.torque

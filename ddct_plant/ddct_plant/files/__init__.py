@@ -1,1 +1,1 @@
-"""Read and write the files of users: bounded, whole or not at all, YAML and JSON."""
+"""Read and write files of users: bounded in size, written completely or not at all."""

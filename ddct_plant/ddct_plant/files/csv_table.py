@@ -1,4 +1,4 @@
-"""CSV: columns of numbers from a file of any tool, with the line of what is wrong; and text."""
+"""CSV: read columns of numbers of any tool, with the line of an error; write text."""
 
 import csv
 import io
@@ -16,12 +16,13 @@ from ddct_plant.files.date_times import Instant, instant, is_date_time, seconds_
 from ddct_plant.files.input_file import any_text, read_file
 
 COMMENT = '#'
+"""First character of a comment line."""
 _DELIMITERS = ',;\t'
 _EMPTY = ('', 'nan')
 
 
 def csv_text(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Return names and rows as the text of a CSV file."""
+    """Return the text of a CSV file with a header of names and the rows."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator='\n')
     writer.writerow(names)
@@ -31,16 +32,17 @@ def csv_text(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
 
 @dataclass(frozen=True)
 class CsvTable:
-    """Columns by name, and where they are from."""
+    """Columns of a CSV file by name, with their lines."""
 
     path: Path
+    """Path of the file."""
     lines: np.ndarray
-    """(n,) number of each row's line, from 1."""
+    """Line number of each row, (n,), from 1."""
     columns: dict[str, np.ndarray]
-    """(n,) each; NaN where a cell is empty or says so."""
+    """Values of each column, (n,), by name; NaN where a cell is empty or `nan`."""
 
     def place(self, row: int, column: str) -> str:
-        """Return how an error names a cell."""
+        """Return the place of a cell for an error: file, line and column."""
         return _place(self.path, int(self.lines[row]), column)
 
 
@@ -55,10 +57,10 @@ def read_csv(
     """
     Return the columns called `names`, each once.
 
-    The first line that is neither empty nor a comment (#) holds the names. Comma, semicolon or tab
-    part the cells, whichever parts that line most; beside the latter two a comma may be the
-    decimal mark. Columns in `date_times` hold dates with times, which become s since the first
-    row. Raise ParameterError that names the file, and line and column where it can.
+    The first line that is neither empty nor a comment (#) is the header. The delimiter is comma,
+    semicolon or tab, whichever is most frequent in it; with the latter two a comma may be the
+    decimal mark. Columns in `date_times` have dates with times, which become s since the first
+    row. Raise ParameterError that names the file, and line and column where possible.
     """
     rows = _rows(_text(path, most_bytes))
     _, header = next(rows, (0, []))
@@ -128,7 +130,7 @@ def _instant(path: Path, line: int, column: str, cell: str) -> Instant | None:
 def _seconds(
     path: Path, lines: Sequence[int], column: str, instants: Sequence[Instant | None]
 ) -> list[float]:
-    """Return dates with times as s since the first; refuse zones in some of them alone."""
+    """Return dates with times as s since the first; refuse a time zone in some of them only."""
     zones = [(line, each[2]) for line, each in zip(lines, instants, strict=True) if each]
     for line, zoned in zones:
         if zoned != zones[0][1]:

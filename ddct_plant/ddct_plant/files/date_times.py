@@ -1,4 +1,4 @@
-"""Dates with times of ISO 8601, as loggers write them, as seconds."""
+"""Convert dates with times of ISO 8601, as loggers write them, to seconds."""
 
 import math
 import re
@@ -16,19 +16,19 @@ _DATE_ALONE = re.compile(r'\d{4}-\d\d-\d\d')
 _OTHER_DATE = re.compile(r'\d{1,4}[./-]\d{1,2}[./-]\d{1,4}\b.*')
 
 Instant = tuple[int, float, bool]
-"""Whole seconds since 1970, the fraction of the next one, and whether its zone is known."""
+"""Whole seconds since 1970, the fraction of a second, and whether the time zone is known."""
 
 
 def is_date_time(text: str) -> bool:
-    """Say whether a text has the form of a date with a time."""
+    """Return whether a text has the form of a date with a time."""
     return _DATE_TIME.fullmatch(text) is not None
 
 
 def instant(text: str) -> Instant:
     """
-    Return the instant that a text names; one without a zone is taken for UTC.
+    Return the instant of a date with a time; without a time zone it is in UTC.
 
-    Raise ParameterError that says what is wrong, or what it could mean beside that.
+    Raise ParameterError with the reason for any other text.
     """
     found = _DATE_TIME.fullmatch(text)
     if found is None:

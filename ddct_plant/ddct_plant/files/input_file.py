@@ -1,8 +1,8 @@
 """
-Read files that a user names, and say what in them is wrong, and where.
+Read files of users, and report the place of an error in them.
 
-Only regular files are read, and no more than fits into memory. This is the one way in which JSON
-of files and bags is read; YAML has its own module.
+Only regular files of a bounded size are read. JSON of files and bags is read here only; YAML has
+its own module.
 """
 
 import codecs
@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 from ddct_plant.base.errors import DdctError, ParameterError
 
 MOST_TEXT_BYTES = 1_000_000
-"""Largest scenario, controller or page that is read: hundreds of times their usual size."""
+"""Largest size in bytes of a scenario, controller or page: hundreds of times the usual one."""
 _KINDS = {
     stat.S_IFDIR: 'a folder',
     stat.S_IFIFO: 'a pipe',
@@ -28,7 +28,7 @@ _KINDS = {
     stat.S_IFSOCK: 'a socket',
 }
 SCHEMA_KEY = 'schema_version'
-"""Key of the version of a file's keys."""
+"""Key of the schema version of a file."""
 _SURROGATE = re.compile(r'\\u[dD][89a-fA-F]')
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
@@ -36,12 +36,12 @@ _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 def read_file(path: Path, most_bytes: int) -> bytes:
     """
-    Return what a regular file holds.
+    Return the content of a regular file.
 
-    Raise OSError, whose `strerror` is fit for a user, when it cannot be read, is something else
-    (a pipe would be waited for, a device may never end) or holds more than `most_bytes`.
+    Raise OSError, whose `strerror` is a message for the user, when it cannot be read, is no
+    regular file (a pipe may block, a device may never end) or has more than `most_bytes`.
     """
-    # Without O_NONBLOCK it is the opening of a pipe that waits.
+    # Without O_NONBLOCK opening a pipe blocks.
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     status = os.fstat(descriptor)
     kind = stat.S_IFMT(status.st_mode)
@@ -50,7 +50,7 @@ def read_file(path: Path, most_bytes: int) -> bytes:
         what = _KINDS.get(kind, 'no file')
         raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
     with os.fdopen(descriptor, 'rb') as file:
-        # Some files of the system say that they are empty and are not.
+        # Some files of the system have a size of 0 and are not empty.
         data = file.read(most_bytes + 1) if status.st_size <= most_bytes else b''
     if max(len(data), status.st_size) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
@@ -58,7 +58,7 @@ def read_file(path: Path, most_bytes: int) -> bytes:
 
 
 def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
-    """Return the UTF-8 text of a file as `read_file` does; OSError too when it is none."""
+    """Return the text of a UTF-8 file; raise OSError as `read_file`, and for other bytes."""
     try:
         return read_file(path, most_bytes).decode('utf-8')
     except UnicodeDecodeError as error:
@@ -67,10 +67,10 @@ def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
 
 def any_text(data: bytes) -> str:
     """
-    Return the text that bytes of another tool are, in whichever usual encoding.
+    Return the text of bytes from another tool, in one of the usual encodings.
 
-    A mark at the start tells UTF-8 and UTF-16. Else it is UTF-8 where it can be, or Latin-1 as
-    Windows extends it. Raise ParameterError for what is no text.
+    A byte order mark decides for UTF-8 or UTF-16. Without one the encoding is UTF-8 where that is
+    possible, else Windows-1252, else Latin-1. Raise ParameterError for bytes that are no text.
     """
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         encodings = ['utf-16']
@@ -87,7 +87,7 @@ def any_text(data: bytes) -> str:
 
 
 def user_text(path: Path) -> str:
-    """Return what `read_text_file` does; raise DdctError, to be `located`, where it cannot."""
+    """Return the text of `read_text_file`; raise DdctError without the path, for `located`."""
     try:
         return read_text_file(path)
     except OSError as error:
@@ -96,10 +96,10 @@ def user_text(path: Path) -> str:
 
 def parse_json(text: str) -> Any:
     """
-    Return the values that JSON text holds; raise ParameterError that says what is wrong with it.
+    Return the value of JSON text; raise ParameterError with the reason for invalid text.
 
-    Refused beyond the grammar: keys given twice, NaN and infinity, halves of surrogate pairs,
-    integers and nesting that Python cannot take.
+    Refused beyond the grammar: duplicate keys, NaN and infinity, halves of surrogate pairs, and
+    integers and nesting beyond the limits of Python.
     """
     try:
         value = json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
@@ -128,9 +128,9 @@ def _refuse_constant(constant: str) -> NoReturn:
 @contextmanager
 def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]:
     """
-    Put a name, such as a file's, before each DdctError within, and the line of the key it names.
+    Prefix each DdctError within by a name, such as a file's, and by the line of the key it names.
 
-    `lines` are those of `parse_yaml_with_lines`; without them no line is looked for.
+    `lines` are those of `parse_yaml_with_lines`; without them no line is given.
     """
     try:
         yield
@@ -142,9 +142,9 @@ def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]
 
 def line_of(complaint: str, lines: Mapping[str, int]) -> int:
     """
-    Return the line of the first key that a complaint names, or else of what the key is in.
+    Return the line of the first key in an error text, or else of the section of that key.
 
-    Complaints name first what must be changed. 0 where no line holds it.
+    An error text names the key to change first. The line is 0 where no key has one.
     """
     for word in _PATH.findall(complaint):
         while word and word not in lines:
@@ -156,9 +156,9 @@ def line_of(complaint: str, lines: Mapping[str, int]) -> int:
 
 def require_schema_version(content: Mapping[str, Any], newest: int) -> None:
     """
-    Raise ParameterError unless the version of a file's keys, `newest` if not given, can be read.
+    Raise ParameterError unless the schema version of a file is supported, 1 to `newest`.
 
-    So an older program says why it cannot read a newer file.
+    A file without a version has `newest`. An older program thus reports a newer file.
     """
     version = content.get(SCHEMA_KEY, newest)
     if isinstance(version, bool) or not isinstance(version, int) or version < 1:

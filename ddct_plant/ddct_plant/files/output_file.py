@@ -1,4 +1,4 @@
-"""Write the files that options such as `--json FILE` ask for, whole or not at all."""
+"""Write the files of options such as `--json FILE`, completely or not at all."""
 
 import contextlib
 import json
@@ -10,12 +10,12 @@ from typing import Any
 from ddct_plant.base.errors import DdctError
 
 STDOUT = '-'
-"""The file name that stands for standard output."""
+"""File name for standard output."""
 _ADVICE = 'give another file'
 
 
 def require_place(option: str, target: str | None) -> None:
-    """Raise DdctError before long work where `target`, if `option` gave one, can be no file."""
+    """Raise DdctError, before long work, where the `target` of an option cannot be written."""
     if not target or target == STDOUT:
         return
     path = Path(target)
@@ -29,13 +29,13 @@ def require_place(option: str, target: str | None) -> None:
 
 
 def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> None:
-    """Raise DdctError when --json and --csv both want standard output."""
+    """Raise DdctError when --json and --csv are both for standard output."""
     if json_target == STDOUT and csv_target == STDOUT:
         raise DdctError('--json - and --csv - both want standard output: give one a file')
 
 
 def write_json(target: str, content: Any, advice: str = _ADVICE) -> None:
-    """Write `content` as JSON like `write_text`; NaN and infinity raise ValueError."""
+    """Write `content` as JSON by `write_text`; raise ValueError for NaN and infinity."""
     write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n', advice)
 
 
@@ -43,7 +43,7 @@ def write_text(target: str, text: str, advice: str = _ADVICE) -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
-    A file appears complete or keeps what it held. Raise DdctError, with an advice, when it cannot
+    A file is replaced completely or not at all. Raise DdctError, with the advice, when it cannot
     be written.
     """
     if target == STDOUT:
@@ -53,7 +53,7 @@ def write_text(target: str, text: str, advice: str = _ADVICE) -> None:
 
 
 def write_bytes(target: str, content: bytes, advice: str = _ADVICE) -> None:
-    """Write `content` to the file `target` like `write_text`."""
+    """Write bytes to the file `target`, with the guarantees of `write_text`."""
     path = Path(target).resolve()
     try:
         if path.exists() and not path.is_file():

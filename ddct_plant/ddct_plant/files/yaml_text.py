@@ -1,8 +1,8 @@
 """
-The one way in which YAML is read and written: scenarios, controllers, what a bag holds.
+Read and write all YAML: scenarios, controllers, and the texts in a bag.
 
 Values are those of YAML 1.2's core schema (1e-3 and -1e-2 are numbers, yes and 1:30 are text).
-They are built here from the parser's events, so text cannot make any other object.
+They are built here from the parser's events, so text cannot create any other object.
 """
 
 import re
@@ -14,12 +14,13 @@ import yaml
 from ddct_plant.base.errors import ParameterError
 
 MOST_CHARACTERS = 1_000_000
+"""Most characters of one document."""
 MOST_VALUES = 100_000
-"""Numbers, texts, lists and mappings together."""
+"""Most values of one document: numbers, texts, lists and mappings together."""
 MOST_DEPTH = 20
-"""Lists and mappings within one another."""
+"""Deepest nesting of lists and mappings."""
 MOST_DIGITS = 40
-"""Characters of a number; a double needs 24."""
+"""Most characters of a number; a double needs 24."""
 
 _PARSER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _SURROGATE = re.compile('[\ud800-\udfff]')
@@ -36,19 +37,19 @@ _FLOAT = re.compile(
 
 
 def parse_yaml(text: str) -> Any:
-    """Return the value of `parse_yaml_with_lines`."""
+    """Return the value of one YAML document; errors as in `parse_yaml_with_lines`."""
     return parse_yaml_with_lines(text)[0]
 
 
 def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
     """
-    Return what one YAML document holds, and where.
+    Return the value of one YAML document, and the line numbers in it.
 
-    The value is made of numbers, texts, booleans, nulls, lists and dicts. The lines are those of
-    the keys and of the items of lists, by their path: `engine.time_s`, `engine.time_s[2]`.
+    The value consists of numbers, texts, booleans, nulls, lists and dicts. The lines are those of
+    keys and of items of lists, by their path: `engine.time_s`, `engine.time_s[2]`.
 
-    Raise ParameterError that names the line for invalid YAML, a key given twice, aliases and tags,
-    and beyond the limits above.
+    Raise ParameterError with the line for invalid YAML, a duplicate key, aliases and tags, and
+    beyond the limits above.
     """
     if len(text) > MOST_CHARACTERS:
         raise ParameterError(f'not valid YAML: longer than {MOST_CHARACTERS} characters')
@@ -66,12 +67,12 @@ def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
 
 
 def dump_yaml(value: Any, **options: Any) -> str:
-    """Return YAML text, keys in their order, that `parse_yaml` reads back to equal values."""
+    """Return YAML text, with keys in their order, that `parse_yaml` reads back to equal values."""
     return yaml.dump(value, Dumper=_Dumper, sort_keys=False, **options)
 
 
 class _Dumper(yaml.SafeDumper):
-    """Puts text in quotes that YAML 1.2 takes for a number, and writes no aliases."""
+    """Dumper that quotes text that YAML 1.2 reads as a number, and writes no aliases."""
 
     def ignore_aliases(self, data: Any) -> bool:
         return True
@@ -85,13 +86,13 @@ _Dumper.add_implicit_resolver(
 
 
 class _Document:
-    """Builds the values of one document from the events of the parser."""
+    """Builder of the values of one document from the events of the parser."""
 
     def __init__(self, events: Iterator[yaml.Event]) -> None:
         self._events = events
         self._values = 0
         self.lines: dict[str, int] = {}
-        """Line numbers of what was read, from 1, by path."""
+        """Line numbers of keys and items, from 1, by path."""
 
     def value(self) -> Any:
         """Return the value of the only document; None for empty text."""

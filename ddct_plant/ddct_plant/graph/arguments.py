@@ -1,4 +1,4 @@
-"""What stands on a node's command line: help, which is printed here, and ROS's arguments."""
+"""Command line of a node: its help, which is printed here, and the arguments of ROS."""
 
 import inspect
 import os
@@ -19,7 +19,7 @@ _NO_LOGS = 'failed to initialize logging'
 
 
 def require_ros_arguments(arguments: Sequence[str]) -> None:
-    """Raise ParameterError for an argument that is not ROS's: a node has none of its own."""
+    """Raise ParameterError for an argument outside `--ros-args`: a node has none of its own."""
     for_ros = False
     for argument in arguments:
         if argument == ROS_ARGUMENTS:
@@ -38,7 +38,7 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
     """
     Initialise rclpy, or one context of it, with the arguments; None takes the command line's.
 
-    Raise DdctError for what it cannot use.
+    Raise DdctError for an argument or environment variable that rclpy refuses.
     """
     require_domain()
     try:
@@ -56,16 +56,16 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
 
 
 def require_declared(node: GraphNode) -> None:
-    """Raise ParameterError for a parameter that was given to the node and that it has not."""
+    """Raise ParameterError for a parameter that was given and that the node does not declare."""
     require_known(node.undeclared_parameters(), node.own_parameters(), 'parameter')
 
 
 def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[str]) -> str:
     """
-    Return what `--help` prints: the task of a node, and the parameters that it declares.
+    Return the text of `--help`: the task of a node, and the parameters that it declares.
 
-    The node is built for it as the arguments say, but nobody can discover it. Raise DdctError when
-    it cannot be built.
+    The node is built with the arguments, and discovery is off meanwhile. Raise DdctError when it
+    cannot be built.
     """
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     try:

@@ -1,4 +1,4 @@
-"""What a graph needs of ROS: its packages, and a domain of its own."""
+"""Requirements of a graph on ROS: its packages, and a domain of its own."""
 
 import importlib.util
 import os
@@ -9,17 +9,18 @@ from contextlib import contextmanager
 from ddct_plant.base.errors import DdctError
 
 LAST_DOMAIN = 232
-"""Beyond it DDS has no ports, and its middleware ends the process without a word."""
+"""Highest ROS_DOMAIN_ID: beyond it DDS has no ports, and ends the process without a message."""
 _DOMAINS = range(1, 100)
-"""Domain ids whose DDS ports stay below those that the kernel hands out."""
+"""Domain ids whose DDS ports stay below the ephemeral ports of the kernel."""
 _FIRST_PORT = 28400
-"""A domain is taken while somebody listens on this port plus its id."""
+"""TCP port that reserves domain 0; a domain is reserved by listening on this port plus its id."""
 _turn = os.getpid()
-"""After it the search for a free domain begins: nodes killed in the last one still haunt it."""
+"""Domain after which the search for a free one begins: discovery shows killed nodes for a while,
+so the last domain is not used again at once."""
 
 
 def require_ros() -> None:
-    """Raise DdctError where ROS is not installed, which headless runs and scores do without."""
+    """Raise DdctError where ROS is not installed; headless runs and scores do not need it."""
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '

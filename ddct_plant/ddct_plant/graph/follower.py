@@ -10,18 +10,18 @@ from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.node import GraphNode, Output
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.topics import CLOCK, Topic, tick_names
-from ddct_plant.ticks.join import StampJoin, Verdict
+from ddct_plant.ticks.join import JoinResult, StampJoin
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 Reply = Sequence[Output]
-"""Filled, in the order in which they are published."""
+"""Outputs with filled messages, in the order of publication."""
 Read = Callable[[Any], Any]
-"""Gives the checked values of a message; raises DdctError for bad ones."""
+"""Function that returns the checked values of a message; it raises DdctError for bad ones."""
 
 
 class FollowerNode(GraphNode):
     """
-    Pure data flow: join inputs by stamp, answer once per stamp, repeat the answer when asked.
+    Pure data flow: join inputs by stamp, answer once per stamp, repeat the answer on request.
 
     A subclass gives its inputs to `follow` and computes the reply in `answer`. Nothing in the
     trajectory reads a clock, so it does not depend on when messages arrive. In lock-step a bad
@@ -33,7 +33,7 @@ class FollowerNode(GraphNode):
         """
         Subscribe to the inputs; the first is the trigger of `StampJoin`.
 
-        Each is read as its topic says, unless `readers` has another way.
+        Values are read by `Topic.read`, or by the function that `readers` has for a topic.
         """
         lockstep = self.settings.lockstep
         self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
@@ -44,25 +44,27 @@ class FollowerNode(GraphNode):
         self._disputed = False
         for topic in inputs:
             read = (readers or {}).get(topic)
-            self.hear(topic, partial(self._receive, topic.name), read)
+            self.subscribe_values(topic, partial(self._receive, topic.name), read)
         if not lockstep and not any(topic.is_tick for topic in inputs):
-            self.hear(CLOCK, lambda stamp, _: self.on_tick(step_of_stamp(stamp), stamp))
+            self.subscribe_values(
+                CLOCK, lambda stamp, _: self.on_tick(step_of_stamp(stamp), stamp)
+            )
 
     @abstractmethod
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Compute the reply to the values of one stamp; called once per stamp, in order."""
 
     def on_tick(self, step: int, stamp: int) -> None:
-        """Take a tick in real time, after whatever else it stands for; may come again."""
+        """Handle a tick in real time, after the other callbacks of its topic; may be repeated."""
 
     def _receive(self, topic: str, stamp: int, values: Any) -> None:
         if self._disputed:
             return
-        verdict = self.join.offer(topic, stamp, values)
-        if verdict is Verdict.COMPLETE:
+        result = self.join.offer(topic, stamp, values)
+        if result is JoinResult.COMPLETE:
             self._answer(stamp)
             self.publish_reply()
-        elif verdict is Verdict.REPEAT:
+        elif result is JoinResult.REPEAT:
             if values != self._answered:
                 self._on_second_publisher(topic, stamp)
             else:
@@ -77,7 +79,7 @@ class FollowerNode(GraphNode):
             raise type(error)(f'at stamp {stamp} ns: {error}') from error
 
     def _on_second_publisher(self, topic: str, stamp: int) -> None:
-        """Raise DdctError in lock-step; in real time obey neither publisher any more."""
+        """Raise DdctError in lock-step; in real time ignore both publishers from now on."""
         error = DdctError(
             f'{topic} carries two different messages for stamp {stamp} ns, publishers: '
             f'{publishers_of(self, topic)}: stop one, or use another ROS_DOMAIN_ID'

@@ -1,9 +1,9 @@
 """
-The kinds of message on the graph: how each is made, filled and read, all SI.
+Adapters for the message types of the graph: make, fill and read messages, all in SI units.
 
-Nothing of ROS is imported before a message is made, and reading only uses attributes: so it serves
-rclpy's messages and messages decoded from a bag. Building a message costs 1 to 60 us, filling one
-far below 1 us, so a writer keeps one message and fills it again and again.
+ROS is imported only when a message is made, and reading only uses attributes, so that messages of
+rclpy and messages decoded from a bag are read alike. Building a message costs 1 to 60 us, filling
+one far below 1 us, so a writer keeps one message and fills it anew for every tick.
 """
 
 import importlib
@@ -22,9 +22,9 @@ from ddct_plant.models.driveline import PHASE_EVENTS, PHASES, PhaseEvent
 
 NS_PER_S = 1_000_000_000
 Write = Callable[..., Any]
-"""`write(stamp_ns, *values)` fills the one message that it keeps, and returns it."""
+"""Function `write(stamp_ns, *values)`: fills the one message that it keeps, and returns it."""
 ClassOf = Callable[[str], Any]
-"""What gives the class of messages by its type: `ros_class`, or one without ROS."""
+"""Function from the name of a message type to its class: `ros_class`, or one without ROS."""
 
 
 def ros_class(type_name: str) -> Any:
@@ -40,7 +40,7 @@ def stamp_ns(message: Any) -> int:
 
 
 def set_time(time: Any, time_ns: int) -> None:
-    """Set a Time or a Duration."""
+    """Set a Time or a Duration to `time_ns` in ns."""
     time.sec, time.nanosec = divmod(time_ns, NS_PER_S)
 
 
@@ -51,13 +51,13 @@ def _time_of(message: Any) -> Any:
 
 @dataclass(frozen=True)
 class MessageKind:
-    """Adapter for one message type; carries the stamp."""
+    """Adapter for one message type; this base carries the stamp only."""
 
     type: str
-    """Such as 'sensor_msgs/msg/JointState'."""
+    """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
 
     def writer(self, class_of: ClassOf = ros_class) -> Write:
-        """Return a function that fills a message of its own; its values are those of `values`."""
+        """Return a function that fills one message of its own, from values as of `values`."""
         message = class_of(self.type)()
         time, fill = _time_of(message), self._filler(message, class_of)
 
@@ -69,30 +69,31 @@ class MessageKind:
         return write
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
-        """Return what sets the values of `message`, which is new; of its parts too."""
+        """Return a function that sets the values of the new `message` and of its parts."""
         return lambda: None
 
     def values(self, message: Any) -> tuple[Any, ...]:
-        """Return what a message holds, unchecked."""
+        """Return the values in a message, unchecked."""
         return ()
 
     def read(self, topic: str, message: Any) -> Any:
-        """Return what a node takes in; raise DdctError for values that must not enter the loop."""
+        """Return the values for a node; raise DdctError for values unfit for the loop."""
 
 
 HELD = 'held'
-"""`header.frame_id` of a message of sensors that repeats a value; else it is empty."""
+"""`header.frame_id` of a sensor message that repeats a value; it is empty otherwise."""
 
 
 @dataclass(frozen=True)
 class Scalar(MessageKind):
-    """One number; of a sensor also whether it repeats the last one: `frame_id` is then HELD."""
+    """Adapter for one number; a sensor's message also has the flag HELD for a repeated value."""
 
     path: str
-    """Where in the message, such as 'twist.angular.x'."""
+    """Path of the number in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
-    """Lowest value that a node takes in."""
+    """Lowest value that a node accepts, None for no bound."""
     sensed: bool = False
+    """Whether the message is a sensor's and has the flag."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
@@ -110,7 +111,7 @@ class Scalar(MessageKind):
         return attrgetter(self.path)
 
     def values(self, message: Any) -> tuple[float, ...]:
-        """Return the number; of a sensor also 1 where it repeats the last one, else 0."""
+        """Return the number; for a sensor also the flag: 1 for a repeated value, else 0."""
         number = self._get(message)
         if self.sensed:
             return number, float(message.header.frame_id == HELD)
@@ -126,15 +127,18 @@ class Scalar(MessageKind):
 @dataclass(frozen=True)
 class Joints(MessageKind):
     """
-    Positions in rad, speeds in rad/s and efforts in N m, one each per joint.
+    Adapter for a JointState: position in rad, speed in rad/s and effort in N m of each joint.
 
-    Sensors leave positions empty. Their effort is 1 where the speed repeats the last one, else 0,
-    and `frame_id` HELD if one of them is 1.
+    A sensor's message has no positions. Its efforts are flags, 1 where the speed is repeated, else
+    0, and its `frame_id` is HELD if one of them is 1.
     """
 
     names: tuple[str, ...]
+    """Names of the joints, in the order of the message."""
     fields: tuple[str, ...] = ('position', 'velocity', 'effort')
+    """Fields of the message that are filled."""
     sensed: bool = False
+    """Whether the message is a sensor's and has flags as efforts."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         message.name = list(self.names)
@@ -173,17 +177,18 @@ class Joints(MessageKind):
 @dataclass(frozen=True)
 class Points(MessageKind):
     """
-    A JointTrajectory: a row of points, one number per point in each field of each joint.
+    Adapter for a JointTrajectory: a row of points, one number per point, field and joint.
 
-    A message has as many of the joints as it was given values for, the first ones.
+    A message has the first joints only, if values for fewer joints are given.
     """
 
     joints: tuple[str, ...]
     fields: tuple[str, ...]
-    """Some of 'velocities', 'accelerations' and 'effort'."""
+    """Fields that are filled: some of 'velocities', 'accelerations' and 'effort'."""
     spacing_ns: int
+    """Time between two points in ns."""
     count: int | None = None
-    """How many points; None leaves that to the first message of a writer."""
+    """Number of points; None takes that of the first message of a writer."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         columns: list[tuple[int, list[Any]]] = []
@@ -227,7 +232,7 @@ class Points(MessageKind):
 
 @dataclass(frozen=True)
 class TorqueRows(Points):
-    """Torques in N m at 0, 1, ..., 10 ms after the stamp; of two joints, two capacities."""
+    """Adapter for torques in N m at 0, 1, ..., 10 ms after the stamp, or for two capacities."""
 
     fields: tuple[str, ...] = ('effort',)
     spacing_ns: int = SUBSTEP_NS
@@ -235,9 +240,10 @@ class TorqueRows(Points):
 
     def read(self, topic: str, message: Any, joints: int = 1) -> list[list[float]]:
         """
-        Return the (11,) torques in N m of each joint, of which there must be so many.
+        Return the (11,) torques in N m of each joint.
 
-        Raise DdctError unless finite and, where there are two, 0 <= kinetic <= static.
+        Raise DdctError unless there are `joints` joints, all torques are finite and, of two
+        joints, 0 <= kinetic <= static.
         """
         needed = list(self.joints[:joints])
         if list(message.joint_names) != needed:
@@ -265,7 +271,7 @@ class TorqueRows(Points):
 
 @dataclass(frozen=True)
 class PreviewPoints(Points):
-    """A speed in rad/s and its rate in rad/s^2, now and every 10 ms ahead."""
+    """Adapter for a preview of a speed in rad/s and its rate in rad/s^2, every 10 ms ahead."""
 
     fields: tuple[str, ...] = ('velocities', 'accelerations')
     spacing_ns: int = PERIOD_NS
@@ -294,10 +300,10 @@ class PreviewPoints(Points):
 
 @dataclass(frozen=True)
 class Status(MessageKind):
-    """A DiagnosticArray with one status: who says it, and (key, value) pairs."""
+    """Adapter for a DiagnosticArray with one status: its name and (key, value) pairs."""
 
     name: str = ''
-    """Who says it, where that is always the same."""
+    """Name of the status, where it is constant."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         new_status = class_of('diagnostic_msgs/msg/DiagnosticStatus')
@@ -319,20 +325,20 @@ class Status(MessageKind):
         return fill
 
     def values(self, message: Any) -> tuple[tuple[tuple[str, str], ...]]:
-        """Return the pairs."""
+        """Return the (key, value) pairs."""
         return (tuple((pair.key, pair.value) for pair in message.status[0].values),)
 
     def read(self, topic: str, message: Any) -> tuple[str, dict[str, str]]:
-        """Return who says it, and the pairs."""
+        """Return the name of the status, and the pairs."""
         return message.status[0].name, dict(*self.values(message))
 
 
 @dataclass(frozen=True)
 class PhaseReport(MessageKind):
     """
-    A DiagnosticArray about the plates: phase, friction work, then what happened at slip zero.
+    Adapter for a DiagnosticArray on the clutch: phase, friction work, events at slip zero.
 
-    That is a pair for each event, its kind and time, and one with the slip acceleration behind it.
+    Each event has one pair of kind and time, and one pair of its slip acceleration after it.
     """
 
     _WORK: ClassVar[str] = 'friction_work_j'
@@ -352,7 +358,7 @@ class PhaseReport(MessageKind):
         return fill
 
     def values(self, message: Any) -> tuple[float, float, tuple[PhaseEvent, ...]]:
-        """Return number of the phase, work in J and events; raise LookupError if one is bad."""
+        """Return phase number, friction work in J and events; raise LookupError for bad ones."""
         pairs = [(pair.key, pair.value) for pair in message.status[0].values]
         try:
             (_, phase), (key, work), *rest = pairs
@@ -364,7 +370,7 @@ class PhaseReport(MessageKind):
         raise LookupError(f'its status holds {pairs}')
 
     def _events(self, pairs: Sequence[tuple[str, str]]) -> tuple[PhaseEvent, ...]:
-        """Return the events, in bags of before without accelerations; raise ValueError."""
+        """Return the events; older bags have no accelerations. Raise ValueError for a bad pair."""
         events: list[PhaseEvent] = []
         for key, value in pairs:
             number = float(value)

@@ -1,4 +1,4 @@
-"""Base of every node: settings, run information, what it takes in, and how it ends."""
+"""Base of every node: settings, run information, subscriptions, and the end of the node."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
@@ -19,14 +19,14 @@ from ddct_plant.graph.topics import DIAGNOSTICS, RUN_INFO, SAFE_STATE, SINCE, To
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
-"""What every timer goes by: on a ROS clock it would wait for simulated time."""
+"""Clock of every timer: a ROS clock would wait for simulated time."""
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
-"""Parameters that rclpy declares itself begin with one of these."""
+"""Prefixes of the parameters that rclpy declares itself."""
 
 
 class Output:
-    """The publisher of a topic, with the one message that it sends again and again."""
+    """Publisher of a topic, with one message that is filled anew for every tick."""
 
     def __init__(self, node: Node, topic: Topic) -> None:
         qos = LATCHED_QOS if topic.latched else LOOP_QOS
@@ -35,26 +35,26 @@ class Output:
         self._message: Any = None
 
     def fill(self, stamp: int, *values: Any, **options: Any) -> 'Output':
-        """Put a stamp in ns and the topic's values into the message; return itself."""
+        """Fill the message with a stamp in ns and the topic's values; return this output."""
         self._message = self._write(stamp, *values, **options)
         return self
 
     def publish(self) -> None:
-        """Send the message as it was filled last."""
+        """Publish the message with the values of the last `fill`."""
         self._publisher.publish(self._message)
 
 
 class SafeStateReport:
-    """Say once why, and from then on every second since when: who comes late hears it too."""
+    """Report of a safe state: logged once, published at once and then every second."""
 
     def __init__(self, node: Node) -> None:
-        """Publish on `/diagnostics` for `node`; real time only, so lock-step bags hold none."""
+        """Publish on `/diagnostics` for `node`; in real time only, so lock-step bags have none."""
         self._node = node
         self._output = Output(node, DIAGNOSTICS)
         self._since: int | None = None
 
-    def tell(self, step: int, stamp: int, why: str) -> None:
-        """Tell at the tick of a step in the safe state, which the first call begins."""
+    def publish(self, step: int, stamp: int, why: str) -> None:
+        """Publish the report if it is due at this tick; the first call begins the safe state."""
         if self._since is None:
             self._since = stamp
             self._node.get_logger().error(f'safe state from stamp {stamp} ns on: {why}')
@@ -67,43 +67,43 @@ class SafeStateReport:
 
 class GraphNode(Node):
     """
-    A plain node that shares the run's settings and says so on `run_info`.
+    Base node: it declares the settings of the run and publishes them on `run_info`.
 
     Not a lifecycle node: nothing in this project would drive the transitions.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ()
-    """What `--help` shows behind `--ros-args`; what makes sense for this node alone."""
+    """Arguments after `--ros-args` that `--help` shows as examples for this node."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
         self.settings = declare_settings(self)
         self.limit: StampLimit | None = None
-        """In real time: which stamps may be true."""
+        """Limit of plausible stamps in real time; None in lock-step."""
         self.refused = 0
-        """Messages that counted as missing, as nothing in them can be relied on."""
+        """Number of refused messages, which count as missing."""
         self.done = Future()
-        """Set when the node has nothing more to do, with the DdctError that ended it, or None."""
+        """Future that is set at the end of the node, with the DdctError that ended it, or None."""
         # The same as done.done(), which takes long enough to matter for every message.
         self._over = False
 
     def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
-        """Latch this node's settings, stamped t_0."""
+        """Publish this node's settings, latched and stamped t_0, with `extra` entries."""
         pairs = run_info_pairs(self.settings, extra)
         Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=self.get_name()).publish()
 
-    def hear(
+    def subscribe_values(
         self,
         topic: Topic,
         take: Callable[[int, Any], None],
         read: Callable[[Any], Any] | None = None,
     ) -> None:
         """
-        Call `take(stamp, values)` with every message of a topic that can be relied on.
+        Subscribe to a topic; call `take(stamp, values)` with each message that passes its checks.
 
-        Its values are read as the topic says, or by `read`, which raises DdctError for bad ones.
-        In lock-step they end the node; in real time they count as missing.
+        Values are read by `Topic.read`, or by `read`, which raises DdctError for bad ones. In
+        lock-step a bad message ends the node; in real time it counts as missing.
         """
         values_of = read or topic.read
 
@@ -121,10 +121,10 @@ class GraphNode(Node):
             else:
                 take(stamp, values)
 
-        self.listen(topic, receive)
+        self.subscribe_messages(topic, receive)
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; a message that is refused counts as missing."""
+        """Return whether a stamp is plausible; a refused message counts as missing."""
         reason = self.limit.why_refused(topic, stamp) if self.limit else ''
         if reason:
             self._refuse(reason)
@@ -138,7 +138,7 @@ class GraphNode(Node):
             throttle_time_source_type=self.get_clock(),
         )
 
-    def listen(
+    def subscribe_messages(
         self,
         topic: Topic,
         receive: Callable[[Any], None],
@@ -147,9 +147,9 @@ class GraphNode(Node):
         raw: bool = False,
     ) -> None:
         """
-        Call `receive` with each message of a topic, or its bytes; a DdctError ends the node.
+        Subscribe to a topic; call `receive` with each message, or with its bytes if `raw`.
 
-        `qos` is for topics that are not latched.
+        A DdctError in `receive` ends the node. `qos` is for topics that are not latched.
         """
         guarded = self.guarded(receive)
         qos = RECORDER_LATCHED_QOS if topic.latched else qos
@@ -161,7 +161,7 @@ class GraphNode(Node):
         return [name for name in names if not name.startswith(_FOREIGN)]
 
     def undeclared_parameters(self) -> list[str]:
-        """Return the names of the parameters that it was given and does not declare."""
+        """Return the names of the given parameters that the node does not declare."""
         given = self._parameter_overrides
         return [
             name
@@ -170,7 +170,7 @@ class GraphNode(Node):
         ]
 
     def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
-        """Call `callback` again and again, by a steady clock; a DdctError ends the node."""
+        """Call `callback` every `period_s` of a steady clock; a DdctError in it ends the node."""
         return self.create_timer(period_s, self.guarded(callback), clock=STEADY)
 
     def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
@@ -193,4 +193,4 @@ class GraphNode(Node):
             self.done.set_result(error)
 
     def close(self) -> None:
-        """Flush what the node still holds; called once, before it is destroyed."""
+        """Flush buffered output; called once, before the node is destroyed."""

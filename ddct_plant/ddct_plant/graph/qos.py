@@ -8,7 +8,7 @@ LOOP_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=10,
 )
-"""Every topic of the control loop."""
+"""QoS of every topic of the control loop."""
 
 LATCHED_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
@@ -16,7 +16,7 @@ LATCHED_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
 )
-"""`run_info`: one message per node, kept for readers that come later."""
+"""QoS of `run_info`: one message per node, kept for late subscribers."""
 
 RECORDER_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
@@ -24,7 +24,7 @@ RECORDER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1000,
 )
-"""The recorder's subscriptions: deep, so that a burst is never lost."""
+"""QoS of the recorder's subscriptions: a depth at which no burst is lost."""
 
 RECORDER_LATCHED_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
@@ -32,7 +32,7 @@ RECORDER_LATCHED_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1000,
 )
-"""The recorder's subscription to latched topics."""
+"""QoS of the recorder's subscriptions to latched topics."""
 
 LIVE_QOS = QoSProfile(
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -40,4 +40,4 @@ LIVE_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1000,
 )
-"""Best effort: no node of the loop ever waits for, or sends again to, a viewer."""
+"""QoS of the live view: best effort, so that no node waits for a viewer or sends to it again."""

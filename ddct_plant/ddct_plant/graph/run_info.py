@@ -1,4 +1,4 @@
-"""The latched `run_info` message: what a node is and which settings it runs with."""
+"""The latched `run_info` message: version and settings of a node."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from ddct_plant.scenario.settings import RunSettings
 def run_info_pairs(
     settings: RunSettings, extra: Mapping[str, str] | None = None
 ) -> tuple[tuple[str, str], ...]:
-    """Return the (key, value) pairs that a node says of itself; the same in every layout."""
+    """Return the (key, value) pairs of a node's `run_info`, equal in graph and headless runs."""
     return (
         ('version', package_version()),
         ('scenario', settings.scenario.name),

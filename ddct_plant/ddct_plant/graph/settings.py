@@ -27,13 +27,13 @@ def declare_settings(node: Node) -> RunSettings:
 
 
 def declare_timeout(node: Node, name: str, default: float, description: str) -> float:
-    """Declare how long something may stay away in real time, in s."""
+    """Declare a timeout in s for real time, called `name`; return its value."""
     described = replace(_FAIL_SAFE['request_timeout_s'], default=default, meaning=description)
     return declare(node, name, described)
 
 
 def declare_fail_safe(node: Node, name: str, default: float, description: str) -> FailSafeSettings:
-    """Declare such a timeout, and how fast the clutch opens after it."""
+    """Declare a timeout called `name`, and the rate at which the clutch opens after it."""
     return FailSafeSettings(
         declare_timeout(node, name, default, description),
         declare(node, 'fail_safe_ramp_n_m_s', _FAIL_SAFE['fail_safe_ramp_n_m_s']),
@@ -42,13 +42,13 @@ def declare_fail_safe(node: Node, name: str, default: float, description: str) -
 
 def declare(node: Node, name: str, described: Option, *, read_only: bool = True) -> Any:
     """
-    Declare one parameter as it is described, and return its value, which is checked.
+    Declare one parameter as an option describes it, and return its checked value.
 
-    One whose default is None has no value until it is given one, and None is returned.
+    A parameter whose default is None has no value unless one is given; the result is then None.
     """
     descriptor = ParameterDescriptor(description=described.description, read_only=read_only)
     lowest = described.above if described.at_least is None else described.at_least
-    # A change while it runs is checked by the node itself, whose refusal says more than the range.
+    # The node itself checks a change while it runs; its error is more precise than the range's.
     if read_only and lowest is not None and described.at_most is not None:
         ends = {
             'from_value': described.kind(lowest),
@@ -58,7 +58,7 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
             descriptor.floating_point_range = [FloatingPointRange(**ends)]
         else:
             descriptor.integer_range = [IntegerRange(**ends, step=1)]
-    # rclpy knows a parameter without a value only as one of any type; `checked` sees to its kind.
+    # In rclpy a parameter without a value needs dynamic typing; `checked` checks its kind.
     descriptor.dynamic_typing = described.default is None
     start = list(described.default) if described.many else described.default
     try:

@@ -1,4 +1,4 @@
-"""See to it that each topic of the loop has one live publisher."""
+"""Check that each topic of the loop has one live publisher."""
 
 import time
 from collections.abc import Callable
@@ -13,23 +13,23 @@ from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.topics import all_topics
 from ddct_plant.ticks.sequence import SequenceWatch
 
-LOOK_S = 0.2
-"""How often the graph is looked at, and a doubtful end asks for the last replies again."""
+CHECK_S = 0.2
+"""Period in s of the check, and of repeated requests for the last replies at a doubtful end."""
 PROOF_S = 1.0
-"""How long the end of a run waits for a second publisher in the graph to be heard."""
+"""Longest wait in s at the end of a run for messages of a second publisher in the graph."""
 OPEN_S = 1.0
-"""How long a real-time run goes on with a second publisher: until then the clutch is open."""
+"""Time in s that a real-time run goes on with a second publisher, with an open clutch."""
 
 
 def publishers_of(node: Node, topic: str) -> str:
-    """Return the names of the nodes that the graph shows as publishers of a topic of `node`."""
+    """Return the names of all publishers of a topic of `node` in the ROS graph."""
     shown = node.get_publishers_info_by_topic(node.resolve_topic_name(topic))
     names = sorted(f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in shown)
     return ' and '.join(names)
 
 
 class _Probe:
-    """Reads the sequence numbers of one topic, beside the executor, which does not give them."""
+    """Reader of the sequence numbers of one topic, which an executor does not pass on."""
 
     def __init__(self, node: Node, topic: str, type_name: str) -> None:
         self.since = time.monotonic()
@@ -41,45 +41,45 @@ class _Probe:
     def two_alive(self) -> bool:
         handle, message_type = self.subscription.handle, self.subscription.msg_type
         while (taken := handle.take_message(message_type, True)) is not None:
-            self._watch.hear(taken[1]['publication_sequence_number'])
+            self._watch.note(taken[1]['publication_sequence_number'])
         return self._watch.two_alive
 
 
 class SolePublishers:
     """
-    Look for a second live publisher of any topic of the loop.
+    Detect a second live publisher of any topic of the loop.
 
-    The graph alone proves nothing: it shows a killed node for 20 s. So where it shows two
-    publishers, their messages are listened to until both have been heard. In lock-step that ends
-    the node. In real time the node goes to its safe state, and ends `OPEN_S` later.
+    The ROS graph alone proves nothing: it lists a killed node for 20 s. Where it lists two
+    publishers, a subscription checks whether messages of both arrive. In lock-step that ends the
+    node. In real time the node goes to its safe state, and ends `OPEN_S` later.
     """
 
-    def __init__(self, node: GraphNode, ask_again: Callable[[], None]) -> None:
-        """Look from a timer of `node`; `ask_again()` makes every follower repeat its reply."""
+    def __init__(self, node: GraphNode, repeat: Callable[[], None]) -> None:
+        """Check from a timer of `node`; `repeat()` makes every follower repeat its reply."""
         self._node = node
         self.found: DdctError | None = None
-        """The second publisher, once there is one."""
+        """Error that names the second publisher; None before one is found."""
         self._topics = {
             topic.name: node.resolve_topic_name(topic.name)
             for topic in all_topics()
             if topic.every_tick
         }
-        self._ask_again = ask_again
+        self._repeat = repeat
         self._listener: Node | None = None
         self._probes: dict[str, _Probe] = {}
         self._at_end = False
-        node.every(LOOK_S, self._on_timer)
+        node.every(CHECK_S, self._on_timer)
 
     def finish(self, error: DdctError | None = None) -> None:
-        """End the node, but not well before it is sure that there is no second publisher."""
+        """End the node; an end without error waits until a second publisher is excluded."""
         if error is None and self._in_doubt():
             self._at_end = True
-            self._ask_again()
+            self._repeat()
         else:
             self._node.finish(error or self.found)
 
     def close(self) -> None:
-        """Stop listening."""
+        """End the subscriptions."""
         if self._listener is not None:
             self._listener.destroy_node()
 
@@ -87,12 +87,12 @@ class SolePublishers:
         doubt = self._in_doubt()
         if self._at_end and self.found is None:
             if doubt:
-                self._ask_again()
+                self._repeat()
             else:
                 self._node.finish()
 
     def _in_doubt(self) -> bool:
-        """Say whether the graph shows a second publisher that had no time yet to be heard."""
+        """Return whether the graph lists a second publisher for less than `PROOF_S`."""
         count = self._node.count_publishers
         for topic, name in self._topics.items():
             if count(name) > 1:

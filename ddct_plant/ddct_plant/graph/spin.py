@@ -1,4 +1,4 @@
-"""Run one node, or several in one process, until done or asked to stop."""
+"""Run one node, or several in one process, until they are done or a signal stops them."""
 
 import gc
 import sys
@@ -24,13 +24,13 @@ from ddct_plant.program.command_line import run_program
 from ddct_plant.program.supervision import announce_exit, beat, ends_at_once, stop_signals
 
 SLICE_S = 0.1
-"""How often signals are looked at, and the longest time the executor is left alone."""
+"""Period in s at which signals are checked, and the longest spin of the executor."""
 
 
 _GARBAGE_THRESHOLD = 50_000
-"""Objects that a node makes between two collections; Python's own value is 700."""
+"""Number of new objects between two garbage collections; Python's default is 700."""
 LAST_SLICE_S = 0.03
-"""How long a stopped node still takes in messages that are on their way."""
+"""Time in s that a stopped node still receives messages that are on their way."""
 
 
 def make_executor(context: Any = None) -> Executor:
@@ -46,7 +46,7 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
     """
     Return a future that is set once any of the nodes is done or `stopped()` is true.
 
-    A timer looks at `stopped`: a busy EventsExecutor does not come back to look at its timeout.
+    A timer checks `stopped`: a busy EventsExecutor does not return at its timeout.
     """
     over: Future = Future()
 
@@ -74,9 +74,9 @@ def spin_until(executor: Executor, over: Future) -> None:
 @contextmanager
 def _rare_garbage_collection() -> Iterator[None]:
     """
-    Look for garbage less often, which interrupts the loop less often, and undo that at the end.
+    Collect garbage less often, to interrupt the loop less often, and undo that at the end.
 
-    What start-up made stays for the whole run, and messages hold no cycles.
+    Objects of the start stay for the whole run, and messages contain no reference cycles.
     """
     before = gc.get_threshold()
     gc.collect()
@@ -90,7 +90,7 @@ def _rare_garbage_collection() -> Iterator[None]:
 
 
 def finish_node(executor: Executor, node: GraphNode) -> None:
-    """Let the node take in what has already reached it, then flush it."""
+    """Let the node receive the messages that have already arrived, then flush it."""
     if not node.done.done():
         over: Future = Future()
         timer = node.create_timer(
@@ -109,9 +109,9 @@ def run_node(
     Run the node that `factory` builds and return the exit code of its program.
 
     A program that has arguments of its own, or its own `--help`, passes on its whole command line
-    as `arguments`, checked. 0 after its work is done, after SIGINT or SIGTERM, or after `--help`;
-    1, with one line on standard error, after a DdctError; above it stands the traceback of what
-    a third party's code raised.
+    as `arguments`, checked. The exit code is 0 after its work is done, after SIGINT or SIGTERM,
+    or after `--help`; 1 after a DdctError, with one line on standard error. For an error of a
+    third party's code its traceback precedes that line.
     """
     built: list[GraphNode] = []
 
@@ -151,7 +151,7 @@ def _run(
     """
     Return the error that ended the node, if any; raise DdctError when it cannot be built.
 
-    The node, flushed, is put into `built`.
+    The node is appended to `built`, and is flushed at the end.
     """
     try:
         init_ros(arguments)
@@ -169,7 +169,7 @@ def _run(
 
 def _leave(nodes: Sequence[GraphNode], code: int) -> None:
     """
-    Take the nodes, which have said all, out of the graph.
+    Remove the nodes, whose work is over, from the graph.
 
     Fast DDS may hang here for ever when other nodes leave at the same time. The supervisor then
     ends the process, and takes `code` for its exit code.

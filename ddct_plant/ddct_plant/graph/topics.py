@@ -1,8 +1,8 @@
 """
-The one table of topics, in the order in which a tick is written; imports nothing of ROS.
+The one table of topics, in the order in which a tick is written; independent of ROS.
 
-Nodes, recorder, reader, trajectory, the tables of signals and the live view take names, types,
-values and units from here. A new topic is one entry below, and the node that publishes it.
+Nodes, recorder, reader, trajectory, the tables of signals and the live view use its names, types,
+values and units. A new topic is one entry below, and the node that publishes it.
 """
 
 from collections.abc import Callable
@@ -25,44 +25,46 @@ from ddct_plant.graph.message_kinds import (
 from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 
 JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
-"""Order of the joints in `driveline/joint_states`."""
+"""Names of the joints in `driveline/joint_states`, in their order."""
 SENSED_JOINTS = JOINTS[:3]
-"""Those whose speed a sensor measures."""
+"""Joints whose speed a sensor measures."""
 TICKS_STATUS = 'driveline: ticks'
-"""Name of the status by which the driveline counts its steps and what was missing."""
+"""Name of the diagnostic status with the driveline's counts of steps and missing replies."""
 SAFE_STATE = ': safe state'
-"""Ends the name of the status by which a node says that it is in its safe state."""
+"""Ending of the name of the diagnostic status of a node in its safe state."""
 SINCE = 'since_ns'
-"""Key of the stamp since when."""
+"""Key of the stamp in ns at which the safe state began."""
 
 
 @dataclass(frozen=True)
 class RunKind:
-    """What of a run decides which topics it has: known to every node, and to who reads a bag."""
+    """Properties of a run that decide which topics it has; every node and reader has them."""
 
     lockstep: bool = True
+    """Whether the owner of time waits for every reply."""
     two_input: bool = False
     """Whether the controller also commands the engine."""
     clutch: str = LINEAR
+    """Name of the clutch model."""
     sensed: bool = False
     """Whether controller and reference read sensors in place of the truth."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One quantity of a topic, one row per tick in a trajectory."""
+    """One quantity of a topic, with one row per tick in a trajectory."""
 
     name: str
     unit: str
-    """SI, such as 'rad/s'; '1' for a bare number, '' for what is none."""
+    """SI unit, such as 'rad/s'; '1' for a bare number, '' for a signal that is not numeric."""
     about: str
-    """Which quantity, and its shape if it is more than one number."""
+    """Meaning, and shape if it is more than one number."""
     when: Callable[[RunKind], bool] | None = None
-    """Says in which of the runs that have its topic it is; None for all of them."""
+    """Condition on the runs that have it, among those with its topic; None for all of them."""
 
     @property
     def column(self) -> str:
-        """Name of its column in a table: name and unit, if it has one."""
+        """Name of its column in a table: the name, and the unit if it has one."""
         if self.unit == '1':
             return self.name
         unit = self.unit.replace('/', '_').replace(' ', '_').replace('^', '').lower()
@@ -71,27 +73,28 @@ class Signal:
 
 @dataclass(frozen=True, eq=False)
 class Topic:
-    """One topic."""
+    """One topic: its name, message kind, publisher and signals."""
 
     name: str
     """Name that nodes use: relative, except `/clock` and `/diagnostics`."""
     kind: MessageKind
+    """Adapter for its message type."""
     publisher: str
     """Name of the node that publishes it."""
     signals: tuple[Signal, ...] = ()
-    """One for each of the values of a message."""
+    """Signals, one for each value of a message."""
     every_tick: bool = True
-    """Whether a lock-step run has it exactly once per tick, from one publisher."""
+    """Whether a lock-step run has exactly one message per tick, from one publisher."""
     latched: bool = False
-    """Whether it is transient local, depth 1."""
+    """Whether its durability is transient local, with depth 1."""
     wall_clock: bool = False
-    """Whether it carries wall-clock figures, which a lock-step recording must not hold."""
+    """Whether it carries wall-clock values, which a lock-step recording must not contain."""
     when: Callable[[RunKind], bool] | None = None
-    """Says which runs have it; None for all of them."""
+    """Condition on the runs that have the topic; None for all of them."""
 
     @property
     def type(self) -> str:
-        """Such as 'sensor_msgs/msg/JointState'."""
+        """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
         return self.kind.type
 
     @property
@@ -106,23 +109,23 @@ class Topic:
 
     @property
     def is_tick(self) -> bool:
-        """Whether it comes with every tick from the owner of time; all else replies to it."""
+        """Whether the owner of time publishes it with every tick; all others are replies."""
         return self.every_tick and self.publisher == 'driveline'
 
     def in_run(self, run: RunKind) -> bool:
-        """Say whether a run has it."""
+        """Return whether a run has this topic."""
         return self.when is None or self.when(run)
 
     def signals_in(self, run: RunKind) -> tuple[Signal, ...]:
-        """Return those of its signals that a run has, which must have the topic."""
+        """Return the signals of this topic in a run that has the topic."""
         return tuple(each for each in self.signals if each.when is None or each.when(run))
 
     def writer(self, class_of: ClassOf = ros_class) -> Write:
-        """Return what fills one message again and again: `write(stamp_ns, *values)`."""
+        """Return a function `write(stamp_ns, *values)` that fills one message of its own."""
         return self.kind.writer(class_of)
 
     def message(self, stamp: int, *values: Any, **options: Any) -> Any:
-        """Return a new message; its values are those of `signals`."""
+        """Return a new message with a stamp in ns and the values of `signals`."""
         return self.writer()(stamp, *values, **options)
 
     def values(self, message: Any) -> tuple[Any, ...]:
@@ -130,7 +133,7 @@ class Topic:
         return self.kind.values(message)
 
     def read(self, message: Any, **options: Any) -> Any:
-        """Return what a node takes in; raise DdctError for values that must not enter the loop."""
+        """Return the values for a node; raise DdctError for values unfit for the loop."""
         return self.kind.read(self.name, message, **options)
 
 
@@ -160,8 +163,10 @@ def _held(name: str, which: str = '') -> Signal:
     return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
 
 
-def _of_sensor(name: str, kind: MessageKind, publisher: str, said: Signal, held: Signal) -> Topic:
-    return Topic(name, kind, publisher, (said, held), when=_sensed)
+def _of_sensor(
+    name: str, kind: MessageKind, publisher: str, measured: Signal, held: Signal
+) -> Topic:
+    return Topic(name, kind, publisher, (measured, held), when=_sensed)
 
 
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
@@ -308,34 +313,39 @@ DIAGNOSTICS = _status(
 
 
 @dataclass(frozen=True)
-class SeenTopics:
-    """On which topics control sees the plant."""
+class MeasurementTopics:
+    """Topics from which controller and reference read the plant: of the sensors, or true."""
 
     joint_states: Topic
+    """Topic of w_m, w_p and w_r."""
     slip: Topic
+    """Topic of w_d."""
     vehicle_speed: Topic
+    """Topic of V_x."""
     engine_torque: Topic
+    """Topic of C_m."""
 
 
-def seen_topics(*, sensed: bool) -> SeenTopics:
-    """Return the sensors of a run that has them, else the truth."""
+def measurement_topics(*, sensed: bool) -> MeasurementTopics:
+    """Return the topics of the sensors for a run that has them, else those of the true signals."""
     if sensed:
-        return SeenTopics(
+        return MeasurementTopics(
             SENSED_JOINT_STATES, SENSED_SLIP, SENSED_VEHICLE_SPEED, SENSED_ENGINE_TORQUE
         )
-    return SeenTopics(JOINT_STATES, SLIP, VEHICLE_SPEED, ENGINE_TORQUE)
+    return MeasurementTopics(JOINT_STATES, SLIP, VEHICLE_SPEED, ENGINE_TORQUE)
 
 
 TOPICS = tuple(each for each in tuple(globals().values()) if isinstance(each, Topic))
-"""All of the above: `run_info`, then the topics of each tick, `recorder/ack` last of them."""
+"""All topics: `run_info`, then the topics of each tick with `recorder/ack` last, then those of the
+wall clock."""
 
 
 SENSED_TOPICS = tuple(topic for topic in TOPICS if topic.when is _sensed)
-"""Those of the sensors."""
+"""Topics of the sensors."""
 
 
 def all_topics() -> tuple[Topic, ...]:
-    """Return the table."""
+    """Return all topics, in the order of the table."""
     return TOPICS
 
 
@@ -347,12 +357,12 @@ def recorded_topics(run: RunKind) -> tuple[Topic, ...]:
 
 
 def tick_names() -> frozenset[str]:
-    """Return the names of the topics that come with every tick from the owner of time."""
+    """Return the names of the topics that the owner of time publishes with every tick."""
     return frozenset(topic.name for topic in TOPICS if topic.is_tick)
 
 
 def all_signals() -> tuple[Signal, ...]:
-    """Return every signal: numbers, then text, and last what only some runs have."""
+    """Return every signal: numbers, then text, and last the signals of some runs only."""
     ranked = [
         ((bool(topic.when or signal.when), not signal.unit), signal)
         for topic in TOPICS

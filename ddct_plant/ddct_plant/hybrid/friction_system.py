@@ -1,4 +1,4 @@
-"""A linear system with dry-friction elements, and what drives it over an interval."""
+"""A linear system with dry-friction elements, and its inputs over an interval."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import own_matrices
 
 Signs = tuple[int, ...]
-"""A mode: by element 0 where it sticks, else the sign of its slip."""
+"""Mode of a system: for each element 0 if it sticks, else the sign of its slip."""
 Values = Sequence[float] | np.ndarray
 SINGULAR = 1e-12
-"""A principal minor of -h g counts as zero below this part of the product of its diagonal."""
+"""Principal minor of -h g that counts as zero, over the product of its diagonal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +29,13 @@ class FrictionSystem:
     """
 
     a: np.ndarray
-    """(n, n)."""
+    """State matrix, (n, n)."""
     b: np.ndarray
-    """(n, m)."""
+    """Input matrix, (n, m)."""
     g: np.ndarray
-    """(n, N)."""
+    """Matrix of the friction torques, (n, N)."""
     h: np.ndarray
-    """(N, n)."""
+    """Matrix from the state to the slips, (N, n)."""
 
     def __post_init__(self) -> None:
         """Check shapes, values and minors; raise ParameterError otherwise."""
@@ -58,17 +58,17 @@ class FrictionSystem:
 
     @cached_property
     def size_of_h(self) -> np.ndarray:
-        """(N, n): the magnitudes of `h`, by which the rounding of slips is judged."""
+        """Magnitudes of `h`, (N, n), for bounds of the rounding of slips."""
         return np.abs(self.h)
 
     @property
     def elements(self) -> int:
-        """N, the number of friction elements."""
+        """Number N of friction elements."""
         return len(self.h)
 
 
 def require_capacities(element: int, kinetic: Values, static: Values) -> None:
-    """Raise ParameterError where one of an element is negative, or static below kinetic."""
+    """Raise ParameterError where a capacity of an element is negative, or static below kinetic."""
     if min(kinetic) < 0.0:
         raise ParameterError(
             f'friction element {element}: its capacity {min(kinetic)} must not be negative'
@@ -83,7 +83,7 @@ def require_capacities(element: int, kinetic: Values, static: Values) -> None:
 
 class Layout:
     """
-    Where inputs u (m) and capacities c (N) stand over an interval, in flat lists of each.
+    Positions of inputs u (m) and capacities c (N) of an interval, in a flat list of each.
 
     An entry has one value if it is held over the interval, else one at each of P + 1 nodes.
     """
@@ -93,22 +93,23 @@ class Layout:
         sizes = [1 if i in held else pieces + 1 for i in range(inputs + elements)]
         ends = [0, *accumulate(sizes)]
         self.pieces, self.inputs, self.width = pieces, ends[inputs], ends[-1]
-        """P, and how many values the inputs have and all entries together."""
+        """Number P of pieces, number of values of the inputs, and of all entries together."""
         ends_of_capacities = pairwise(end - self.inputs for end in ends[inputs:])
         self.capacities = [slice(start, stop) for start, stop in ends_of_capacities]
-        """Where the values of each element are in a list of capacities."""
+        """Slice of each element's values in a list of capacities."""
         node = np.arange(pieces + 1)[:, None]
         self.nodes = np.minimum(np.array(ends[:-1]) + node, np.array(ends[1:]) - 1)
-        """(P + 1, m + N): where in [*u, *c] the value of each entry at a node is."""
+        """Index in [*u, *c] of the value of each entry at each node, (P + 1, m + N)."""
         last = np.repeat(np.array(ends[1:]) - 1, sizes)
         self.shifts = np.minimum(np.arange(self.width) + node, last)
-        """(P + 1, width): where in [*u, *c] they are when the interval starts later by nodes."""
+        """Indices in [*u, *c] of the values of an interval that starts at a later node, (P + 1,
+        width)."""
 
     def in_force(self, signs: Signs, kinetic: Values, static: Values) -> Values:
         """
-        Return the capacities in a mode: the static ones of the elements that stick.
+        Return the capacities in a mode: static for elements that stick, else kinetic.
 
-        Raise ParameterError where they are impossible or not as many as they should be.
+        Raise ParameterError for impossible capacities or a wrong number of them.
         """
         if static is kinetic and min(kinetic) >= 0.0:
             return kinetic
@@ -127,23 +128,23 @@ class Layout:
 
 
 class Forcing:
-    """The inputs w = [u, c] over an interval, in whichever mode they are asked."""
+    """Inputs w = [u, c] over an interval, for any mode."""
 
     def __init__(self, layout: Layout, inputs: Values, kinetic: Values, static: Values) -> None:
-        """Take in the flat values of u and of both kinds of capacities."""
+        """Use the flat values of u and of both kinds of capacities."""
         self.layout = layout
         self._inputs, self._kinetic, self._static = inputs, kinetic, static
         self._by_mode: dict[Signs, np.ndarray] = {}
 
     def values(self, signs: Signs) -> np.ndarray:
-        """Return [*u, *c] in a mode."""
+        """Return the values [*u, *c] in a mode."""
         if signs not in self._by_mode:
             capacities = self.layout.in_force(signs, self._kinetic, self._static)
             self._by_mode[signs] = np.array([*self._inputs, *capacities])
         return self._by_mode[signs]
 
     def at(self, signs: Signs, piece: int, part: float) -> np.ndarray:
-        """Return [w, dw] (2 (m + N),) after a `part` of a piece, 0 to 1; dw: over the piece."""
+        """Return w and its change dw over a piece, (2 (m + N),), at `part`, 0 to 1, of it."""
         start, end = self.values(signs)[self.layout.nodes[piece : piece + 2]]
         change = end - start
         return np.concatenate((start + part * change, change))

@@ -15,12 +15,12 @@ from ddct_plant.hybrid.mode_choice import choose_mode
 from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 
 MOST_EVENTS = 1000
-"""Most events in one piece. Dry friction between inertias gives fewer."""
+"""Most events in one piece; dry friction between inertias gives fewer."""
 
 
 class HybridIntegrator:
     """
-    Integrates a FrictionSystem over intervals of equal pieces, in which inputs are linear.
+    Integrator of a FrictionSystem over intervals of equal pieces, in which inputs are linear.
 
     Between events a mode's flow is a matrix exponential, taken by its series, which is exact to
     rounding over one piece. Slips and margins are then polynomials in time. One product gives
@@ -29,7 +29,7 @@ class HybridIntegrator:
     first piece that has a negative one the first root is found on the polynomial, and the motion
     goes on from there in the mode that `choose_mode` gives.
 
-    It holds nothing of a motion, so that threads and runs may share it.
+    It has no state of a motion, so that threads and runs may share it.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class HybridIntegrator:
         self.piece_s = require_number('piece_s', piece_s, above=0.0)
         count = int(require_number('pieces', pieces, at_least=1))
         self._layout = Layout(system.b.shape[1], system.elements, count, held)
-        # A third faster than numpy, which looks at every value before it makes an array.
+        # A third faster than numpy, which inspects every value before it makes an array.
         self._pack = struct.Struct(f'{len(system.a) + self._layout.width}d').pack
         modes = product((-1, 0, 1), repeat=system.elements)
         self.flows = {signs: ModeFlow(system, signs, piece_s) for signs in modes}
@@ -53,7 +53,7 @@ class HybridIntegrator:
         }
 
     def mode_of(self, state: Values) -> Signs:
-        """Return the mode of a state (n,): what has no slip sticks until its torque tells."""
+        """Return the mode of a state (n,): an element without slip sticks."""
         return tuple(np.sign(self.system.h @ state).astype(int).tolist())
 
     def advance(
@@ -62,8 +62,8 @@ class HybridIntegrator:
         """
         Integrate one interval from `state` (n,) in the mode `signs`.
 
-        `inputs` are the values of u one after the other, `kinetic` and `static` those of the
-        capacities: one each of what is held, else one for each node. Raise ParameterError for a
+        `inputs` is the flat list of the values of u, `kinetic` and `static` are those of the
+        capacities: one value for a held entry, else one for each node. Raise ParameterError for a
         capacity that is negative or a static one below the kinetic one.
         """
         capacities = self._layout.in_force(signs, kinetic, static)
@@ -81,7 +81,7 @@ class HybridIntegrator:
 
 
 class _Motion:
-    """State, mode, events and friction work as they come about in an interval with events."""
+    """State, mode, events and friction work during an interval with events."""
 
     def __init__(
         self, integrator: HybridIntegrator, forcing: Forcing, state: np.ndarray, signs: Signs
@@ -92,7 +92,7 @@ class _Motion:
         self._work = [0.0] * len(signs)
 
     def to_the_end(self) -> Interval:
-        """Go on to the end of the interval."""
+        """Integrate to the end of the interval."""
         piece, pieces = 0, self._forcing.layout.pieces
         while piece < pieces:
             piece = self._pass_pieces(piece)
@@ -107,7 +107,7 @@ class _Motion:
         )
 
     def _pass_pieces(self, first: int) -> int:
-        """Go on to the next piece in which there is an event; return its number."""
+        """Integrate to the start of the next piece with an event; return its index."""
         layout, values = self._forcing.layout, self._forcing.values(self._signs)
         ends, slips, lasts = self._integrator.maps[self._signs].by_piece(
             np.concatenate((self._state, values[layout.shifts[first]]))
@@ -125,7 +125,7 @@ class _Motion:
         return first + count
 
     def _through_events(self, piece: int) -> None:
-        """Go on to the end of a piece from event to event."""
+        """Integrate to the end of a piece, from event to event."""
         done, piece_s = 0.0, self._integrator.piece_s
         orders: list[int] | None = None
         course = self._integrator.flows[self._signs].course(
@@ -158,7 +158,7 @@ class _Motion:
         )
 
     def _add_work(self, course: Course, guards: np.ndarray, part: float) -> None:
-        """Add slip times capacity over a part of a piece; `guards` in Bernstein form on it."""
+        """Add the friction work over a part of a piece; `guards` are in Bernstein form on it."""
         flow = course.flow
         capacities, changes = course.capacities()
         integrals = flow.slip_integrals(guards).tolist()
@@ -167,7 +167,7 @@ class _Motion:
             self._work[element] += part * self._integrator.piece_s * work
 
     def _note_change(self, time_s: float, before: Course, part: float, after: Course) -> None:
-        """Take the mode after an event at `part` of the course before it; note what changes."""
+        """Set the mode after an event at `part` of the course before it, and append the events."""
         signs = after.flow.signs
         for i, (old, new) in enumerate(zip(self._signs, signs, strict=True)):
             if old != new:

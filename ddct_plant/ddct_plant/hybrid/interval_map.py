@@ -12,46 +12,50 @@ from ddct_plant.hybrid.mode_flow import ModeFlow
 from ddct_plant.hybrid.polynomials import linear_weights
 
 BLOCK = 9000
-"""Most elements of a matrix in one product: from 9216 OpenBLAS uses threads, and rounds anew."""
+"""Most elements of a matrix in one product: from 9216 OpenBLAS uses threads, with other
+rounding."""
 
 ROUNDING = 2.0**-52
-"""Singular values below this part of the largest one are zero."""
+"""Singular value that counts as zero, over the largest one."""
 
 
 class Event(NamedTuple):
-    """An element locks, is released, or changes the direction of its slip."""
+    """Event of an element: it locks, is released, or reverses its slip."""
 
     time_s: float
-    """From the start of the interval."""
+    """Time of the event in s, from the start of the interval."""
     element: int
+    """Index of the element."""
     kind: str
-    """`lock`, `release` or `reverse`."""
+    """Kind of the event: `lock`, `release` or `reverse`."""
     slip_acceleration: float
-    """Slope of its slip per s just before the event; of a release just after it."""
+    """Slip acceleration just before the event, per s^2 of the slip's angle; after a release."""
 
 
 @dataclass(slots=True)
 class Interval:
-    """What an interval ends with, and what happened in it."""
+    """Result of an interval: state and mode at its end, events and friction work in it."""
 
     state: list[float]
-    """(n,) at the end."""
+    """State at the end, (n,)."""
     signs: Signs
-    """The mode at the end."""
+    """Mode at the end."""
     events: list[Event]
+    """Events in the interval, in the order of time."""
     work: list[float]
-    """(N,) friction work of each element, the integral of c |s|, >= 0."""
+    """Friction work of each element, (N,): the integral of c |s|, not negative."""
     friction: list[float]
-    """(N,) friction torques at the end, left limits."""
+    """Friction torques at the end, (N,), left limits."""
 
 
 class IntervalMap:
     """
-    A mode from the start of an interval on, as functions of v = [x, *u, *c]; see `Layout`.
+    Linear map of one mode over an interval, from v = [x, *u, *c] (see `Layout`) to its end.
 
-    Between two nodes a guard's Bernstein coefficients may fall short of the straight line. How
-    far is a matrix times v. With its singular values it is few numbers z = W v, small as no large
-    terms cancel any more; no shortfall is larger, in units of its guard, than the sum of |z|.
+    Between two nodes a guard's Bernstein coefficients may be below the straight line. This
+    shortfall is a matrix times v. Its singular value decomposition reduces it to few numbers
+    z = W v, without cancellation of large terms; no shortfall is larger, in units of its guard,
+    than the sum of |z|.
     """
 
     def __init__(self, flow: ModeFlow, piece_s: float, layout: Layout) -> None:
@@ -69,9 +73,11 @@ class IntervalMap:
         rows = [ends[-1], flow.force @ driven]
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
-        """For each element that slips: its number, its integrals, its capacities."""
+        """For each slipping element: its index, slice of its integrals, slice of its
+        capacities."""
         self._held_work: list[tuple[int, int, int]] = []
-        """The same of those whose capacity is held, one each: a sum would take longer."""
+        """For each slipping element with a held capacity: its index, that of its integral, that of
+        its capacity; a sum would take longer."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
             where = layout.capacities[element]
@@ -91,7 +97,7 @@ class IntervalMap:
         self._whole = _product(np.vstack(rows))
 
     def whole(self, v: np.ndarray, capacities: Values) -> Interval | None:
-        """Return what the interval ends with, or None if an event may be near."""
+        """Return the result of the interval, or None if an event in it is possible."""
         values = self._whole(v).tolist()
         # Not `<`: a value that is not a number must not pass either.
         if not min(values[self._guards]) >= sum(map(abs, values[self._shortfalls])):
@@ -105,11 +111,11 @@ class IntervalMap:
 
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
         """
-        Return what the mode makes of the pieces, one after the other, if it lasts.
+        Return states, slip integrals and event-free pieces, as if the mode lasted for all pieces.
 
-        The first are the states after each, (P, n); the second the integrals of |s| (1 - t) and
-        |s| t, t from 0 to 1 in it, (P, slipping elements, 2); the third is how many pieces go by
-        before one in which a guard may turn negative.
+        The states are those after each piece, (P, n). The integrals are those of |s| (1 - t) and
+        |s| t, t from 0 to 1 in a piece, (P, slipping elements, 2). The last result is the number
+        of pieces before the first in which a guard may become negative.
         """
         values = self._by_piece(v).reshape(self._pieces, -1)
         slips = self._states + 2 * self._slipping
@@ -122,7 +128,7 @@ class IntervalMap:
 
 
 def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Return what multiplies a vector by a matrix."""
+    """Return a function that multiplies the matrix by a vector."""
     height = max(1, BLOCK // max(1, matrix.shape[1]))
     blocks = [matrix[i : i + height].copy() for i in range(0, len(matrix), height)]
     if len(blocks) == 1:
@@ -131,7 +137,7 @@ def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _piece_starts(flow: ModeFlow, layout: Layout) -> np.ndarray:
-    """Return (P, y, v): y at the start of each piece as linear maps of v."""
+    """Return the linear maps (P, y, v) from v to y at the start of each piece."""
     states, inputs = flow.states, flow.inputs
     starts = np.zeros((layout.pieces, states + 2 * inputs, states + layout.width))
     starts[0, :states, :states] = np.eye(states)
@@ -146,13 +152,13 @@ def _piece_starts(flow: ModeFlow, layout: Layout) -> np.ndarray:
 
 
 def _over_pieces(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Return rows (i, j, y) on the start of each piece as rows (P, i, j, v)."""
+    """Convert rows (i, j, y) on the start of each piece to rows (P, i, j, v) on v."""
     flat = rows.reshape(-1, rows.shape[2]) @ starts
     return flat.reshape(len(starts), *rows.shape[:2], -1)
 
 
 def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
-    """Return (values, v) for `slips` (P, 2, v): the integrals that each capacity is taken by."""
+    """Return the slip integrals (values, v), one per capacity, for `slips` (P, 2, v)."""
     if held:
         return slips.sum(axis=(0, 1))[None]
     none = np.zeros_like(slips[:1, 0])
@@ -160,7 +166,7 @@ def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
 
 
 def _shortfalls(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the units of the guards and W (r, v): in them no shortfall is above sum |W v|."""
+    """Return units of the guards and W (r, v): in these units no shortfall is above sum |W v|."""
     part = np.linspace(0.0, 1.0, guards.shape[1])[:, None]
     off = guards - (1.0 - part) * guards[:, :1] - part * guards[:, -1:]
     units = np.abs(off).max(axis=(1, 2))
@@ -174,7 +180,7 @@ def _shortfalls(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def _directions(matrix: np.ndarray) -> np.ndarray:
-    """Return the rows (r, v) of the singular value decomposition, times their values."""
+    """Return the right singular vectors (r, v), times their singular values."""
     _, values, rows = np.linalg.svd(matrix, full_matrices=False)
     kept = values > ROUNDING * values.max(initial=0.0)
     return values[kept, None] * rows[kept]

@@ -1,4 +1,4 @@
-"""Which mode goes on from an instant at which slips are zero."""
+"""Choice of the mode after an instant at which slips are zero."""
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
@@ -12,9 +12,9 @@ from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 
 SLACKS = (2.0**-44, 2.0**-34)
 """
-A sum below this part of its terms is zero to rounding: the first decides, unless it leaves none.
+Sum that counts as zero, over its terms: the first is used unless no mode is consistent with it.
 
-It is asked at events only, so that no slip speed counts as zero while an element slips.
+They are used at events only, so that no slip speed counts as zero while an element slips.
 """
 
 
@@ -27,7 +27,7 @@ def choose_mode(
     forcing_in: Callable[[Signs], np.ndarray],
 ) -> tuple[Course, list[int]]:
     """
-    Return the course with which the motion goes on, and the orders of its guards.
+    Return the course after the event, and the orders of its guards.
 
     `element` has reached the end of `signs`, its mode; `forcing_in` gives [w, dw] in a mode. The
     elements at zero slip are tried in every combination of sticking and slipping either way. A
@@ -62,7 +62,7 @@ def choose_mode(
 
 @lru_cache
 def _candidates(stuck: Signs, element: int) -> list[Signs]:
-    """Return the modes of the elements at zero slip, those with fewest slipping ones first."""
+    """Return the candidate modes of the elements at zero slip, fewest slipping elements first."""
 
     def slipping(signs: Signs) -> tuple[int, bool]:
         return sum(map(abs, signs)), signs[element] == 0
@@ -72,7 +72,7 @@ def _candidates(stuck: Signs, element: int) -> list[Signs]:
 
 
 def _orders(course: Course, stuck: Signs, slack: float) -> list[int] | None:
-    """Return the order of each guard, d+1 if it is zero throughout, or None if inconsistent."""
+    """Return the order of each guard, d+1 if it is zero throughout, or None for a refused mode."""
     flow, guards = course.flow, course.guards
     significant = np.abs(guards) > slack * course.guard_sizes()
     orders = []

@@ -1,4 +1,4 @@
-"""The exact flow of one mode: which elements stick, which slip, and which way."""
+"""The exact flow of one mode, that is of a set of sticking and slipping elements."""
 
 from typing import NamedTuple
 
@@ -14,11 +14,11 @@ from ddct_plant.hybrid.polynomials import (
 )
 
 LONGEST = 2.0
-"""A piece may be this long in units of 1 / (the balanced norm of a)."""
+"""Longest piece, in units of 1 / (the balanced norm of a)."""
 
 
 def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
-    """Return P (n, n), which takes the slip of the stuck elements away, and (h_S g_S)^-1 h_S."""
+    """Return the projection P (n, n) to zero slip of the stuck elements, and (h_S g_S)^-1 h_S."""
     stuck = [i for i, sign in enumerate(signs) if sign == 0]
     rows, columns = system.h[stuck], system.g[:, stuck]
     hold = np.linalg.solve(rows @ columns, rows)
@@ -27,7 +27,7 @@ def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.nd
 
 class ModeFlow:
     """
-    exp(M t) as a series, in one mode: of states, and of guards that are positive as it lasts.
+    Series of exp(M t) in one mode, for the states and for the guards, positive while it lasts.
 
     y = [x, w, dw] holds the states, the inputs w = [u, c] (c the kinetic capacity of an element
     that slips, the static one of an element that sticks) and their change over one piece. With
@@ -49,12 +49,12 @@ class ModeFlow:
         generator[:states, : states + self.inputs] = piece_s * self.projection @ moved
         generator[states : states + self.inputs, states + self.inputs :] = np.eye(self.inputs)
         self.force = np.zeros((system.elements, states + self.inputs))
-        """(N, n + w): the friction torques as rows on [x, w]."""
+        """Friction torques as rows on [x, w], (N, n + w)."""
         self.force[:, states + inputs :] = np.diag(signs)
         self.force[self.stuck] = -hold @ moved
         guards, self.guarded = self._guards(system)
         self.slipping = [i for i, sign in enumerate(signs) if sign]
-        """The elements that slip."""
+        """Indices of the slipping elements."""
         self.slip_guards = [self.guarded.index(i) for i in self.slipping]
         rows = np.zeros((states + len(guards), size))
         rows[:states, :states] = self.projection
@@ -64,19 +64,20 @@ class ModeFlow:
             powers.append(powers[-1] @ generator / order)
         self.series = np.array(powers)
         self.powers = np.arange(self.degree + 1)
-        """0, 1, ..., d."""
+        """Exponents 0, 1, ..., d."""
         self._series = self.series.reshape(-1, size)
         # Instants are known to rounding of a piece, so y to that of how much it changes in one.
         within = np.eye(size) + np.abs(generator)
         self.sizes = np.abs(self.series[:, states:]).reshape(-1, size) @ within
         powers_of_guards = np.moveaxis(self.series[:, states:], 0, 1)
         self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
-        """(guards, d+1, y): their Bernstein coefficients over a whole piece, as rows on y."""
+        """Bernstein coefficients of the guards over a whole piece, as rows on y, (guards, d+1,
+        y)."""
         self.end = self.series[:, :states].sum(axis=0)
-        """(n, y): the state after a piece."""
+        """State after a piece, as rows on y, (n, y)."""
 
     def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
-        """Return the rows of the guards on [x, w], and by guard its element."""
+        """Return the rows of the guards on [x, w], and the index of each guard's element."""
         rows: list[np.ndarray] = []
         guarded: list[int] = []
         capacities = np.eye(self.states + self.inputs)[-system.elements :]
@@ -92,36 +93,37 @@ class ModeFlow:
 
     def slip_integrals(self, guards: np.ndarray) -> np.ndarray:
         """
-        Return (slipping elements, 2): the integrals of |s| (1 - t) and |s| t over [0, 1].
+        Return the integrals of |s| (1 - t) and |s| t over [0, 1], (slipping elements, 2).
 
         `guards` (guards, d+1) are in Bernstein form.
         """
         return guards[self.slip_guards].dot(linear_weights(self.degree).T)
 
     def course(self, state: np.ndarray, forcing: np.ndarray) -> 'Course':
-        """Return the motion from a state (n,) on, driven by [w, dw] (2 w,)."""
+        """Return the motion from a state (n,) on, with the inputs [w, dw], (2 w,)."""
         y = np.concatenate((state, forcing))
         values = self._series.dot(y).reshape(self.degree + 1, -1)
         return Course(self, y, values[:, : self.states], values[:, self.states :].T)
 
 
 class Course(NamedTuple):
-    """The motion in one mode from an instant on, as polynomials in t, in lengths of a piece."""
+    """Motion in one mode from an instant on, as polynomials in t; t = 1 is a piece later."""
 
     flow: ModeFlow
+    """Flow of the mode."""
     y: np.ndarray
-    """State at t = 0."""
+    """State, inputs and their change [x, w, dw] at t = 0."""
     states: np.ndarray
-    """(d+1, n) coefficients of t^k."""
+    """Coefficients of t^k of the states, (d+1, n)."""
     guards: np.ndarray
-    """(guards, d+1) coefficients of t^k."""
+    """Coefficients of t^k of the guards, (guards, d+1)."""
 
     def at(self, part: float) -> np.ndarray:
         """Return the state (n,) at t = `part`."""
         return (part**self.flow.powers).dot(self.states)
 
     def slip_slope(self, element: int, part: float) -> float:
-        """Return the slope over a piece of the slip of an element that slips, at t = `part`."""
+        """Return the slip's derivative by t of a slipping element at t = `part`."""
         flow = self.flow
         coefficients = self.guards[flow.guarded.index(element)].tolist()
         slope = 0.0
@@ -130,13 +132,13 @@ class Course(NamedTuple):
         return flow.signs[element] * slope + 0.0  # no zero with a sign
 
     def capacities(self) -> tuple[list[float], list[float]]:
-        """Return those in force at t = 0, and their change over a piece, (N,) each."""
+        """Return the capacities at t = 0, and their change over a piece, (N,) each."""
         elements = len(self.flow.signs)
         last = self.flow.states + self.flow.inputs
         return self.y[last - elements : last].tolist(), self.y[-elements:].tolist()
 
     def guard_sizes(self) -> np.ndarray:
-        """Return (guards, d+1): how large the sums are whose rounding the coefficients have."""
+        """Return the sums of magnitudes behind the guards' coefficients, (guards, d+1)."""
         sizes = self.flow.sizes.dot(np.abs(self.y))
         return sizes.reshape(self.guards.shape[1], -1).T
 
@@ -144,9 +146,10 @@ class Course(NamedTuple):
         self, orders: list[int] | None, end: float
     ) -> tuple[float, int | None, np.ndarray]:
         """
-        Return when within [0, end] the first guard turns negative, and which; or `end` and None.
+        Return the time in [0, end] of the first guard that becomes negative, and its index.
 
-        The third are the guards in Bernstein form up to then. A guard of order k is zero at 0 with
+        Without one the result is `end` and None. The third result has the guards in Bernstein
+        form up to that time. A guard of order k is zero at 0 with
         k - 1 derivatives, so that its next root is that of the guard divided by t^k.
         """
         first, which = end, None
@@ -163,7 +166,7 @@ class Course(NamedTuple):
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:
-    """Return the order from which on the terms of exp(a piece) are below rounding."""
+    """Return the order at which the terms of exp(a piece) are below rounding."""
     # Only here: most of the graph's nodes do without scipy, whose import would double their start.
     from scipy.linalg import matrix_balance
 

@@ -12,26 +12,26 @@ from math import comb
 import numpy as np
 
 ROUNDING = 2.0**-50
-"""Coefficients below this part of the largest one are zero."""
+"""Coefficient that counts as zero, over the largest one."""
 _STEPS = 200
 
 
 @lru_cache
 def bernstein_of_powers(degree: int) -> np.ndarray:
-    """Return the (d+1, d+1) map from coefficients of t^k to those of Bernstein on [0, 1]."""
+    """Return the matrix (d+1, d+1) from coefficients of t^k to those of Bernstein on [0, 1]."""
     size = range(degree + 1)
     return np.array([[comb(j, k) / comb(degree, k) for k in size] for j in size])
 
 
 @lru_cache
 def _from_powers(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return 0, 1, ..., d, and what rows of coefficients are multiplied by."""
+    """Return the exponents 0, 1, ..., d, and the matrix from rows of coefficients of t^k."""
     return np.arange(degree + 1), bernstein_of_powers(degree).T.copy()
 
 
 @lru_cache
 def linear_weights(degree: int) -> np.ndarray:
-    """Return (2, d+1): the integrals over [0, 1] of p(t) (1 - t) and p(t) t, by coefficient."""
+    """Return the weights (2, d+1) of coefficients in the integrals of p (1 - t) and p t."""
     rising = np.arange(1.0, degree + 2.0) / ((degree + 1.0) * (degree + 2.0))
     return np.stack([rising[::-1], rising])
 
@@ -49,7 +49,7 @@ def on_interval(powers: np.ndarray, end: float) -> np.ndarray:
 
 
 def first_negative(powers: np.ndarray, end: float) -> float | None:
-    """Return where in [0, end] the polynomial (d+1,) in t^k first turns negative, or None."""
+    """Return the first t in [0, end] at which the polynomial (d+1,) becomes negative, or None."""
     coefficients = on_interval(powers, end)
     zero = ROUNDING * max(map(abs, coefficients.tolist()))
     pending = [(0.0, end, coefficients)]

@@ -1,1 +1,1 @@
-"""The driveline parameters behind the thesis's printed transfer functions."""
+"""Identification of driveline parameters, from printed transfer functions or a log."""

@@ -1,4 +1,4 @@
-"""Whether print and identified driveline belong together, and what the rounding allows."""
+"""Checks of the identified driveline against the print, and ranges that the rounding allows."""
 
 from dataclasses import dataclass
 
@@ -13,16 +13,16 @@ from ddct_plant.models.printed import ENGINE_TO_SLIP
 _SIGMAS = 3.0
 _CONFIDENCE = 0.99
 _ROUNDS = 4
-"""Linear programs in a row, each about the last one's answer; the change is 1e-9 by the fourth."""
+"""Number of successive linear programs; the fourth changes the solution by 1e-9."""
 _SCALE = 1e-3
-"""Size of a typical change of a logarithm, so that the program's numbers are near 1."""
+"""Typical change of a logarithm, which scales the linear programs to numbers near 1."""
 ZERO_PAIR = ('P2', 'zero c')
-"""The coefficient that Section 1.6.2 prints as 334.4."""
+"""Transfer function and label of the coefficient that Section 1.6.2 prints as 334.4."""
 
 
 @dataclass(frozen=True)
 class IdentificationCheck:
-    """One statement about the fit, its figure and the range it must lie in."""
+    """One check of the fit: its name, its value and the range that the value must lie in."""
 
     name: str
     value: float

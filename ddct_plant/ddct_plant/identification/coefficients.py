@@ -21,7 +21,7 @@ FITTED = (
     'total_ratio',
     'vehicle_inertia',
 )
-"""The seven parameters that the coefficients determine; c_m is 0, as P1 = 4/s shows."""
+"""Names of the seven parameters that the coefficients determine; c_m is 0, as P1 = 4/s shows."""
 SYMBOLS_AND_UNITS = {
     'engine_inertia': ('J_m', 'kg m^2'),
     'engine_damping': ('c_m', 'N m s/rad'),
@@ -48,14 +48,14 @@ class PrintedCoefficients:
     def __init__(
         self, p2: PrintedTransferFunction, p3: PrintedTransferFunction = LOAD_TO_SLIP
     ) -> None:
-        """Take the printed P_2 and P_3; raise ParameterError when their poles differ."""
+        """Use the printed P_2 and P_3; raise ParameterError when their poles differ."""
         if p2.denominator != ('0', *p3.denominator):
             raise ParameterError(f'{p2.name} and {p3.name} must share their poles, apart from s')
         self.numbers: tuple[tuple[str, PrintedNumber], ...] = tuple(
             [(p2.name, number) for number in p2.numbers()]
             + [(p3.name, number) for number in p3.numbers()[:2]]
         )
-        """(9,) name of the transfer function and its printed number."""
+        """Name of the transfer function and printed number of each coefficient, (9,)."""
         self._values = np.array([number.value for _, number in self.numbers])
         self._half_units = np.array([number.half_unit for _, number in self.numbers])
 
@@ -93,7 +93,7 @@ class PrintedCoefficients:
 
 
 PRINTED = PrintedCoefficients(CLUTCH_TO_SLIP)
-"""Those of the thesis, its erratum mended."""
+"""Printed coefficients of the thesis, with the erratum corrected."""
 
 
 def with_fitted(logarithms: np.ndarray) -> DrivelineParameters:

@@ -23,14 +23,18 @@ _SINGULAR = 1e8
 
 @dataclass(frozen=True)
 class CoefficientFit:
-    """One printed coefficient beside what the identified driveline has."""
+    """One printed coefficient, and its value for the identified driveline."""
 
     transfer_function: str
+    """Name of the transfer function, such as 'P2'."""
     coefficient: str
+    """Label of the coefficient, such as 'zero c'."""
     printed: str
+    """Number as printed."""
     computed: float
+    """Value for the identified driveline."""
     residual_half_units: float
-    """Computed less printed, in half-units of the last printed digit."""
+    """Residual: computed less printed, in half-units of the last printed digit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,29 +42,29 @@ class Identification:
     """The weighted least-squares fit; vectors of parameters are in the order of FITTED."""
 
     parameters: DrivelineParameters
-    """The best fit, not rounded."""
+    """Parameters of the best fit, not rounded."""
     relative_std: np.ndarray
-    """(7,) standard deviation of each fitted parameter over its value."""
+    """Standard deviation of each fitted parameter over its value, (7,)."""
     condition: float
     """Condition number of the weighted Jacobian with respect to the logarithms."""
     weakest_direction: np.ndarray
-    """(7,) unit vector of relative changes that moves the coefficients least."""
+    """Unit vector of relative parameter changes that moves the coefficients least, (7,)."""
     coefficients: tuple[CoefficientFit, ...]
 
     @property
     def residuals(self) -> np.ndarray:
-        """(9,) in half-units of the last printed digit."""
+        """Residuals in half-units of the last printed digit, (9,)."""
         return np.array([fit.residual_half_units for fit in self.coefficients])
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Coefficients less parameters."""
+        """Degrees of freedom: number of coefficients less number of parameters."""
         return len(self.coefficients) - len(FITTED)
 
     @property
     def chi_square(self) -> float:
         """
-        Sum of squared residuals over the variance of rounding.
+        Chi-square of the fit: the sum of squared residuals over the variance of rounding.
 
         Rounding is uniform rather than normal, so comparing it with the chi-square distribution
         of `degrees_of_freedom` is approximate.
@@ -69,7 +73,7 @@ class Identification:
 
     @property
     def logarithms(self) -> np.ndarray:
-        """(7,) natural logarithms of the fitted parameters."""
+        """Natural logarithms of the fitted parameters, (7,)."""
         return np.log([getattr(self.parameters, name) for name in FITTED])
 
 
@@ -107,10 +111,10 @@ def predict_left_out(
     coefficients: PrintedCoefficients, name: str, coefficient: str
 ) -> tuple[float, float]:
     """
-    Return one coefficient and its standard deviation, as the other eight predict it.
+    Return one coefficient as the other eight predict it, and its standard deviation.
 
-    Raise DdctError for a coefficient that is not among the nine, or one that the others leave
-    free: each of the two gains is the only measure of the size of its transfer function.
+    Raise DdctError for a coefficient that is not among the nine, or that the others do not
+    determine: each of the two gains alone determines the size of its transfer function.
     """
     labels = [(function, number.label) for function, number in coefficients.numbers]
     if (name, coefficient) not in labels:

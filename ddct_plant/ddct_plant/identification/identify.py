@@ -1,4 +1,4 @@
-"""Program `identify`: the driveline behind the thesis's transfer functions, or of a log."""
+"""Program `identify`: driveline parameters from the thesis's transfer functions, or from a log."""
 
 from typing import Any
 
@@ -96,7 +96,7 @@ def _content(
     ranges: np.ndarray | None,
     checks: tuple[IdentificationCheck, ...],
 ) -> dict[str, Any]:
-    """Return what is printed and written; null stands for what does not exist."""
+    """Return the result for tables and JSON; null for a value that does not exist."""
     parameters = []
     for name, (symbol, unit) in SYMBOLS_AND_UNITS.items():
         value = getattr(identification.parameters, name)

@@ -1,4 +1,4 @@
-"""Between the z-plane and the w-plane, which turns sampled H-infinity problems into continuous."""
+"""Bilinear transform between z-plane and w-plane, in which sampled systems become continuous."""
 
 import math
 
@@ -11,7 +11,7 @@ from ddct_plant.linear.lti import StateSpace
 
 def to_w_plane(system: StateSpace) -> StateSpace:
     """
-    Return a sampled system with z = (1 + w T/2) / (1 - w T/2) put in: continuous, same norm.
+    Return a sampled system with z = (1 + w T/2) / (1 - w T/2): continuous, with the same norm.
 
     The unit circle becomes the imaginary axis, tan(omega T/2) 2/T for omega. A strictly proper
     system gets feedthrough, its value at half the sampling rate. Raise ParameterError for a
@@ -33,7 +33,7 @@ def to_w_plane(system: StateSpace) -> StateSpace:
 
 
 def from_w_plane(system: StateSpace, period_s: float = PERIOD_S) -> StateSpace:
-    """Return the sampled system with w = 2/T (z - 1) / (z + 1) put in: `to_w_plane` undone."""
+    """Return the sampled system with w = 2/T (z - 1) / (z + 1): the inverse of `to_w_plane`."""
     root = math.sqrt(period_s)
     half = system.a * period_s / 2.0
     inverse = np.linalg.inv(np.eye(len(half)) - half)

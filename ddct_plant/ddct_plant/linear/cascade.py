@@ -8,10 +8,10 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 
 Factor = float | tuple[float, float]
-"""A number a is the factor (s + a), a pair (b, c) is (s^2 + b s + c)."""
+"""Factor of a transfer function: a number a is (s + a), a pair (b, c) is (s^2 + b s + c)."""
 _Polynomial = tuple[float, ...]
 _LOWEST_FREQUENCY = 1e-6
-"""Frequency in rad/s below which factors count as equally slow when sections are paired."""
+"""Least frequency in rad/s of a factor when sections are paired; slower ones count as equal."""
 
 
 def realise_cascade(
@@ -91,7 +91,7 @@ def _paired(
 def _realise_section(
     zero: _Polynomial, pole: _Polynomial
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return one section; the states of second-order ones are scaled by their frequency."""
+    """Return a, b, c, d of one section; second-order states are scaled by their frequency."""
     order = len(pole) - 1
     zero = (0.0,) * (len(pole) - len(zero)) + tuple(zero)
     through = zero[0]

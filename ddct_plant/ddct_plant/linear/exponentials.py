@@ -3,18 +3,18 @@
 import numpy as np
 
 _DEGREE = 13
-"""Of the Taylor polynomial: 0.5^14 / 14! is below the rounding of 1."""
+"""Degree of the Taylor polynomial: 0.5^14 / 14! is below the rounding of 1."""
 
 
 def exponentials(matrices: np.ndarray) -> np.ndarray:
     """
-    Return exp(A) of each matrix of a stack, (..., n, n), whatever else is in it.
+    Return exp(A) of each matrix of a stack, (..., n, n), independent of the other matrices.
 
     scipy's goes through a stack matrix by matrix, which for small ones takes four times as long.
-    exp(A) = exp(A / 2^s)^(2^s), with s so that ||A^4||^(1/4) and ||A^5||^(1/5) are at most
-    2^s / 2. The norm of A itself may be far above both, where states have unlike units; it would
-    ask for so many squarings that their rounding counts (Al-Mohy and Higham, SIAM J. Matrix Anal.
-    Appl. 31(3), 2009). What is not finite stays so.
+    exp(A) = exp(A / 2^s)^(2^s), with s so that ||A^4||^(1/4) and ||A^5||^(1/5) are at most 2^s /
+    2. The norm of A itself may be far above both, where states have different units; it would need
+    so many squarings that their rounding counts (Al-Mohy and Higham, SIAM J. Matrix Anal. Appl.
+    31(3), 2009). A matrix that is not finite gives a result that is not finite.
     """
     fourth = np.linalg.matrix_power(matrices, 4)
     size = np.maximum(_norm(fourth) ** 0.25, _norm(fourth @ matrices) ** 0.2)

@@ -13,7 +13,7 @@ from ddct_plant.linear.exponentials import exponentials
 _REAL = 1e-9
 """Imaginary part, relative to the magnitude, below which a root counts as real."""
 _PAIRED = 1e-6
-"""How far, relative to the magnitude, a root may be from the conjugate of another."""
+"""Largest distance of a root from the conjugate of another, relative to the magnitude."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +25,13 @@ class StateSpace:
     """
 
     a: np.ndarray
-    """(n, n)."""
+    """State matrix, (n, n)."""
     b: np.ndarray
-    """(n, m)."""
+    """Input matrix, (n, m)."""
     c: np.ndarray
-    """(p, n)."""
+    """Output matrix, (p, n)."""
     d: np.ndarray
-    """(p, m)."""
+    """Feedthrough matrix, (p, m)."""
     period_s: float | None = None
     """Sampling period of a discrete system in s, None for a continuous one."""
 
@@ -44,8 +44,9 @@ def own_matrices(owner: object, what: str, **letters: str) -> None:
     """
     Copy the matrices of `owner`, called `what`, so that they cannot be written.
 
-    `letters` stand for the numbers of rows and columns of each; where one comes again, so must
-    its number. Raise ParameterError otherwise, and for what is no matrix of finite numbers.
+    `letters` are names of the numbers of rows and columns of each matrix; equal letters must have
+    equal numbers. Raise ParameterError otherwise, and for values that are no matrix of finite
+    numbers.
     """
     sizes: dict[str, int] = {}
     for name, rows_and_columns in letters.items():
@@ -70,8 +71,11 @@ class FactoredTransferFunction:
     """
 
     gain: float
+    """Gain of the product."""
     numerator: tuple[Factor, ...] = field(default=())
+    """Factors of the numerator."""
     denominator: tuple[Factor, ...] = field(default=())
+    """Factors of the denominator."""
 
     def __post_init__(self) -> None:
         """Check that every number is finite; raise ParameterError otherwise."""
@@ -115,12 +119,12 @@ class FactoredTransferFunction:
 
     @property
     def zeros(self) -> np.ndarray:
-        """(number of zeros,) complex, in rad/s."""
+        """Zeros in rad/s, complex, (number of zeros,)."""
         return _roots(self.numerator)
 
     @property
     def poles(self) -> np.ndarray:
-        """(number of poles,) complex, in rad/s."""
+        """Poles in rad/s, complex, (number of poles,)."""
         return _roots(self.denominator)
 
     def __mul__(self, other: 'FactoredTransferFunction') -> 'FactoredTransferFunction':

@@ -1,1 +1,1 @@
-"""Logs that other tools or our bags hold: columns by name, in SI units."""
+"""Logs of other tools and recorded bags: quantities by name, in SI units."""

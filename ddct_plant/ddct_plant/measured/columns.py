@@ -1,4 +1,4 @@
-"""Which column of a log holds what, in which unit: the one column map of all programs."""
+"""Column map of a log, used by all programs: the column and the unit of each quantity."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,76 +15,82 @@ from ddct_plant.files.yaml_text import parse_yaml
 
 TIME = 'time'
 DATE_TIME = 'iso8601'
-"""Unit of a time that is written as a date with a time of day."""
+"""Unit of a time in the form of a date with a time of day."""
 _NOTHING = np.zeros(0)
 LINEAR, HELD = BETWEEN = ('linear', 'held')
-"""What a signal does between its samples: a straight line, or it keeps its value."""
+"""Interpolation of a signal between its samples: linear, or zero-order hold."""
 
 MOST_DELAY_S = 0.1
-"""Largest delay of a signal in a log, either way."""
+"""Largest delay or lead of a signal in a log, in s."""
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """Something that a log may hold."""
+class LogQuantity:
+    """A quantity that a log may have."""
 
     unit: str
-    """SI."""
+    """SI unit."""
     symbol: str
+    """Symbol of the thesis, empty for none."""
     meaning: str
+    """Meaning in a few words."""
     own_column: str
-    """Its column in what `score --signals-csv` writes."""
+    """Name of its column in the output of `score --signals-csv`."""
 
 
-QUANTITIES: Mapping[str, Quantity] = {
-    TIME: Quantity('s', 't', 'time, from any instant', 'time_s'),
-    'engine_speed': Quantity('rad/s', 'w_m', 'engine', 'engine_speed_rad_s'),
-    'shaft_speed': Quantity('rad/s', 'w_p', 'primary shaft', 'primary_shaft_speed_rad_s'),
-    'wheel_speed': Quantity('rad/s', 'w_r', 'wheels, their mean', 'wheel_speed_rad_s'),
-    'engine_torque': Quantity('N m', 'C_m', 'at the crankshaft', 'engine_torque_n_m'),
-    'clutch_torque': Quantity(
+QUANTITIES: Mapping[str, LogQuantity] = {
+    TIME: LogQuantity('s', 't', 'time, from any instant', 'time_s'),
+    'engine_speed': LogQuantity('rad/s', 'w_m', 'engine', 'engine_speed_rad_s'),
+    'shaft_speed': LogQuantity('rad/s', 'w_p', 'primary shaft', 'primary_shaft_speed_rad_s'),
+    'wheel_speed': LogQuantity('rad/s', 'w_r', 'wheels, their mean', 'wheel_speed_rad_s'),
+    'engine_torque': LogQuantity('N m', 'C_m', 'at the crankshaft', 'engine_torque_n_m'),
+    'clutch_torque': LogQuantity(
         'N m', 'C_f', 'transmitted, positive towards the wheels', 'primary_shaft_effort_n_m'
     ),
-    'load_torque': Quantity('N m', 'C_load', 'at the wheels', 'load_torque_n_m'),
-    'driveshaft_torque': Quantity('N m', '', 'at the wheels', 'driveshaft_effort_n_m'),
-    'vehicle_speed': Quantity('m/s', 'V_x', 'of the car', 'vehicle_speed_m_s'),
-    'vehicle_accel': Quantity('m/s^2', 'A_x', 'of the car', 'vehicle_accel_m_s2'),
-    'slip_reference': Quantity('rad/s', '', 'what w_m - w_p should be', 'slip_reference_rad_s'),
-    'torque_request': Quantity('N m', '', 'asked of the clutch', 'torque_request_n_m'),
+    'load_torque': LogQuantity('N m', 'C_load', 'at the wheels', 'load_torque_n_m'),
+    'driveshaft_torque': LogQuantity('N m', '', 'at the wheels', 'driveshaft_effort_n_m'),
+    'vehicle_speed': LogQuantity('m/s', 'V_x', 'of the car', 'vehicle_speed_m_s'),
+    'vehicle_accel': LogQuantity('m/s^2', 'A_x', 'of the car', 'vehicle_accel_m_s2'),
+    'slip_reference': LogQuantity('rad/s', '', 'what w_m - w_p should be', 'slip_reference_rad_s'),
+    'torque_request': LogQuantity('N m', '', 'asked of the clutch', 'torque_request_n_m'),
 }
 
 OWN_HELD = ('engine_torque',)
-"""What keeps its value between the samples that we write; all else is linear."""
+"""Quantities with zero-order hold in the output of `score --signals-csv`; others are linear."""
 
 
 @dataclass(frozen=True)
 class Column:
-    """Where a quantity stands in a CSV log."""
+    """Column of a quantity in a CSV log."""
 
     column: str
+    """Name of the column."""
     unit: str
+    """Unit of its values."""
     between: str = LINEAR
+    """Interpolation between samples: LINEAR or HELD."""
     delay_s: float | None = None
-    """How late the log has it, in s, where that is known."""
+    """Known delay of the log in s; None for an unknown one."""
 
 
 @dataclass(frozen=True)
 class ColumnMap:
-    """The columns of a log by quantity, and what it cannot say itself."""
+    """Column map of a log, with information on its run."""
 
     columns: Mapping[str, Column]
+    """Columns by quantity."""
     run: Mapping[str, Any]
-    """What `score` needs of a run; empty for `identify`."""
+    """Information on the run for `score`, by key; empty for `identify`."""
 
     @property
     def known_delays(self) -> dict[str, float]:
-        """Delays in s that are given, by quantity."""
+        """Given delays in s, by quantity."""
         given = {name: each.delay_s for name, each in self.columns.items()}
         return {name: each for name, each in given.items() if each is not None}
 
 
 def own_columns(*names: str) -> ColumnMap:
-    """Return the map of quantities in what `score --signals-csv` writes."""
+    """Return the column map of quantities in the output of `score --signals-csv`."""
     return ColumnMap(
         {
             name: Column(each.own_column, each.unit, HELD if name in OWN_HELD else LINEAR)
@@ -96,7 +102,7 @@ def own_columns(*names: str) -> ColumnMap:
 
 
 def load_columns(file: str) -> ColumnMap:
-    """Read a column map from YAML; raise DdctError that names the file and what is wrong."""
+    """Read a column map from a YAML file; raise DdctError that names the file and the error."""
     with located(f'--columns {file}'):
         return _column_map(parse_yaml(user_text(Path(file))))
 

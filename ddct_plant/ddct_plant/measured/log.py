@@ -1,4 +1,4 @@
-"""A log of a drive: quantities over time in SI units, from CSV or from one of our bags."""
+"""A log of a drive: quantities over time in SI units, from CSV or from a recorded bag."""
 
 import hashlib
 from collections.abc import Sequence
@@ -35,43 +35,47 @@ from ddct_plant.measured.columns import (
 )
 
 MOST_BYTES = 200_000_000
+"""Largest size of a CSV log in bytes."""
 MOST_ROWS = 1_000_000
+"""Most rows of a CSV log."""
 HIGHEST_SPEED = 1000.0
-"""In rad/s. No engine, shaft or wheel of a car is faster; 3000 rpm taken for rad/s is."""
+"""Highest speed in rad/s of an engine, shaft or wheel of a car; 3000 rpm read as rad/s is
+higher."""
 SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
 _BAG_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredLog:
-    """What was measured; NaN where a row has nothing of a quantity."""
+    """Measured quantities over time; NaN where a row has no value of a quantity."""
 
     path: Path
+    """Path of the log."""
     digest: str
-    """SHA-256 of the file, its first 16 digits."""
+    """First 16 digits of the SHA-256 of the file."""
     time_s: np.ndarray
-    """(n,) rising."""
+    """Times of the rows in s, (n,), rising."""
     signals: dict[str, np.ndarray]
-    """(n,) by quantity."""
+    """Values in SI units, (n,), by quantity."""
     held: tuple[str, ...] = ()
-    """Quantities that keep their value from a sample to the next."""
+    """Quantities with zero-order hold between samples; the others are linear."""
 
     def samples(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and values of the rows that have a quantity."""
+        """Return times in s and values of a quantity, in the rows that have it."""
         rows = np.isfinite(self.signals[name])
         return self.time_s[rows], self.signals[name][rows]
 
     def at(self, name: str, time_s: np.ndarray) -> np.ndarray:
-        """Return a quantity at any times, by what it does between its samples."""
+        """Return a quantity at any times in s, interpolated linearly or held."""
         times, values = self.samples(name)
         if name not in self.held:
             return np.interp(time_s, times, values)
-        # A time on a sample is not pushed before it by its last bit.
+        # The tolerance keeps a time on a sample from falling before it by rounding.
         before = np.searchsorted(times, time_s + 1e-9, side='right') - 1
         return values[np.clip(before, 0, len(values) - 1)]
 
     def part(self, first: float, last: float) -> 'MeasuredLog':
-        """Return the rows from one time to another, both included."""
+        """Return the rows from one time in s to another, both included."""
         rows = (self.time_s >= first) & (self.time_s <= last)
         signals = {name: values[rows] for name, values in self.signals.items()}
         return MeasuredLog(self.path, self.digest, self.time_s[rows], signals, self.held)
@@ -79,7 +83,7 @@ class MeasuredLog:
 
 def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> MeasuredLog:
     """
-    Read a CSV log by a column map, or a bag, which needs none.
+    Read a CSV log with its column map, or a bag, which needs none.
 
     Raise DdctError for a file that cannot be read, a quantity that is missing, times that do not
     rise, and speeds that no car has, in one line with the place.
@@ -118,7 +122,7 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
 
 
 def _unit(column: Column) -> str:
-    """Return the unit of the numbers of a column; dates with times have become s."""
+    """Return the unit of the numbers of a column: s for dates with times."""
     return 's' if column.unit == DATE_TIME else column.unit
 
 
@@ -147,11 +151,11 @@ def _require_speed(table: CsvTable, columns: ColumnMap, name: str, values: np.nd
 
 def _read_bag_log(path: Path) -> MeasuredLog:
     """
-    Return what a bag of ours holds of a drive, as a car's own sensors would have measured it.
+    Return the signals of a recorded bag that a car's own sensors would measure.
 
-    Speeds, C_m and A_x come every 10 ms. C_f comes every 1 ms of the clutch that always slips; of
-    one that sticks it is what was transmitted just before each tick. C_load is left out: no car
-    measures it. Of a run with sensors these are the true signals too.
+    Speeds, C_m and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear clutch;
+    with the stick-slip clutch it is the transmitted torque just before each tick. C_load is
+    omitted, because no car measures it. In a run with sensors the signals are the true ones, too.
     """
     bag = mcap_of(path)
     try:
@@ -187,7 +191,7 @@ def _read_bag_log(path: Path) -> MeasuredLog:
 
 
 def _bag_values(bag: Path) -> dict[Topic, dict[int, tuple[Any, ...]]]:
-    """Return by topic the values of its messages, by stamp in ns."""
+    """Return the values of the messages, by topic and by stamp in ns."""
     topics = {topic.resolved_name: topic for topic in _BAG_TOPICS}
     values: dict[Topic, dict[int, tuple[Any, ...]]] = {topic: {} for topic in _BAG_TOPICS}
     with bag.open('rb') as file:

@@ -14,11 +14,11 @@ from ddct_plant.models.printed import ACTUATOR
 
 @dataclass(frozen=True)
 class ActuatorParameters(OptionGroup, prefix='actuator.'):
-    """How the actuator of the plant differs from the printed one, of which controllers know."""
+    """Deviation of the plant's actuator from the printed one, which controllers assume."""
 
     delay_s: float = option(
         0.01,
-        'delay of the request in front of G_a, a multiple of 1 ms; controllers go by 10 ms',
+        'delay of the request in front of G_a, a multiple of 1 ms; controllers assume 10 ms',
         's',
         source='Section 1.4.2',
         at_least=0.0,
@@ -26,14 +26,14 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
     )
     bandwidth_factor: float = option(
         1.0,
-        'how many times as fast G_a(s) is as printed: G_a(s / factor); controllers go by 1',
+        'bandwidth of G_a(s) over that of the print: G_a(s / factor); controllers assume 1',
         source='Section 1.4.2',
         at_least=0.05,
         at_most=10.0,
     )
 
     def __post_init__(self) -> None:
-        """Check both; raise ParameterError that names a bad one."""
+        """Check delay and factor; raise ParameterError that names a bad one."""
         super().__post_init__()
         if abs(self.delay_s / SUBSTEP_S - self.delay_substeps) > 1e-6:
             raise ParameterError(
@@ -42,7 +42,7 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
 
     @property
     def delay_substeps(self) -> int:
-        """The delay in steps of 1 ms."""
+        """Delay of the request in steps of 1 ms."""
         return round(self.delay_s / SUBSTEP_S)
 
     def transfer_function(self) -> FactoredTransferFunction:
@@ -57,7 +57,7 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
 
 class Actuator:
     """
-    Torque of the actuator for the requested torque, exact between samples.
+    The actuator: delivered torque for the requested torque, exact between samples.
 
     The request is cut off below zero, delayed and filtered by G_a(s). G_a is strictly proper, so
     the torque is continuous; its 11 nodes over a period resolve modes up to 206 rad/s, which the
@@ -67,19 +67,20 @@ class Actuator:
     def __init__(
         self, initial_request: float = 0.0, parameters: ActuatorParameters | None = None
     ) -> None:
-        """Start at rest on `initial_request` in N m, delay line included."""
+        """Start in the steady state for `initial_request` in N m, delay line included."""
         parameters = parameters or ActuatorParameters()
         model = parameters.dynamics()
         periods, late = divmod(parameters.delay_substeps, SUBSTEPS)
         self._inputs = 2 if late else 1
-        """Requests in effect within one period: a delay of 13 ms changes them after 3 ms."""
+        """Number of requests in effect within one period: two if the delay is no multiple of
+        10 ms; with a delay of 13 ms the request changes after 3 ms."""
         self._state_update, self._nodes = lifted(model, late)
         delayed = max(initial_request, 0.0)
         self._state_and_delayed = np.array([*at_rest(model, delayed), *[delayed] * self._inputs])
         self._waiting = deque([delayed] * (periods + self._inputs - 1))
 
     def update(self, request: float) -> list[float]:
-        """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and take the next request in."""
+        """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and accept a request in N m."""
         values, waiting = self._state_and_delayed, self._waiting
         waiting.append(max(request, 0.0))
         values[-1] = waiting[self._inputs - 1]
@@ -90,17 +91,17 @@ class Actuator:
 
 
 def at_rest(model: StateSpace, request: float) -> np.ndarray:
-    """Return the state (n,) of G_a that rests on a request in N m."""
+    """Return the steady state (n,) of G_a for a request in N m."""
     return np.linalg.solve(model.a, -model.b[:, 0] * request)
 
 
 def lifted(model: StateSpace, late: int) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return what gives state and torque of a period from its state and the requests in effect.
+    Return the matrices from the state and the requests of a period to next state and torques.
 
-    `late` is after how many ms, 0 to 9, the later of two requests takes effect; 0: there is one.
-    The first result is (n, n + inputs), the second (11, n + inputs), in the order state, earlier,
-    later request.
+    `late` is the time in ms, 0 to 9, after which the later of two requests takes effect; 0: there
+    is one request. The first matrix is (n, n + inputs), the second (11, n + inputs); their columns
+    are in the order state, earlier, later request.
     """
     transition, held, outputs, feedthrough = _over(model, SUBSTEPS - late)
     if not late:

@@ -1,4 +1,4 @@
-"""Clutch: what the actuator's torque becomes between the plates, without and with friction."""
+"""Clutch models: from the actuator's torque to the torque between the plates."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from ddct_plant.base.options import ASSUMED, Option, OptionGroup, option
 from ddct_plant.models.clutch_heat import ClutchHeat, HeatParameters
 
 LINEAR, STICK_SLIP = CLUTCHES = ('linear', 'stick_slip')
-"""Names of the clutch models that `--clutch` takes."""
+"""Names of the clutch models, values of `--clutch`."""
 WEAR_GAIN = Option(
     1.0, 'K_usura, wear gain of the clutch, 1 for a new one', above=0.0, at_most=3.0
 )
 AMBIENT_C = 20.0
-"""Temperature at which the actuator's map from position to torque holds."""
+"""Temperature in degrees Celsius at which the actuator's map from position to torque is valid."""
 
 
 class LinearClutch:
@@ -37,7 +37,7 @@ class LinearClutch:
 @dataclass(frozen=True)
 class FrictionParameters(OptionGroup, prefix='friction.'):
     """
-    Friction between the plates; no figure for this facing is public.
+    Friction between the plates; no value for this facing is public.
 
     It declines sharply above 250 to 300 degrees, where the phenol resin decomposes ("Simulation of
     engagement control in automotive dry-clutch and temperature field analysis", abstract).
@@ -50,7 +50,7 @@ class FrictionParameters(OptionGroup, prefix='friction.'):
     )
     most_n_m: float = option(
         350.0,
-        'greatest kinetic capacity, whatever is asked of the clutch',
+        'greatest kinetic capacity, at any request',
         'N m',
         source='Section 1.1: greatest input torque of the C635; assumed for its clutches',
         above=0.0,
@@ -114,26 +114,27 @@ class FrictionParameters(OptionGroup, prefix='friction.'):
 
 
 class Capacity(NamedTuple):
-    """What the clutch can carry at 0, 1, ..., 10 ms of a period, in N m, never negative."""
+    """Torque capacities of the clutch at 0, 1, ..., 10 ms of a period, and its temperature."""
 
     kinetic: list[float]
-    """(11,) while it slips."""
+    """Kinetic capacity in N m, (11,), not negative: the torque while the clutch slips."""
     static: list[float]
-    """(11,) while it sticks, at least the kinetic one."""
+    """Static capacity in N m, (11,), at least the kinetic one: the largest torque while it
+    sticks."""
     temperature_c: float
-    """Temperature of the facing in degrees Celsius, at which it carries that."""
+    """Temperature of the facing in degrees Celsius, for which the capacities hold."""
 
 
 class FrictionClutch:
     """
-    The clutch that sticks: its capacity at the temperature T of its facing and a slip speed w_d.
+    The stick-slip clutch: its capacity at the temperature T of its facing and a slip speed w_d.
 
     c_kin = K_usura mu(T) mu(w_d) (C_a - C_kiss(T)) where that is positive and the actuator
     presses (C_a > 0), else 0, with C_kiss(T) = kiss_torque - kiss_drift (T - 20); at most
-    `most_n_m`. A requested torque of zero opens the clutch beyond any kiss point, so nothing is
-    carried there.
-    The static capacity is that of the same slip speed times `static_over_kinetic`: so it is never
-    below the kinetic one, whatever the curve over slip speed.
+    `most_n_m`. A requested torque of zero opens the clutch beyond any kiss point, so that the
+    capacity is zero.
+    The static capacity is the kinetic one at the same slip speed times `static_over_kinetic`, so
+    that it is never below the kinetic one, whatever the curve over slip speed.
     """
 
     def __init__(
@@ -142,7 +143,7 @@ class FrictionClutch:
         wear_gain: float = WEAR_GAIN.default,
         heat: HeatParameters | None = None,
     ) -> None:
-        """Take the friction and K_usura; start at the temperatures of `heat`, or else cold."""
+        """Use the friction and K_usura; start at the temperatures of `heat`, by default 20 °C."""
         self._parameters = parameters
         self._wear_gain = WEAR_GAIN.checked('wear_gain', wear_gain)
         self._heat = ClutchHeat(heat or HeatParameters())
@@ -152,11 +153,11 @@ class FrictionClutch:
         self, step: int, actuator_torque: Sequence[float], slip_speed: float, friction_work: float
     ) -> Capacity:
         """
-        Return the reply to t_k for the (11,) actuator torques in N m, w_d in rad/s at t_k.
+        Return the capacities of the period of t_k for the (11,) actuator torques in N m.
 
-        `friction_work` in J is that of the last period, which warms the clutch before; periods
-        before it that were not heard of, as may be in real time, count with the same work. Steps
-        rise from call to call.
+        `slip_speed` is w_d in rad/s at t_k. `friction_work` in J is that of the last period, which
+        warms the clutch first; skipped periods before it, as real time may have, count with the
+        same work. Steps rise from call to call.
         """
         for _ in range(self._step, step):
             self._heat.advance(friction_work)
@@ -170,7 +171,7 @@ class FrictionClutch:
         slip_speed: float = 0.0,
     ) -> Capacity:
         """
-        Return what can be carried at the instants of `actuator_torque`, in N m.
+        Return the capacities in N m at the instants of `actuator_torque` in N m.
 
         The facing's temperature in degrees Celsius and the slip speed in rad/s, of either sign,
         are those at the start of the period and hold throughout it: that makes the work of a hot,
@@ -194,5 +195,5 @@ class FrictionClutch:
 
 
 def _curve(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
-    # Where most runs stay; numpy takes longer than the rest of the clutch.
+    # The first branch is that of most runs; numpy takes longer than the rest of the clutch.
     return ys[0] if x <= xs[0] else float(np.interp(x, xs, ys))

@@ -1,4 +1,4 @@
-"""Heat of the clutch: three lumped masses that the friction work of each period warms."""
+"""Thermal model of the clutch: three lumped masses that the friction work of a period warms."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -17,9 +17,9 @@ _temperature = partial(option, 20.0, unit='°C', source=ASSUMED, at_least=-60.0,
 @dataclass(frozen=True)
 class HeatParameters(OptionGroup, prefix='heat.'):
     """
-    Masses, paths and start temperatures of the clutch.
+    Heat capacities, conductances and initial temperatures of the clutch.
 
-    No figure for the C635 is public. Plate and facing together are chosen so that a hard launch
+    No value for the C635 is public. Plate and facing together are chosen so that a hard launch
     of 40 kJ warms them by 30 to 40 K, as published simulations have it.
     The share of the facings is e_f / (e_f + e_p) of the thermal effusivities
     sqrt(conductivity x density x specific heat): 716 of a new lining (0.652 W/(m K) and
@@ -63,7 +63,7 @@ class ClutchHeat:
     """
 
     def __init__(self, parameters: HeatParameters) -> None:
-        """Start at the temperatures of the parameters."""
+        """Start at the initial temperatures of the parameters."""
         p = parameters
         plate, facing, housing = p.plate_j_k, p.facing_j_k, p.housing_j_k
         to_plate, to_housing = p.facing_to_plate_w_k, p.plate_to_housing_w_k
@@ -76,24 +76,24 @@ class ClutchHeat:
         )
         b = np.array([[(1.0 - p.facing_share) / plate], [p.facing_share / facing], [0.0]])
         sampled = discretise_zoh(StateSpace(a, b, np.eye(3), np.zeros((3, 1))), PERIOD_S)
-        # As plain numbers: a product so small takes numpy longer.
+        # Plain numbers: for so small a product numpy takes longer.
         self._update = np.hstack([sampled.a, sampled.b / PERIOD_S]).ravel().tolist()
         self._ambient_c = p.ambient_c
         self._above_ambient = [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
 
     @property
     def temperatures_c(self) -> tuple[float, float, float]:
-        """Plate, facing and housing in degrees Celsius."""
+        """Temperatures of plate, facing and housing in degrees Celsius."""
         plate, facing, housing = self._above_ambient
         return self._ambient_c + plate, self._ambient_c + facing, self._ambient_c + housing
 
     @property
     def facing_c(self) -> float:
-        """The facing's temperature in degrees Celsius, that friction depends on."""
+        """Temperature of the facing in degrees Celsius, on which the friction depends."""
         return self._ambient_c + self._above_ambient[1]
 
     def advance(self, friction_work: float) -> None:
-        """Pass the period of 10 ms in which the plates turned `friction_work` in J to heat."""
+        """Advance the temperatures by 10 ms with the heat `friction_work` in J of the period."""
         p, f, h = self._above_ambient
         pp, pf, ph, pw, fp, ff, fh, fw, hp, hf, hh, hw = self._update
         self._above_ambient = [

@@ -24,48 +24,50 @@ class InitialState:
     """
 
     engine_speed: float
-    """w_m(0) in rad/s."""
+    """Engine speed w_m(0) in rad/s."""
     shaft_speed: float
-    """w_p(0) in rad/s."""
+    """Speed of the primary shaft w_p(0) in rad/s."""
     wheel_speed: float
-    """w_r(0) in rad/s."""
+    """Wheel speed w_r(0) in rad/s."""
     twist: float
-    """theta_sr(0) in rad."""
+    """Twist of the driveshaft theta_sr(0) in rad."""
     engine_torque: float
-    """C_m(0) in N m."""
+    """Engine torque C_m(0) in N m."""
     load_torque: float
-    """C_load(0) in N m."""
+    """Load torque C_load(0) in N m."""
     torque_request: float
     """
-    What the clutch is asked before t_0, in N m: C_fOL(0) in `detailed`, 0 elsewhere and where the
-    scenario calls the clutch open.
+    Torque request before t_0 in N m: C_fOL(0) in `detailed`, 0 elsewhere and where the clutch of
+    the scenario is open.
     """
     clutch_torque: float
-    """What it transmits then, in N m."""
+    """Transmitted torque C_f before t_0 in N m."""
     wheel_torque: float = 0.0
-    """Friction of rolling and brake at the wheel, in N m; 0 where C_load has the rolling in it."""
+    """Friction of rolling and brake at the wheel in N m; 0 where C_load includes the rolling."""
     clutch_open: bool = False
-    """Whether it can transmit nothing then, though both plates may have one speed."""
+    """Whether the capacity of the clutch is zero before t_0, also at equal speeds of the
+    plates."""
 
 
 PHASES = OPEN, SLIPPING, LOCKED = ('open', 'slipping', 'locked')
-"""What the plates of a clutch that sticks can do; in signals by number."""
+"""Phases of a stick-slip clutch; a signal has the index of the phase."""
 PHASE_EVENTS = LOCK, RELEASE, REVERSE = ('lock', 'release', 'reverse')
-"""What happens at slip zero: the plates stick, part, or pass through it without sticking."""
+"""Kinds of events at slip zero: the plates lock, release, or reverse their slip without
+locking."""
 
 
 class PhaseEvent(NamedTuple):
-    """The plates of a clutch that sticks lock, part, or slip the other way from now on."""
+    """Event of a stick-slip clutch at slip zero: lock, release or reverse."""
 
     time_s: float
-    """Scenario time."""
+    """Scenario time of the event in s."""
     kind: str
-    """One of PHASE_EVENTS."""
+    """Kind of the event: one of PHASE_EVENTS."""
     slip_acceleration: float | None = None
     """
-    dw_d/dt in rad/s^2 just before it, of a release just after it.
+    Slip acceleration dw_d/dt in rad/s^2 just before the event, or just after a release.
 
-    None where it is not known: bags recorded before it was part of the event do not have it.
+    None in bags of older versions, which do not have it.
     """
 
 
@@ -73,23 +75,24 @@ class DrivelineOutputs(NamedTuple):
     """The signals of a tick; joints in the order engine, primary shaft, wheel, driveshaft."""
 
     joint_position: list[float]
-    """(4,) rad; the driveshaft's is theta_sr, the others integrate from 0."""
+    """Angles in rad, (4,): theta_sr of the driveshaft, the others integrated from 0."""
     joint_speed: list[float]
-    """(4,) rad/s: w_m, w_p, w_r, w_sr."""
+    """Speeds w_m, w_p, w_r, w_sr in rad/s, (4,)."""
     joint_effort: list[float]
-    """(4,) N m, left limits: C_m, transmitted C_f, C_load, shaft torque at the wheel."""
+    """Torques in N m, (4,), left limits: C_m, transmitted C_f, C_load, shaft torque at the
+    wheel."""
     slip_speed: float
-    """w_d = w_m - w_p in rad/s."""
+    """Slip speed w_d = w_m - w_p in rad/s."""
     vehicle_speed: float
-    """V_x in m/s."""
+    """Vehicle speed V_x in m/s."""
     vehicle_accel: float
-    """A_x in m/s^2, left limit."""
+    """Vehicle acceleration A_x in m/s^2, left limit."""
     clutch_phase: float | None = None
-    """Number of the phase in `PHASES`; this and what follows is None for the linear clutch."""
+    """Index of the phase in `PHASES`; None for the linear clutch, as are the next two fields."""
     friction_work: float | None = None
-    """Exact friction work in J of the period that has ended."""
+    """Exact friction work in J of the last period."""
     phase_events: tuple[PhaseEvent, ...] | None = None
-    """What happened at slip zero in it, in the order of time."""
+    """Events at slip zero in the last period, in the order of time."""
 
 
 def driveline_outputs(
@@ -104,12 +107,10 @@ def driveline_outputs(
     phase_events: tuple[PhaseEvent, ...] | None = None,
 ) -> DrivelineOutputs:
     """
-    Return the outputs in a state (7,) with C_m, C_f and C_load just before, in N m.
+    Return the outputs in a state (7,), with the left limits of C_m, C_f and C_load in N m.
 
-    The last three are for a clutch that sticks, as `DrivelineOutputs` has them.
-
-    While the clutch sticks the slip is 0, and while the wheels stick the acceleration is, not the
-    rounding of a difference.
+    The last three arguments are the fields of `DrivelineOutputs` for a stick-slip clutch. The slip
+    is exactly 0 while the clutch sticks, and the acceleration while the wheels stick.
     """
     engine, shaft, wheel, twist, *angles = state
     p = parameters
@@ -157,11 +158,11 @@ class Driveline:
 
     @property
     def engine_speed(self) -> float:
-        """w_m in rad/s at the present stamp."""
+        """Engine speed w_m in rad/s at the present step."""
         return float(self._state_and_inputs[0])
 
     def outputs(self) -> DrivelineOutputs:
-        """Return the outputs at the present stamp."""
+        """Return the outputs at the present step."""
         state = self._state_and_inputs[:7].tolist()
         return driveline_outputs(self._parameters, self._wheel_radius, state, self._torques)
 
@@ -179,10 +180,10 @@ class Driveline:
 
 def step_matrix(parameters: DrivelineParameters, *, angles: bool = True) -> np.ndarray:
     """
-    Return the (..., 7, 20) map to the next states and angles, (..., 4, 17) without the angles.
+    Return the matrix (..., 7, 20) to the next states and angles; (..., 4, 17) without the angles.
 
-    It takes states and angles (7,), C_m, C_load and the C_f nodes. Parameters that are arrays,
-    (...), give a stack. Raise ParameterError where a number is not finite.
+    Its columns are states and angles (7), C_m, C_load and the C_f nodes (11). Parameters that are
+    arrays, (...), give a stack. Raise ParameterError where a number is not finite.
     """
     a, b = matrices_with_angles(parameters) if angles else states_and_torques(parameters)
     _require_finite(a, b)

@@ -13,9 +13,9 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     Return the state space of Section 1.5.
 
     x = [w_m, w_p, w_r, theta_sr], u = [C_m, C_f, C_load], y = [w_d, w_sr]. Row 3 is that of the
-    thesis's matrix A, with c_sa/(J_v tau); its third differential equation prints
-    c_sa/(J_p tau), an erratum: the half-shaft would not push back with the torque it is pushed
-    with. Equation (1.4) leaves out c_prim, which the matrix has.
+    thesis's matrix A, with c_sa/(J_v tau); its third differential equation prints c_sa/(J_p tau),
+    an erratum: action and reaction of the half-shaft would differ. Equation (1.4) leaves out
+    c_prim, which the matrix has.
     """
     a, b = states_and_torques(parameters)
     c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / parameters.total_ratio, -1.0, 0.0]]
@@ -48,7 +48,7 @@ def states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.
 
 
 def _stacked(rows: Sequence[Sequence[float]]) -> np.ndarray:
-    """Return (..., rows, columns) of entries that are numbers or arrays, (...)."""
+    """Return the matrices (..., rows, columns) of entries that are numbers or arrays, (...)."""
     entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, len(rows), len(rows[0]))
 

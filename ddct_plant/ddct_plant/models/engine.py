@@ -11,7 +11,7 @@ from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.models.engine_limits import EngineLimits, LimitedEngine
 
 MOST_AUTHORITY = 1e6
-"""Largest deviation in N m and largest rate in N m/s that an engine's authority may have."""
+"""Largest allowed deviation in N m and rate in N m/s of an engine's authority."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
     """
     How far and how fast a controller may move the engine away from the driver's demand.
 
-    It shapes the deviation from the demand, so an engine without requests delivers the demand. As
-    it stands the engine follows any request at once, as the thesis assumes (Section 4.3).
+    It limits the deviation from the demand, so an engine without requests delivers the demand. By
+    default the engine follows any request at once, as the thesis assumes (Section 4.3).
     """
 
     deviation_n_m: float = option(
@@ -64,7 +64,7 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
     )
     lag_s: float = option(
         0.0,
-        'time constant of the first-order lag with which it comes about; 0 is none',
+        'time constant of the first-order lag of that deviation; 0 is none',
         's',
         source='Section 4.3',
         at_least=0.0,
@@ -88,45 +88,47 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
 
     @property
     def lag_share(self) -> float:
-        """Share of a held deviation that comes about within one period."""
+        """Share of a constant requested deviation that is reached within one period."""
         return 1.0 - math.exp(-PERIOD_S / self.lag_s) if self.lag_s > 0.0 else 1.0
 
 
 class EngineResponse:
-    """What becomes of requests within an engine's authority: the state between two periods."""
+    """Response of an engine to requests within its authority, with its state between periods."""
 
     def __init__(self, authority: EngineAuthority) -> None:
-        """Start on the demand."""
+        """Start at the demand."""
         self._authority = authority
         self._most_change = authority.slew_n_m_s * PERIOD_S
-        self.asked = 0.0
-        """Deviation from the demand in N m, limited, before the lag."""
+        self.requested = 0.0
+        """Requested deviation from the demand in N m, limited, before the lag."""
         self.deviation = 0.0
-        """The same after the lag."""
+        """Delivered deviation from the demand in N m, after the lag."""
 
     def deliver(self, demand: float, request: float) -> float:
         """
-        Return C_m in N m over the coming period, and take the request in N m in.
+        Return C_m in N m over the coming period for a request in N m.
 
         The deviation is limited, then its rate; it passes the lag; then the torque is limited.
         """
         limits = self._authority
-        asked = _limited(request - demand, limits.deviation_n_m)
-        self.asked += _limited(asked - self.asked, self._most_change)
-        self.deviation += limits.lag_share * (self.asked - self.deviation)
+        requested = _limited(request - demand, limits.deviation_n_m)
+        self.requested += _limited(requested - self.requested, self._most_change)
+        self.deviation += limits.lag_share * (self.requested - self.deviation)
         torque = demand + self.deviation
         return min(max(torque, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
 
     def reachable(self, demand: float, periods: int) -> tuple[float, float]:
         """
-        Return the lowest and the highest deviation in N m that may be asked for `periods` ahead.
+        Return the lowest and the highest deviation in N m that may be requested `periods` ahead.
 
         Within them the torque keeps its limits, as far as the rate allows; 1 is the coming period.
         """
-        limits, asked, change = self._authority, self.asked, periods * self._most_change
+        limits, requested, change = self._authority, self.requested, periods * self._most_change
         lowest = _limited(limits.minimum_torque_n_m - demand, limits.deviation_n_m)
         highest = _limited(limits.maximum_torque_n_m - demand, limits.deviation_n_m)
-        return asked + _limited(lowest - asked, change), asked + _limited(highest - asked, change)
+        return requested + _limited(lowest - requested, change), requested + _limited(
+            highest - requested, change
+        )
 
 
 class Engine:
@@ -134,7 +136,7 @@ class Engine:
     An engine whose torque C_m is held over the 10 ms period that starts at its stamp.
 
     The thesis's engine delivers the demanded torque at once (Section 1.4.3). A controller with two
-    inputs may ask for another torque (Section 4.3), within the engine's authority.
+    inputs may request another torque (Section 4.3), within the engine's authority.
     """
 
     def __init__(
@@ -144,7 +146,7 @@ class Engine:
         limits: EngineLimits | None = None,
     ) -> None:
         """
-        Start on the demand.
+        Start at the demand.
 
         Without `authority` it follows any request at once, without `limits` at any speed.
         """
@@ -168,13 +170,12 @@ class Engine:
         """
         Return the torque C_m in N m delivered over the period of step `step`.
 
-        It is the demand, or what comes about of `request` in N m, within what the engine's limits
-        allow at w_m = `speed` in rad/s. With requests or limits it is called once per step, in
-        order.
+        It is the demand, or the response to `request` in N m, within the engine's limits at
+        w_m = `speed` in rad/s. With requests or limits it is called once per step, in order.
         """
         demand = self.demand(step)
-        asked = demand if request is None else self._response.deliver(demand, request)
-        return asked if self._limited is None else self._limited.deliver(asked, speed)
+        requested = demand if request is None else self._response.deliver(demand, request)
+        return requested if self._limited is None else self._limited.deliver(requested, speed)
 
 
 def _limited(value: float, limit: float) -> float:

@@ -10,7 +10,7 @@ from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S
 
 STALLED, OVER_REVVED = 'stalled', 'over_revved'
-"""Why an engine ends its run."""
+"""Causes of an end of the run by the engine."""
 _RISING_SPEEDS = ('stall_rad_s', 'idle_rad_s', 'resume_rad_s', 'cut_rad_s', 'over_rev_rad_s')
 
 
@@ -22,7 +22,7 @@ _torques = partial(option, unit='N m', many=True, at_least=0.0, at_most=1e4)
 @dataclass(frozen=True)
 class EngineLimits(OptionGroup, prefix='engine_limits.'):
     """
-    What an engine can do: a 1.4-litre turbocharged petrol engine by default.
+    Limits of an engine: by default those of a 1.4-litre turbocharged petrol engine.
 
     250 N m at 2500 rpm and 170 hp (125 kW, so 217 N m) at 5500 rpm are those of the Fiat 1.4
     MultiAir in the Alfa Romeo MiTo with the C635 gearbox (types-cars.com, 2010; 250 N m also
@@ -48,13 +48,13 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
     )
     friction_n_m: tuple[float, ...] = _torques(
         (10.6, 12.7, 14.2, 16.0, 18.0, 36.0, 44.2, 58.5),
-        'torque that the engine takes with the fuel cut',
+        'torque that the engine absorbs with the fuel cut',
         source='Heywood 1988, chapter 13, times 1.368 l / 4 pi',
     )
     idle_rad_s: float = _speed(94.25, 'speed that idle control keeps, 900 rpm')
     idle_gain_n_m_s: float = _idle(3.0, 'proportional gain of idle control', 'N m s/rad')
     idle_integral_n_m: float = _idle(6.0, 'integral gain of idle control', 'N m/rad')
-    idle_most_n_m: float = _idle(60.0, 'highest torque that idle control asks for', 'N m')
+    idle_most_n_m: float = _idle(60.0, 'highest torque of idle control', 'N m')
     stall_rad_s: float = _speed(52.36, 'speed at and below which the engine stops, 500 rpm')
     cut_rad_s: float = _speed(680.68, 'speed from which the rev limiter cuts the fuel, 6500 rpm')
     resume_rad_s: float = _speed(670.21, 'speed below which fuel comes back, 6400 rpm')
@@ -80,7 +80,7 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
             )
 
     def end_cause(self, speed: float) -> str | None:
-        """Return why a run ends with the engine at w_m in rad/s, None where it goes on."""
+        """Return the cause of an end of the run at the engine speed in rad/s, None without one."""
         if speed <= self.stall_rad_s:
             return STALLED
         return OVER_REVVED if speed >= self.over_rev_rad_s else None
@@ -88,19 +88,19 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
 
 class LimitedEngine:
     """
-    What the engine delivers of the torque asked, at its speed at t_k; called once per period.
+    Engine torque within the limits at the speed of t_k; called once per period.
 
-    C_m = max(asked, idle), not above the full-load torque, and not below minus the friction
+    C_m = max(request, idle), not above the full-load torque, and not below minus the friction
     torque; minus the friction torque while the rev limiter cuts the fuel. Idle control is
     proportional and integral, K_p (w_idle - w_m) + I up to its highest torque; above idle it turns
-    negative and leaves the engine to what is asked. I, a torque in N m, stays within 0 and the
+    negative and has no effect on the request. I, a torque in N m, stays within 0 and the
     highest torque. An engine that has stalled gives no torque and never starts again.
     """
 
     def __init__(self, limits: EngineLimits) -> None:
-        """Start with fuel and without idle torque."""
+        """Start with the fuel on and no integral of idle control."""
         self._limits = limits
-        # As arrays: numpy would make them of the lists at every step.
+        # Arrays: numpy would convert the lists at every step.
         self._speeds = np.array(limits.speed_rad_s)
         self._friction, self._full_load = (
             np.array(curve) for curve in (limits.friction_n_m, limits.full_load_n_m)
@@ -110,8 +110,8 @@ class LimitedEngine:
         self.end_cause: str | None = None
         """STALLED or OVER_REVVED once the run must end, None before."""
 
-    def deliver(self, asked: float, speed: float) -> float:
-        """Return C_m in N m over the coming period, of `asked` in N m at w_m in rad/s."""
+    def deliver(self, request: float, speed: float) -> float:
+        """Return C_m in N m over the coming period, for `request` in N m at w_m in rad/s."""
         limits = self._limits
         if self.end_cause is None:
             self.end_cause = limits.end_cause(speed)
@@ -123,10 +123,10 @@ class LimitedEngine:
             return -friction
         self._cut = False
         most = float(np.interp(speed, self._speeds, self._full_load))
-        return min(max(asked, self._idle(speed), -friction), most)
+        return min(max(request, self._idle(speed), -friction), most)
 
     def _idle(self, speed: float) -> float:
-        """Return the torque that idle control asks for, and integrate."""
+        """Return the torque of idle control in N m, and integrate the speed error."""
         limits, missing = self._limits, self._limits.idle_rad_s - speed
         proportional = limits.idle_gain_n_m_s * missing
         torque = min(proportional + self._integral, limits.idle_most_n_m)

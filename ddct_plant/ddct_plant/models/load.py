@@ -1,4 +1,4 @@
-"""Road load as a wheel torque (Section 1.4.4), and what holds the wheel: rolling and brake."""
+"""Road load as a wheel torque (Section 1.4.4), and friction of rolling and brake at the wheel."""
 
 import math
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from ddct_plant.models.parameters import VehicleParameters
 
 @dataclass(frozen=True)
 class LoadParameters(OptionGroup, prefix='load.'):
-    """What resists the vehicle, apart from its mass and wheels; the thesis prints no values."""
+    """Parameters of the road load, apart from mass and wheels; the thesis prints no values."""
 
     air_density_kg_m3: float = option(1.2, 'rho_a', 'kg/m³', source=ASSUMED, at_least=0.0)
     frontal_area_m2: float = option(2.1, 'A_f', 'm²', source=ASSUMED, at_least=0.0)
@@ -66,7 +66,7 @@ class BrakeProfile(Profile, prefix='brake.'):
     )
     torque_n_m: tuple[float, ...] = option(
         (),
-        'torque that the brakes can hold then, at the wheels, linear between the points',
+        'holding torque of the brakes then, at the wheels, linear between the points',
         'N m',
         many=True,
         at_least=0.0,
@@ -77,7 +77,7 @@ class BrakeProfile(Profile, prefix='brake.'):
 def resisting_torque(
     drag: Any, wind: Any, force: Any, wheel_radius: Any, vehicle_speed: Any
 ) -> Any:
-    """Return C_load in N m, as `RoadLoad` has it; all may be arrays, of F_r + F_g in N too."""
+    """Return C_load in N m of `RoadLoad`; `force` is F_r + F_g in N, and all may be arrays."""
     air_speed = wind + vehicle_speed
     return (drag * air_speed * abs(air_speed) + force) * wheel_radius
 
@@ -88,7 +88,7 @@ class RoadLoad:
 
     F_a = 0.5 rho_a A_f C_a (v_a + v_v)^2, F_r = m g mu_r cos(alpha), F_g = m g sin(alpha) and
     C_load = (F_a + F_r + F_g) r_w. F_a keeps the sign of the relative wind, which the printed
-    square loses for a tail wind stronger than the vehicle is fast.
+    square loses for a tail wind faster than the vehicle.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class RoadLoad:
         vehicle: VehicleParameters,
         slope: SlopeProfile | None = None,
     ) -> None:
-        """Take `slope` in place of the constant one where it has points."""
+        """Use `slope` in place of the constant slope where it has points."""
         self._weight = vehicle.mass_kg * vehicle.gravity_m_s2
         self._rolling = parameters.rolling_coefficient
         self._slope = slope if slope and slope.given else None
@@ -107,11 +107,11 @@ class RoadLoad:
             * parameters.frontal_area_m2
             * parameters.drag_coefficient
         )
-        """0.5 rho_a A_f C_a in kg/m."""
+        """Drag factor 0.5 rho_a A_f C_a in kg/m."""
         self.wind = parameters.wind_speed_m_s
-        """v_a in m/s."""
+        """Head wind v_a in m/s."""
         self.wheel_radius = vehicle.wheel_radius_m
-        """r_w in m."""
+        """Wheel radius r_w in m."""
         self._constant_force = self._force(parameters.slope_rad)
         self._constant_rolling = self._rolling_torque(parameters.slope_rad)
 
@@ -119,19 +119,19 @@ class RoadLoad:
         """
         Return C_load in N m, positive when it resists.
 
-        `vehicle_speed` is in m/s; the scenario time matters to a slope that changes.
+        `vehicle_speed` is in m/s; the scenario time in s matters for a slope profile only.
         """
         force = self._force(self._slope.at(time_s)) if self._slope else self._constant_force
         return resisting_torque(self.drag, self.wind, force, self.wheel_radius, vehicle_speed)
 
     def rolling_torque(self, time_s: float) -> float:
-        """Return the size of F_r r_w in N m at a scenario time."""
+        """Return the rolling resistance F_r r_w in N m at a scenario time in s."""
         if self._slope is None:
             return self._constant_rolling
         return self._rolling_torque(self._slope.at(time_s))
 
     def forces(self, times_s: np.ndarray) -> np.ndarray:
-        """Return F_r + F_g in N at scenario times, (n,)."""
+        """Return F_r + F_g in N, (n,), at scenario times in s, (n,)."""
         if self._slope is None:
             return np.full(len(times_s), self._constant_force)
         return self._force(self._slope.over(times_s), np.cos, np.sin)
@@ -147,7 +147,7 @@ class HoldingTorque:
     """
     Capacity of the friction at the wheel: m g mu_r cos(alpha) r_w of rolling, and the brake.
 
-    It resists whichever way the wheel turns or would turn, so a car at rest stays at rest.
+    It resists motion in both directions, so that a car at rest stays at rest.
     """
 
     def __init__(self, load: RoadLoad, brake: BrakeProfile) -> None:
@@ -155,7 +155,7 @@ class HoldingTorque:
         self._brake = brake if brake.given else None
 
     def capacity(self, time_s: float) -> float:
-        """Return it in N m, not negative, at a scenario time."""
+        """Return the capacity in N m, not negative, at a scenario time in s."""
         rolling = self._load.rolling_torque(time_s)
         return rolling + self._brake.at(time_s) if self._brake else rolling
 
@@ -163,5 +163,5 @@ class HoldingTorque:
 def air_and_slope(
     load: LoadParameters, vehicle: VehicleParameters, slope: SlopeProfile | None = None
 ) -> RoadLoad:
-    """Return the road load that is left when rolling resistance is friction at the wheel."""
+    """Return the road load without rolling resistance, which is friction at the wheel then."""
     return RoadLoad(replace(load, rolling_coefficient=0.0), vehicle, slope)

@@ -1,4 +1,4 @@
-"""Parameters of driveline, with the values that the identification derives, and of vehicle."""
+"""Parameters of the driveline, with identified values, and of the vehicle."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ class DrivelineParameters(OptionGroup, prefix='driveline.'):
     """
     Parameters of the 4-state driveline of Section 1.5; `identify` derives the defaults.
 
-    They have 8 significant digits, more than the 3e-5 to 1e-3 to which each is known: together
+    They have 8 significant digits, more than their uncertainty of 3e-5 to 1e-3: together
     they reproduce the printed coefficients, and 8 digits move those by less than a hundredth of
     the rounding of the print.
     """
@@ -31,7 +31,9 @@ class DrivelineParameters(OptionGroup, prefix='driveline.'):
     total_ratio: float = _positive(
         9.3416024, 'tau: second gear times final drive, not the gear number 2 of Section 1.4.5'
     )
-    vehicle_inertia: float = _positive(154.69105, 'J_v, the vehicle seen at the wheels', 'kg m²')
+    vehicle_inertia: float = _positive(
+        154.69105, 'J_v, inertia of the vehicle at the wheels', 'kg m²'
+    )
 
 
 _MASS_KG = 1500.0

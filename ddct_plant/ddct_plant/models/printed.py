@@ -1,4 +1,4 @@
-"""The transfer functions that the thesis prints, digit by digit, with the errata mended."""
+"""The transfer functions that the thesis prints, digit by digit, with the errata corrected."""
 
 from dataclasses import dataclass, replace
 from decimal import Decimal
@@ -6,26 +6,26 @@ from decimal import Decimal
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 PrintedFactor = str | tuple[str, str]
-"""'a' is printed as (s + a), ('b', 'c') as (s^2 + b s + c), '0' as the factor s."""
+"""Printed factor: 'a' stands for (s + a), ('b', 'c') for (s^2 + b s + c), '0' for s."""
 
 
 @dataclass(frozen=True)
 class PrintedNumber:
-    """A number with the digits it was printed with."""
+    """A number with its printed digits."""
 
     label: str
-    """Which coefficient it is: gain, or a, b, c of a zero or pole factor."""
+    """Label of the coefficient: gain, or a, b, c of a zero or pole factor."""
     text: str
-    """The coefficient as printed, for example '7696' or '3.134e04'."""
+    """Coefficient as printed, for example '7696' or '3.134e04'."""
 
     @property
     def value(self) -> float:
-        """The number itself."""
+        """Value of the number."""
         return float(self.text)
 
     @property
     def half_unit(self) -> float:
-        """Half a unit of the last printed digit: how far rounding can have moved the number."""
+        """Half a unit of the last printed digit: the largest rounding error of the number."""
         return float(Decimal(5).scaleb(int(Decimal(self.text).as_tuple().exponent) - 1))
 
 
@@ -81,7 +81,7 @@ zeros, and no driveline fits the other coefficients together with 334.4 (see `id
 """
 
 CLUTCH_TO_SLIP_AS_PRINTED = replace(CLUTCH_TO_SLIP, numerator=('0.005905', ('5.344', '334.4')))
-"""P_2 with the erratum, to show that it does not fit."""
+"""P_2 with the erratum, as a counter-example that no driveline fits."""
 
 LOAD_TO_SLIP = PrintedTransferFunction('P3', '7.2217', ('63.99',), ('0.006733', ('121.4', '7696')))
 """P_3 = w_d / C_load, Section 1.6.2; its poles are those of P_2."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ddct_plant.models.parameters import DrivelineParameters
 
 EQUILIBRIA = ('thesis', 'full')
-"""What C_fOL and the start of a run count as equilibrium; see `StaticTorque`."""
+"""Definitions of equilibrium for C_fOL and the start of a run; see `StaticTorque`."""
 
 
 def constant_slip_torque(
@@ -31,16 +31,18 @@ def constant_slip_torque(
 @dataclass(frozen=True)
 class StaticTorque:
     """
-    C_fOL of a scenario.
+    Open-loop torque C_fOL of a scenario.
 
     With the equilibrium `thesis` it is `constant_slip_torque` of C_m and C_load. With `full` c_m
     and c_prim count too: the engine keeps C_m - c_m w_m, and C_load/tau + c_prim w_p resists at
-    the primary shaft. Then constant torques hold the slip constant but for what the actuator lags.
+    the primary shaft. Then constant torques keep the slip constant, except for the lag of the
+    actuator.
     """
 
     driveline: DrivelineParameters
+    """Parameters of the driveline."""
     equilibrium: str
-    """One of EQUILIBRIA."""
+    """Definition of equilibrium: one of EQUILIBRIA."""
 
     def torque(
         self, engine_torque: float, load_torque: float, engine_speed: float, shaft_speed: float
@@ -48,7 +50,7 @@ class StaticTorque:
         """Return C_fOL in N m for C_m and C_load in N m, w_m and w_p in rad/s."""
         p = self.driveline
         if self.equilibrium == 'full':
-            # Not in place: a batch of runs gives arrays, which stay what they are.
+            # Not in place: the arrays of a batch of runs must not change.
             engine_torque = engine_torque - p.engine_damping * engine_speed
             load_torque = load_torque + p.total_ratio * p.shaft_damping * shaft_speed
         return constant_slip_torque(p, engine_torque, load_torque)

@@ -1,4 +1,4 @@
-"""The driveline with a clutch that sticks and wheels that dry friction holds."""
+"""The driveline with dry friction in the clutch and at the wheels."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -23,9 +23,9 @@ from ddct_plant.models.driveline_model import matrices_with_angles
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 CLUTCH, WHEEL = 0, 1
-"""The friction elements by number."""
+"""Indices of the friction elements."""
 _HELD = (0, 1, 3)
-"""Inputs that are held: C_m, C_load and holding torque, not the clutch capacity."""
+"""Indices of the inputs held over a period: C_m, C_load and holding torque."""
 _PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 
 
@@ -43,7 +43,7 @@ class StickSlipDriveline:
     def __init__(
         self, parameters: DrivelineParameters, vehicle: VehicleParameters, initial: InitialState
     ) -> None:
-        """Start in the given state, whose load torque is that of air and slope alone."""
+        """Start in the given state, whose load torque is that of air and slope only."""
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
         self._integrator = friction_integrator(parameters)
@@ -52,7 +52,7 @@ class StickSlipDriveline:
         friction = [initial.clutch_torque, initial.wheel_torque]
         signs = self._integrator.mode_of(state)
         self.now = Interval(state, signs, [], [0.0, 0.0], friction)
-        """The period that has ended, with its events and the friction work of both elements."""
+        """Result of the last period: state, mode, events and friction work of both elements."""
         self._clutch_phase = (
             OPEN if initial.clutch_open else _phase(signs[CLUTCH], initial.clutch_torque)
         )
@@ -61,11 +61,11 @@ class StickSlipDriveline:
 
     @property
     def engine_speed(self) -> float:
-        """w_m in rad/s at the present stamp."""
+        """Engine speed w_m in rad/s at the present step."""
         return self.now.state[0]
 
     def outputs(self) -> DrivelineOutputs:
-        """Return the outputs at the present stamp; the wheel's effort has its friction in it."""
+        """Return the outputs at the present step; the wheel's effort includes its friction."""
         now = self.now
         engine_torque, load_torque, _ = self._torques
         clutch_torque, wheel_torque = now.friction
@@ -100,9 +100,9 @@ class StickSlipDriveline:
         """
         Advance by 10 ms with held C_m and C_load and the (11,) nodes of the clutch's capacities.
 
-        All in N m. `load_torque` is that of air and slope; `holding_torque`, the capacity of
-        rolling resistance and brake at the wheel, is held too. Raise ParameterError for a
-        negative capacity, or a static one below the kinetic one.
+        All torques are in N m. `load_torque` is that of air and slope; `holding_torque`, the
+        capacity of rolling resistance and brake at the wheel, is held too. Raise ParameterError
+        for a negative capacity, or a static one below the kinetic one.
         """
         kinetic = static = [*kinetic_torque, holding_torque]
         if static_torque is not kinetic_torque:
@@ -133,5 +133,5 @@ def friction_system(parameters: DrivelineParameters) -> FrictionSystem:
 
 @lru_cache
 def friction_integrator(parameters: DrivelineParameters) -> HybridIntegrator:
-    """Return what integrates it; raise ParameterError where its rates are too fast for 1 ms."""
+    """Return the integrator; raise ParameterError where the rates are too fast for 1 ms pieces."""
     return HybridIntegrator(friction_system(parameters), SUBSTEP_S, SUBSTEPS, _HELD)

@@ -1,4 +1,4 @@
-"""Node `actuator`: turns each torque request into the torque over the coming period."""
+"""Node `actuator`: computes from each torque request the torque over the coming period."""
 
 from typing import Any, ClassVar
 
@@ -19,16 +19,16 @@ class ActuatorNode(FollowerNode):
     """
     Answer `clutch/torque_request` with `actuator/torque`.
 
-    In real time it also follows `/clock`: a request that is missing is held for
-    `request_timeout_s`, then the clutch opens at `fail_safe_ramp_n_m_s`. Until it hears
-    `/clock` it gives no torque, and it ends when requests go on without: it could not tell that
-    they stop.
+    In real time it also follows `/clock`: the last request is held for `request_timeout_s` when
+    requests stop, then the clutch opens at `fail_safe_ramp_n_m_s`. Until it receives `/clock` it
+    publishes no torque, and it ends when requests go on without `/clock`: it could not detect
+    that they stop.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p fail_safe_ramp_n_m_s:=500.0',)
 
     def __init__(self, **kwargs: Any) -> None:
-        """Build the actuator at rest on the run's first request."""
+        """Build the actuator in its steady state for the run's first request."""
         super().__init__('actuator', **kwargs)
         fail_safe = declare_fail_safe(
             self,
@@ -52,14 +52,14 @@ class ActuatorNode(FollowerNode):
         return () if torques is None else (self._torque.fill(stamp_ns, torques),)
 
     def publish_reply(self) -> None:
-        """Publish the torque, in real time once the fail-safe sees the time pass."""
-        if self.limit is None or self.limit.tick_seen:
+        """Publish the torque; in real time only after a tick, by which the fail-safe runs."""
+        if self.limit is None or self.limit.tick_received:
             super().publish_reply()
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Say whether a stamp may be true; raise DdctError when no tick tells, but requests do."""
+        """Return whether a stamp is plausible; raise DdctError for requests without ticks."""
         true = super().admits(topic, stamp)
-        if not true and self.limit and not self.limit.tick_seen:
+        if not true and self.limit and not self.limit.tick_received:
             self._requests_without_clock += 1
             if self._actuator.watch.too_long(0, 1 + self._requests_without_clock):
                 raise DdctError(
@@ -74,7 +74,7 @@ class ActuatorNode(FollowerNode):
         torques = self._actuator.tick(step)
         if torques is None:
             return
-        self._safe_state.tell(step, stamp, f'no {REQUEST} for too long: opening the clutch')
+        self._safe_state.publish(step, stamp, f'no {REQUEST} for too long: opening the clutch')
         self._torque.fill(stamp, torques).publish()
 
 

@@ -1,4 +1,4 @@
-"""Node `clutch`: what the actuator's torque becomes between the plates at every tick."""
+"""Node `clutch`: computes the torque between the plates from the actuator's, at every tick."""
 
 from typing import Any
 
@@ -17,10 +17,11 @@ from ddct_plant.scenario.plant import linear_clutch, stick_slip_clutch
 
 class ClutchNode(FollowerNode):
     """
-    Answer `actuator/torque` with `clutch/torque`: what the linear clutch transmits.
+    Answer `actuator/torque` with `clutch/torque`, the transmitted torque of the linear clutch.
 
-    In a stick-slip run it is what the clutch can carry, which depends on `clutch/slip` and on the
-    work of `clutch/phase` too, and `clutch/temperature` comes with it.
+    In a stick-slip run `clutch/torque` has the kinetic and the static capacity, which depend on
+    `clutch/slip` and on the friction work of `clutch/phase` too, and `clutch/temperature` is
+    published beside it.
     """
 
     def __init__(self, **kwargs: Any) -> None:

@@ -35,28 +35,28 @@ from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
-"""What the driveline integrates, in the order in which it takes them."""
+"""Topics of the torques that the driveline integrates, in the order of its `step`."""
 SENSED = (SENSED_SLIP, SENSED_JOINT_STATES, SENSED_VEHICLE_SPEED)
-"""What of a tick the sensors say."""
+"""Topics of a tick that carry measurements of the sensors."""
 TICK = (CLOCK, *SENSED, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
-"""What makes a tick, in the order of sending: the slip has the longest way round the loop."""
+"""Topics of a tick, in the order of publication: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
-"""How often an unanswered tick is looked at."""
+"""Period in s at which an unanswered tick is checked."""
 
 
 class DrivelineNode(GraphNode):
     """
     Publish the tick t_k, wait for the torques (and the recorder), step, publish t_k+1.
 
-    In real time it steps on a steady 10 ms timer instead and counts what is missing; a bad torque
-    counts as a missing one. When `clutch/torque` stays away for `clutch_timeout_s`, the held
-    torque runs to zero at `fail_safe_ramp_n_m_s` and counts no more when it comes back.
+    In real time it steps on a steady 10 ms timer instead and counts missing replies; a bad torque
+    counts as a missing one. When `clutch/torque` is missing for `clutch_timeout_s`, the held
+    torque runs to zero at `fail_safe_ramp_n_m_s`, and later clutch torques are ignored.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p require_recorder:=true -p duration:=2.0',)
 
     def __init__(self, **kwargs: Any) -> None:
-        """Build the driveline in its initial state; `begin` starts the run."""
+        """Build the driveline in its initial state; a timer starts the run once the node spins."""
         super().__init__('driveline', **kwargs)
         self._run = RunKind(
             self.settings.lockstep, clutch=self.settings.clutch, sensed=self.settings.sensed
@@ -74,13 +74,13 @@ class DrivelineNode(GraphNode):
         ]
         self._diagnostics = Output(self, DIAGNOSTICS)
         self._safe_state = SafeStateReport(self)
-        self._listen_to_replies()
+        self._subscribe_to_replies()
         self.publish_run_info(driveline_info(self.plan.steps, self.plan.fail_safe))
         self._start_timer = self.every(0.0, self._begin)
         self.every(WATCH_PERIOD_S, self.owner.watch)
 
     def close(self) -> None:
-        """Stop looking at the graph."""
+        """End the check for second publishers."""
         self._sole_publishers.close()
 
     def _declare_plan(self) -> TickPlan:
@@ -132,16 +132,16 @@ class DrivelineNode(GraphNode):
     def _over_early(self) -> bool:
         return bool(self.settings.scenario.end_cause(self.driveline.engine_speed))
 
-    def _listen_to_replies(self) -> None:
+    def _subscribe_to_replies(self) -> None:
         rows = len(CLUTCH_TORQUE.signals_in(self._run))
         for topic in self._torques:
             read = partial(topic.read, joints=rows) if topic is CLUTCH_TORQUE else None
-            self.hear(topic, partial(self._receive, topic), read)
+            self.subscribe_values(topic, partial(self._receive, topic), read)
         if self.plan.recorder:
-            self.hear(RECORDER_ACK, partial(self._receive, RECORDER_ACK))
+            self.subscribe_values(RECORDER_ACK, partial(self._receive, RECORDER_ACK))
 
     def _receive(self, topic: Topic, stamp: int, reply: Any) -> None:
-        # Of two publishers' clutch torques none counts, and without any the clutch opens.
+        # With two publishers no clutch torque counts, so that the clutch opens.
         if topic is not CLUTCH_TORQUE or not self._sole_publishers.found:
             self.owner.offer(topic.name, stamp, reply)
 
@@ -151,14 +151,14 @@ class DrivelineNode(GraphNode):
 
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
-        now = self.driveline.outputs()
-        said = self._sensors.measure(step, now) if self._sensors else None
+        true = self.driveline.outputs()
+        measured = self._sensors.measure(step, true) if self._sensors else None
         for output, signals, sensed in self._outputs:
-            source = said if sensed else now
+            source = measured if sensed else true
             output.fill(stamp, *[getattr(source, signal.name) for signal in signals]).publish()
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
-            self._safe_state.tell(step, stamp, why)
+            self._safe_state.publish(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.owner.last_step:
             self._diagnostics.fill(stamp, self._counts(), name=TICKS_STATUS).publish()
 

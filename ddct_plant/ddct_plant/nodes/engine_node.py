@@ -27,12 +27,12 @@ class EngineNode(FollowerNode):
     """
     Answer `driveline/joint_states` with `engine/torque_demand` and `engine/torque`.
 
-    A run with sensors has `sensors/engine_torque` beside the latter.
+    In a run with sensors it also publishes `sensors/engine_torque`, the estimate of the latter.
 
-    With `two_input` the demand is answered at once, and `engine/torque` once the controller's
-    `engine/torque_request` of that stamp is here. In real time, when requests stop for
-    `request_timeout_s`, the engine goes back to the demand as fast as its authority lets it, and
-    stays there until it is started again: the actuator has opened the clutch by then.
+    With `two_input` the demand is published at once, and `engine/torque` once the controller's
+    `engine/torque_request` of that stamp has arrived. In real time, when requests stop for
+    `request_timeout_s`, the engine returns to the demand as fast as its authority allows, and
+    follows it until the node is started again: the actuator has opened the clutch by then.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p two_input:=true',)
@@ -61,16 +61,16 @@ class EngineNode(FollowerNode):
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
         if self._two_input:
-            self.hear(JOINT_STATES, self._on_tick, self._speed)
+            self.subscribe_values(JOINT_STATES, self._on_tick, self._speed)
             self.follow(JOINT_STATES, ENGINE_REQUEST, readers=readers)
         else:
-            self.listen(ENGINE_REQUEST, self._refuse_request)
+            self.subscribe_messages(ENGINE_REQUEST, self._refuse_request)
             self.follow(JOINT_STATES, readers=readers)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return the torque over the period of step k, and the demand if it is not out yet."""
+        """Return the torque over the period of step k, and the demand unless published."""
         speed = inputs[JOINT_STATES.name]
         if self._two_input:
             self._commanded.speed = speed
@@ -82,7 +82,7 @@ class EngineNode(FollowerNode):
         )
 
     def _delivered(self, step: int, stamp: int, torque: float) -> Reply:
-        """Return C_m over the period of step k, and what is known of it."""
+        """Return C_m over the period of step k, preceded by its estimate in a run with sensors."""
         delivered = self._torque.fill(stamp, torque)
         if self._estimate is None:
             return (delivered,)
@@ -93,7 +93,7 @@ class EngineNode(FollowerNode):
         return (known, delivered)
 
     def _speed(self, message: Any) -> float:
-        """Return w_m in rad/s where an engine with limits needs it, else 0 and spare the time."""
+        """Return w_m in rad/s for an engine with limits, else 0 to save time."""
         limited = self.settings.scenario.engine_limits is not None
         return JOINT_STATES.read(message)[0] if limited else 0.0
 
@@ -107,7 +107,7 @@ class EngineNode(FollowerNode):
         self._commanded.speed = speed
         torque = self._commanded.tick(step)
         if self._commanded.watch.stopped:
-            self._safe_state.tell(
+            self._safe_state.publish(
                 step,
                 stamp,
                 f'no {REQUEST} for too long: the demand holds until the engine is started again',

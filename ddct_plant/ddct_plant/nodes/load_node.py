@@ -11,7 +11,7 @@ from ddct_plant.scenario.plant import holding_torque, make_load
 
 
 class LoadNode(FollowerNode):
-    """Answer `vehicle/twist` with `load/torque`, in stick-slip runs `load/holding_torque` too."""
+    """Answer `vehicle/twist` with `load/torque`, and `load/holding_torque` in stick-slip runs."""
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the load of the run's scenario."""
@@ -25,7 +25,7 @@ class LoadNode(FollowerNode):
         self.follow(VEHICLE_SPEED)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
-        """Return C_load at the vehicle speed of t_k, and what holds the wheels by friction."""
+        """Return C_load at the vehicle speed of t_k, and the holding torque at the wheels."""
         time_s = time_of_step(step)
         load = self._load.torque(inputs[VEHICLE_SPEED.name], time_s)
         torque = self._torque.fill(stamp_ns, load)

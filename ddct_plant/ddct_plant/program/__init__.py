@@ -1,1 +1,1 @@
-"""What every program does around its work: errors, tables, files, signals."""
+"""Common parts of all programs: errors, tables, progress, signals, worker processes."""

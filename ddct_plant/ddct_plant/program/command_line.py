@@ -1,4 +1,4 @@
-"""What every program does around its work: one-line errors and honest exit codes."""
+"""Common command-line parts of all programs: parser, one-line errors, exit codes."""
 
 import argparse
 import contextlib
@@ -14,11 +14,11 @@ from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, write_json
 
 USAGE = 2
-"""Exit code after options that do not make sense, as argparse gives it."""
+"""Exit code after invalid options, as in argparse."""
 INTERRUPTED = 130
-"""Exit code after SIGINT, as shells give it."""
+"""Exit code after SIGINT, as in shells."""
 PIPE_CLOSED = 141
-"""Exit code after the reader of our output has gone, as shells give it for SIGPIPE."""
+"""Exit code after the reader of standard output has closed it, as in shells for SIGPIPE."""
 _ADVICE = {
     errno.ENAMETOOLONG: 'give a shorter name',
     errno.ENOSPC: 'free some space or choose another place',
@@ -35,21 +35,21 @@ def package_version() -> str:
 
 
 class ProgramParser(argparse.ArgumentParser):
-    """Keeps the lines of descriptions and examples, knows --version, complains in one line."""
+    """Argument parser that keeps line breaks, has --version, and reports errors in one line."""
 
     def __init__(self, **options: Any) -> None:
-        """Take what ArgumentParser takes."""
+        """Accept the options of ArgumentParser."""
         options.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         super().__init__(**options)
         version = package_version()
         self.add_argument('--version', action='version', version=version, help='print it, and end')
 
     def error(self, message: str) -> NoReturn:
-        """End the program."""
+        """End the program with the exit code USAGE and one line on standard error."""
         self.exit(USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        """Write help or version; where argparse would pass over it, OSError tells of failure."""
+        """Write help or version; raise OSError where it fails, which argparse would ignore."""
         stream = file or sys.stderr
         if message and stream is not None:
             stream.write(message)
@@ -62,8 +62,8 @@ def run_program(
     Run `main_function(argv)` and return the program's exit code.
 
     `argv` is without the program's name; None takes it from the command line. A DdctError is
-    printed on standard error as `<name>: <text>` and gives 1, and so is what the operating system
-    refuses: a name that is too long, a full disk or standard output.
+    printed on standard error as `<name>: <text>` and gives 1, and so is an error of the operating
+    system, such as a name that is too long, a full disk or a full standard output.
     """
     try:
         try:
@@ -110,7 +110,7 @@ def run_subcommands(
 
 
 def show_and_write(target: str | None, content: Any, show: Callable[[], None]) -> None:
-    """Let `show` print, unless `--json` wants standard output; write `content` as it wants it."""
+    """Call `show` unless `--json` is for standard output; write `content` as JSON to `target`."""
     if target != STDOUT:
         show()
     if target:
@@ -118,7 +118,7 @@ def show_and_write(target: str | None, content: Any, show: Callable[[], None]) -
 
 
 def complain(name: str, text: object) -> None:
-    """Print `<name>: <text>` as one line on standard error, fit for a terminal."""
+    """Print `<name>: <text>` as one line of printable characters on standard error."""
     print(f'{name}: {printable(text)}', file=sys.stderr, flush=True)
 
 
@@ -128,13 +128,13 @@ def _flush() -> None:
 
 
 def _refused(error: OSError) -> str:
-    """Say what the operating system refused; files that are written name themselves."""
+    """Return one line about an error of the operating system: the file, the cause, an advice."""
     what = 'the output' if error.filename is None else error.filename
     advice = _ADVICE.get(error.errno or 0, 'choose another place')
     return f'{what}: {error.strerror or error}: {advice}'
 
 
 def _drop_output() -> None:
-    """Let what is left of the output go nowhere: the interpreter flushes once more."""
+    """Redirect standard output to the null device, as the interpreter flushes it at its end."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

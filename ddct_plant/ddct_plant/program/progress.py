@@ -1,4 +1,4 @@
-"""How far long work is: its rate and the time that remains, on standard error."""
+"""Progress of long work on standard error: steps done, their rate and the remaining time."""
 
 import sys
 import time
@@ -9,14 +9,14 @@ from rich.console import Console
 from rich.progress import track
 
 QUIET_S = 2.0
-"""Work that ends earlier says nothing."""
+"""Time in s before the first line; shorter work prints none."""
 _EVERY_S = {True: 0.5, False: 10.0}
-"""Between two lines, on a terminal and elsewhere."""
+"""Time in s between two lines, on a terminal (True) and elsewhere."""
 Step = TypeVar('Step')
 
 
 class Progress:
-    """Tells of work that is done in steps."""
+    """Progress line of work that is done in steps."""
 
     def __init__(
         self,
@@ -27,7 +27,7 @@ class Progress:
         stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Begin; `done` of `total` were so before, and do not count in the rate."""
+        """Start the clock; `done` of `total` steps are from before and not in the rate."""
         self._what = what
         self._total = total
         self._before = done
@@ -37,8 +37,8 @@ class Progress:
         self._terminal = self._stream.isatty()
         self._next = self._started + QUIET_S
 
-    def tell(self, done: int, left_s: float | None = None) -> None:
-        """Say how far it is, if it is time to; `left_s` as in `line`."""
+    def update(self, done: int, left_s: float | None = None) -> None:
+        """Print the line for `done` steps if it is due; `left_s` as in `line`."""
         now = self._clock()
         if now < self._next:
             return
@@ -49,9 +49,10 @@ class Progress:
 
     def line(self, done: int, left_s: float | None = None) -> str:
         """
-        Return the line: how many of how many, the rate, the time that remains.
+        Return the line: steps done and their total, the rate, the remaining time.
 
-        That time follows from the rate, unless `left_s` gives it, for steps of unlike length.
+        That time follows from the rate, unless `left_s` in s is given, for steps of unequal
+        length.
         """
         elapsed = self._clock() - self._started
         rate = (done - self._before) / elapsed if elapsed else 0.0
@@ -69,7 +70,7 @@ class Progress:
 
 
 def with_progress(steps: Iterable[Step], total: int, description: str) -> Iterable[Step]:
-    """Show a bar on standard error while the steps are gone through, on a terminal only."""
+    """Return the steps; a terminal has a progress bar on standard error while they are taken."""
     console = Console(stderr=True)
     hidden = not console.is_terminal or total < 2
     return track(steps, description, total, console=console, transient=True, disable=hidden)

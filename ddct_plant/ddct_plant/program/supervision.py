@@ -1,8 +1,8 @@
 """
-How a process ends, and what it tells whoever supervises it.
+End of a process, and its messages to the supervisor.
 
-What SIGINT and SIGTERM do for a while, what ends a process whose parent is gone; the pulse of a
-node that runs, and its announced exit.
+Handlers of SIGINT and SIGTERM, signals at the end of the parent process, the pulse of a running
+node, and its announced exit code.
 """
 
 import ctypes
@@ -13,9 +13,9 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 PULSE_FD = 'DDCT_PULSE_FD'
-"""Environment variable with the file descriptor, not blocking, that a supervisor has opened."""
+"""Environment variable with the non-blocking file descriptor that a supervisor has opened."""
 EXIT_MARK = b'!'
-"""Comes before the exit code of a node whose work is over."""
+"""Byte before the announced exit code of a node whose work is over."""
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
 _SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
@@ -23,7 +23,7 @@ _SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
 
 @contextmanager
 def stop_signals() -> Iterator[list[int]]:
-    """Give the list that the signals are put into; what they did before comes back at the end."""
+    """Yield the list of received signals; the handlers from before are restored at the end."""
     received: list[int] = []
     with _handled(lambda caught, _frame: received.append(caught)):
         yield received
@@ -31,19 +31,19 @@ def stop_signals() -> Iterator[list[int]]:
 
 @contextmanager
 def ends_at_once() -> Iterator[None]:
-    """Let the kernel end the process by either signal, were it to hang in foreign code."""
+    """Let the kernel end the process at either signal, even if it hangs in foreign code."""
     with _handled(signal.SIG_DFL):
         yield
 
 
 def end_with_parent(by: signal.Signals = signal.SIGTERM) -> None:
-    """Let the kernel send this process a signal when its parent ends, be it killed (Linux)."""
+    """Let the kernel send this process the signal `by` when its parent ends (Linux)."""
     ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, by)
 
 
 @contextmanager
 def adopting_orphans() -> Iterator[None]:
-    """Become the parent of those descendants whose parent ends meanwhile (Linux)."""
+    """Become the parent of all descendants whose parent ends meanwhile (Linux)."""
     prctl = ctypes.CDLL(None).prctl
     before = ctypes.c_int()
     prctl(_GET_TAKES_ORPHANS, ctypes.byref(before))
@@ -65,18 +65,18 @@ def _handled(by: Callable[[int, Any], Any] | signal.Handlers) -> Iterator[None]:
 
 
 def beat() -> None:
-    """Show that the node runs; called again and again."""
-    _tell(b'.')
+    """Send the supervisor one pulse of the running node; called periodically."""
+    _write_to_supervisor(b'.')
 
 
 def announce_exit(code: int) -> None:
-    """Say that the node's work is over with this exit code: it only has to leave the graph."""
-    _tell(EXIT_MARK + str(code).encode())
+    """Send the supervisor the exit code of the node, which only has to leave the graph."""
+    _write_to_supervisor(EXIT_MARK + str(code).encode())
 
 
-def _tell(what: bytes) -> None:
+def _write_to_supervisor(data: bytes) -> None:
     descriptor = os.environ.get(PULSE_FD, '')
     if descriptor.isdecimal():
-        # Full or closed: the supervisor does not look at it now, or is gone.
+        # Full or closed: the supervisor does not read it now, or has ended.
         with suppress(OSError):
-            os.write(int(descriptor), what)
+            os.write(int(descriptor), data)

@@ -1,4 +1,4 @@
-"""Figures, tables of them, and their print: by rich on a terminal, plain in a pipe or a file."""
+"""Quantities, tables of them, and their print: rich on a terminal, plain in a pipe or a file."""
 
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,31 +17,33 @@ from ddct_plant.base.errors import printable
 PURE = '1'
 """Unit of a pure number."""
 UNDEFINED = '-'
+"""Text of an undefined value."""
 
 
 @dataclass(frozen=True)
-class Figure:
-    """A number, described once for terminal, JSON, documentation pages and the report."""
+class Quantity:
+    """A number of a run, described once for terminal, JSON, documentation pages and the report."""
 
     key: str
-    """Name in JSON."""
+    """Key in JSON."""
     symbol: str
-    """What a table calls it; an underscore begins the index."""
+    """Symbol in tables; an underscore begins its index."""
     unit: str
-    """Such as m/s^2, or PURE."""
+    """Unit, such as m/s^2, or PURE."""
     form: str
-    """Format of the number."""
+    """Format of the number, such as '.3f'."""
     meaning: str
+    """Meaning in a few words."""
     undefined: str = ''
-    """When it has no value."""
+    """Condition under which it has no value."""
 
     @property
     def heading(self) -> str:
-        """Symbol and unit."""
+        """Symbol and unit, as the heading of a column."""
         return self.symbol if self.unit == PURE else f'{self.symbol} {self.unit}'
 
     def cell(self, values: Mapping[str, float | None]) -> str:
-        """Return its text among values by name."""
+        """Return the text of this quantity's value, from values by key."""
         return text_or_dash(values[self.key], self.form)
 
 
@@ -50,20 +52,20 @@ Row = TypeVar('Row')
 
 @dataclass(frozen=True)
 class Column(Generic[Row]):
-    """What a table says of each of its rows."""
+    """Column of a table: its heading, and the value and text of each row."""
 
     heading: str
-    """A newline parts the name from the unit."""
+    """Heading; a newline separates name and unit."""
     form: str
-    """Format of the value."""
+    """Format of the value, such as '.3f'."""
     value: Callable[[Row], Any]
-    """None, shown as a dash, for what is undefined."""
+    """Function from a row to its value; None, shown as a dash, where it is undefined."""
     number: bool = True
-    """Whether it belongs to the right of its column, where rich draws the table."""
+    """Whether the column is aligned to the right, where rich draws the table."""
     below: Callable[[Row], str] = lambda row: ''
-    """What a second line says beneath the value; empty for none."""
+    """Function from a row to the second line beneath the value; empty for none."""
     undefined: str = ''
-    """Why there may be a dash."""
+    """Reason for an undefined value."""
 
     def text(self, row: Row) -> str:
         """Return the text of a row's value."""
@@ -83,7 +85,7 @@ class Table:
     headers: Sequence[str]
     rows: Sequence[Sequence[str]]
     numbers: Sequence[bool] = field(default=(), kw_only=True)
-    """Which columns are aligned to the right, from the first on; by rich alone."""
+    """Whether each column, from the first on, is aligned to the right; rich only."""
 
 
 def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) -> Table:
@@ -97,7 +99,7 @@ def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) ->
 
 
 def text_or_dash(value: Any, form: str) -> str:
-    """Return a value in a format, or a dash for what does not exist or has no limit."""
+    """Return a value in a format, or a dash for None: an undefined value or no limit."""
     return UNDEFINED if value is None else format(value, form)
 
 
@@ -124,7 +126,7 @@ def print_tables(tables: Iterable[Table]) -> None:
 
 
 def drawn_by_rich(table: Table, *, ruled: bool = False) -> RichTable:
-    """Return a table as rich draws it; with a rule below its headers, cells may wrap."""
+    """Return the table of rich; with `ruled` it has a rule below its headers, and cells wrap."""
     drawn = RichTable(
         title=escape(table.title) or None,
         title_justify='center' if ruled else 'left',

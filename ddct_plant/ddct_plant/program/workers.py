@@ -1,4 +1,4 @@
-"""Work shared among processes of this machine: by fork, so that it may hold any object."""
+"""Work shared among forked processes of this machine; it may refer to any object."""
 
 import ctypes
 import multiprocessing
@@ -19,11 +19,11 @@ _SET_THREADS = (
     'scipy_openblas_set_num_threads',
     'scipy_openblas_set_num_threads64_',
 )
-"""By how the library was built."""
+"""Names of the function that sets the threads of OpenBLAS, by build of the library."""
 _LARGEST_CHUNK = 16
-"""Results that a worker sends at once."""
+"""Largest number of results that a worker sends at once."""
 _CHUNKS_EACH = 8
-"""At least that a worker gets, where there is enough work, so that all end together."""
+"""Least number of chunks of a worker, where there is enough work, so that all end together."""
 Result = TypeVar('Result')
 
 
@@ -32,11 +32,11 @@ def in_processes(
     work: Callable[[int], Result], count: int, workers: int | None = None
 ) -> Iterator[Iterator[Result]]:
     """
-    Give the results of `work(0)` to `work(count - 1)`, in this order, computed as they are taken.
+    Yield the results of `work(0)` to `work(count - 1)`, in this order, computed as they are taken.
 
-    `workers` is the number of processes, by default that of the cores; one works in this process.
-    Only results go between processes: `work` may be anything. Taking a result raises DdctError
-    when a worker was killed.
+    `workers` is the number of processes, by default that of the cores; 1 means this process.
+    Only results are passed between processes, so `work` may be any function. Taking a result
+    raises DdctError when a worker was killed.
     """
     workers = min(workers or len(os.sched_getaffinity(0)), count)
     if workers < 2:
@@ -62,7 +62,7 @@ def _taken(results: Iterator[Result]) -> Iterator[Result]:
 
 
 _work: Callable[[int], Any]
-"""What a worker was forked with."""
+"""Function that a forked worker computes."""
 
 
 def _begin(work: Callable[[int], Any]) -> None:
@@ -73,7 +73,7 @@ def _begin(work: Callable[[int], Any]) -> None:
 
 
 def begin_worker() -> None:
-    """Prepare a worker: Ctrl-C is for the program alone, and whoever kills that ends this too."""
+    """Prepare a worker: it ignores Ctrl-C, and is killed when the program ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     end_with_parent(signal.SIGKILL)
@@ -83,7 +83,7 @@ def one_numeric_thread() -> None:
     """
     Let the OpenBLAS libraries of numpy and scipy use one thread, as `ddct` does by its variable.
 
-    Matrices are small: further threads wait for one another, and may round in another order.
+    Matrices are small: more threads only wait for one another, and may change the rounding.
     """
     loaded = Path('/proc/self/maps').read_text(encoding='utf-8').split()
     for name in {word for word in loaded if '/' in word and 'openblas' in Path(word).name}:

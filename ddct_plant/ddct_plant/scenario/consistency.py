@@ -1,12 +1,12 @@
 """
-Values of a scenario that belong together, kept so: one that is given moves the other.
+Consistency of scenario values that depend on each other: a given one moves the other.
 
     J_v = m_v r_w^2        driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
     total ratio of a gear  gear, driveline.total_ratio
     the score window       control_start_s, score_window_s
 
-Where both halves are given and contradict each other the scenario is refused. The defaults agree
-to rounding, so a scenario that gives none of these is left as it is.
+Where both values are given and contradict each other the scenario is refused. The defaults agree
+to rounding, so a scenario that gives none of these is not changed.
 """
 
 import math
@@ -20,11 +20,11 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.scenario import FINAL_DRIVE, GEAR_RATIOS, Scenario
 
 DEFAULT, FILE, SET = 0, 1, 2
-"""Where a value comes from; a higher one moves a lower one."""
+"""Origins of a value; a value of a higher origin moves one of a lower origin."""
 SAME, AGREE = 1e-9, 1e-3
-"""Relative: what needs no move, and what two given values may differ by, as by few digits."""
+"""Relative differences: the largest without a move, and the largest between two given values."""
 Origins = Mapping[str, int]
-"""FILE or SET by dotted key; a key that is not there has its default."""
+"""FILE or SET by dotted key; a missing key has its default."""
 
 
 INERTIA, MASS = 'driveline.vehicle_inertia', 'vehicle.mass_kg'
@@ -33,10 +33,10 @@ RADIUS, RATIO = 'vehicle.wheel_radius_m', 'driveline.total_ratio'
 
 def consistent(scenario: Scenario, origins: Origins, start_before: float | None) -> Scenario:
     """
-    Return the scenario with what follows from given values moved, and said in `adjusted`.
+    Return the scenario with dependent values moved, each with a line in `adjusted`.
 
-    `start_before` is `control_start_s` in s before it was set. Raise ParameterError where given
-    values contradict each other, or where the score window would be empty.
+    `start_before` is `control_start_s` in s of the file, before `--set`. Raise ParameterError
+    where given values contradict each other, or where the score window would be empty.
     """
     scenario = _with_gear(_with_mass(scenario, origins), origins)
     if start_before is not None and _origin(origins, 'control_start_s') > _origin(
@@ -47,7 +47,7 @@ def consistent(scenario: Scenario, origins: Origins, start_before: float | None)
 
 
 def _with_control_in(scenario: Scenario) -> Scenario:
-    """Refuse a score window that ends before control starts; say if it begins before."""
+    """Refuse a score window that ends before control starts; note one that begins before."""
     first, last = scenario.score_window_s
     start = scenario.control_start_s
     if last < start:
@@ -61,14 +61,14 @@ def _with_control_in(scenario: Scenario) -> Scenario:
         )
     if first >= start:
         return scenario
-    return _saying(
+    return _with_line(
         scenario,
         f'score_window_s stays at {[first, last]} s although control starts later, at {start:g} s',
     )
 
 
 def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
-    """Hold J_v = m_v r_w^2: move J_v or the mass, whichever is given less; never the radius."""
+    """Keep J_v = m_v r_w^2: move J_v or the mass, whichever has the lower origin."""
     inertia, mass, radius = attrgetter(INERTIA, MASS, RADIUS)(scenario)
     square = radius * radius
     if not 0.0 < square < math.inf:
@@ -91,9 +91,9 @@ def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
 
 def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
     """
-    Hold gear and total ratio together: a gear moves the ratio, a ratio names the gear.
+    Keep gear and total ratio consistent: a gear moves the ratio, a ratio sets the gear.
 
-    A file that gives another car's ratio and names no gear has nothing to be told.
+    A file with another car's ratio and no gear gets no line in `adjusted`.
     """
     gear, total = scenario.gear, scenario.driveline.total_ratio
     ratios = [ratio * FINAL_DRIVE for ratio in GEAR_RATIOS]
@@ -110,21 +110,21 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
         )
     if gear is None and not fits:
         about = f'gear stays none, as no gear of the C635 has {RATIO} {total:g}'
-        return _saying(scenario, about) if of_total == SET else scenario
+        return _with_line(scenario, about) if of_total == SET else scenario
     name = fits[0] if fits else None
     about = f'gear is now {name or "none"}, as {RATIO} is {total:g}'
-    return _saying(replace(scenario, gear=name), about)
+    return _with_line(replace(scenario, gear=name), about)
 
 
 def _moved(scenario: Scenario, key: str, value: float, why: str) -> Scenario:
     group, _, leaf = key.partition('.')
     changed = replace(getattr(scenario, group), **{leaf: value})
     about = f'{key} moved from {attrgetter(key)(scenario):g} to {value:g}: {why}'
-    return _saying(replace(scenario, **{group: changed}), about)
+    return _with_line(replace(scenario, **{group: changed}), about)
 
 
 def _move_window(scenario: Scenario, start_before: float) -> Scenario:
-    """Move the score window as far as control start has moved."""
+    """Move the score window by the same time as control start."""
     shift = _steps(scenario.control_start_s) - _steps(start_before)
     if not shift:
         return scenario
@@ -137,11 +137,11 @@ def _move_window(scenario: Scenario, start_before: float) -> Scenario:
             f'{scenario.duration_s:g} s: give score_window_s too, or a longer duration_s'
         )
     about = f'score_window_s moved from {list(before)} to {[first, last]} s with {change}'
-    return _saying(replace(scenario, score_window_s=(first, last)), about)
+    return _with_line(replace(scenario, score_window_s=(first, last)), about)
 
 
-def _saying(scenario: Scenario, line: str) -> Scenario:
-    """Return the scenario with a line in `adjusted`, once."""
+def _with_line(scenario: Scenario, line: str) -> Scenario:
+    """Return the scenario with the line in `adjusted`, added at most once."""
     if line in scenario.adjusted:
         return scenario
     return replace(scenario, adjusted=(*scenario.adjusted, line))

@@ -1,4 +1,4 @@
-"""What a scenario says of control: which speeds it follows, and how the closing stage goes on."""
+"""Sections of a scenario about control: the followed speeds, and the closing stage."""
 
 from dataclasses import dataclass
 
@@ -7,11 +7,11 @@ from ddct_plant.base.profile import Profile
 from ddct_plant.base.timebase import LONGEST_S
 
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
-"""How a slip reference can run to zero once control starts, as a function of time."""
+"""Shapes of a slip reference that runs to zero from control start, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
 """Shape of a slip reference that follows from a wanted engine speed."""
 PROFILE = 'profile'
-"""Shape of a slip reference that is given over scenario time."""
+"""Shape of a slip reference that is a profile over scenario time."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class EngineSpeedReference(Profile, prefix='engine_speed_reference.'):
 
 @dataclass(frozen=True)
 class SlipProfile(Profile, prefix='slip_reference.'):
-    """Slip speed over scenario time, linear between its points; it counts from control start."""
+    """Slip reference over scenario time, linear between points, used from control start."""
 
     slip_rad_s: tuple[float, ...] = option(
         (),
@@ -84,7 +84,7 @@ class SlipProfile(Profile, prefix='slip_reference.'):
 
 @dataclass(frozen=True)
 class ClosingParameters(OptionGroup, prefix='closing.'):
-    """How lock-up is recognised from measured speeds, and the request that keeps it."""
+    """Closing stage: detection of lock-up from measured speeds, and the request that keeps it."""
 
     slip_band_rad_s: float = option(
         1.0,
@@ -114,7 +114,7 @@ class ClosingParameters(OptionGroup, prefix='closing.'):
     )
     reserve_n_m: float = option(
         20.0,
-        'what is asked beyond that, so that a clutch without load is closed too',
+        'request beyond that, so that a clutch without load is closed too',
         'N m',
         source=ASSUMED,
         at_least=0.0,

@@ -1,4 +1,4 @@
-"""Profiles from CSV files and profiles times a factor; what is loaded holds the points itself."""
+"""Profiles from CSV files and profiles times a factor; a loaded scenario contains the points."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -23,7 +23,7 @@ from ddct_plant.models.load import BrakeProfile, SlopeProfile
 from ddct_plant.scenario.control import EngineSpeedReference, SlipProfile
 
 MOST_ROWS = 2000
-"""Most rows of one file. A bag can hold a scenario with all profiles of this size."""
+"""Most rows of one file; a scenario with all profiles of this size fits into a bag."""
 _PROFILES: tuple[type[OptionGroup], ...] = (
     TorqueProfile,
     EngineSpeedReference,
@@ -33,7 +33,7 @@ _PROFILES: tuple[type[OptionGroup], ...] = (
 )
 _FILE = 'csv'
 FACTOR = 'factor'
-"""Key of a profile, which is in no scenario that has been loaded."""
+"""Key of the factor of a profile; a loaded scenario does not have it."""
 FACTOR_OPTION = Option(1.0, 'by which the values of a profile are multiplied')
 _SOURCE: Options = {
     _FILE: Option(REQUIRED, 'the file', kind=str),
@@ -43,7 +43,7 @@ _SOURCE: Options = {
     'time_unit': Option('s', 'unit of the times'),
     'start_s': Option(0.0, "the file's time at scenario time 0", 's'),
 }
-"""What a section says of its file."""
+"""Options of a section that describe its CSV file."""
 
 
 def with_points(
@@ -52,10 +52,10 @@ def with_points(
     """
     Return the content of a scenario with the points of its CSV files in place of their names.
 
-    A section may say `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
+    A section may be `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
     `start_s`, the file's time in s at scenario time 0. The file is relative to `folder`, that of
-    the scenario; one that `--set` names, as `set_keys` tell, is relative to the working directory.
-    A section with `factor` has its values multiplied by that.
+    the scenario; a file from `--set`, whose keys are `set_keys`, is relative to the working
+    directory. The values of a section with `factor` are multiplied by it.
     Raise ParameterError that names file, line and column.
     """
     content, given = dict(content), set(set_keys)
@@ -77,7 +77,7 @@ def with_points(
 
 
 def _scaled(section: dict[str, Any], value: str, factor: float) -> dict[str, Any]:
-    """Return a section with its values multiplied; leave to the scenario what are no numbers."""
+    """Return a section with its values multiplied; values that are no numbers stay unchanged."""
     points = section.get(value)
     if not isinstance(points, Sequence) or not all(type(each) in (int, float) for each in points):
         return section
@@ -85,7 +85,7 @@ def _scaled(section: dict[str, Any], value: str, factor: float) -> dict[str, Any
 
 
 def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> dict[str, Any]:
-    """Return a section without its points or its file, where --set gives the other."""
+    """Return a section without its points where --set gives a file, and the other way round."""
     points = {TIME, value}
     if _FILE not in section or not points & set(section):
         return section
@@ -112,7 +112,7 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) ->
 
 
 def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
-    """Return the points that a file holds as `spec` describes it, checked."""
+    """Return the checked points of the file that `spec` describes."""
     names, value = [spec['time'], spec['value']], value_name(group)
     table = read_csv(base / spec[_FILE], names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
     times, values = (table.columns[name] for name in names)
@@ -126,7 +126,7 @@ def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict
 def _check(
     table: CsvTable, columns: Mapping[str, str], points: Mapping[str, Any], group: type
 ) -> None:
-    """Refuse values out of range, times that do not rise, and a late start, by their place."""
+    """Refuse values out of range, times that do not rise, and a late start; name their place."""
     for name, described in options_of(group).items():
         one = replace(described, many=False, default=REQUIRED)
         for row, number in enumerate(points[name]):

@@ -1,4 +1,4 @@
-"""What a scenario has changed of the packaged one that it is called after."""
+"""Differences between a scenario and the packaged scenario of the same name."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -9,7 +9,7 @@ from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.scenario import Scenario
 
 SHOWN = 6
-"""Changed values that a title shows; it counts the others."""
+"""Largest number of changed values in a title; the others are counted."""
 _LONGEST = 40
 _NOT_COMPARED = ('name', 'description', 'adjusted')
 
@@ -18,7 +18,7 @@ def changed_values(scenario: Scenario) -> tuple[str, ...]:
     """
     Return `KEY=VALUE` of every value that differs from the packaged scenario of the same name.
 
-    A scenario of a name that is not packaged has none: there is nothing to set it beside.
+    A scenario whose name is not packaged has none.
     """
     if scenario.name not in scenario_names():
         return ()
@@ -33,7 +33,7 @@ def changed_values(scenario: Scenario) -> tuple[str, ...]:
 
 
 def scenario_title(name: str, changes: Sequence[str]) -> str:
-    """Return the scenario's name for a heading, and what it has changed."""
+    """Return a heading: the scenario's name, and its changed values."""
     if not changes:
         return name
     count = f'{len(changes)} value{"s" if len(changes) > 1 else ""} changed'
@@ -43,7 +43,7 @@ def scenario_title(name: str, changes: Sequence[str]) -> str:
 
 
 def values_by_key(scenario: Scenario) -> dict[str, Any]:
-    """Return the values of a scenario by their dotted keys."""
+    """Return the values of a scenario by dotted key."""
     return flat(scenario_content(scenario))
 
 

@@ -24,7 +24,7 @@ from ddct_plant.scenario.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1
-"""Version of a scenario file. A file that states none is of this version."""
+"""Version of the keys of a scenario file; a file without a version has this one."""
 
 
 def scenario_names() -> list[str]:
@@ -37,13 +37,14 @@ def scenario_names() -> list[str]:
 
 @dataclass(frozen=True)
 class ScenarioFile:
-    """A scenario as its file describes it, of which scenarios with changes are made."""
+    """Content of a scenario file, from which scenarios with overrides are made."""
 
     name: str
-    """The name or path that it was asked for by."""
+    """Name or path of the scenario, as requested."""
     content: Mapping[str, Any]
+    """Values of the file by key, nested."""
     lines: Mapping[str, int]
-    """Lines of the keys and items, by path."""
+    """Line numbers of the keys and items, by path."""
 
     @classmethod
     def read(cls, name_or_file: str) -> 'ScenarioFile':
@@ -59,7 +60,7 @@ class ScenarioFile:
     def scenario(
         self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
     ) -> Scenario:
-        """Return the scenario with overrides, as `load_scenario` tells."""
+        """Return the scenario with overrides; arguments and errors as in `load_scenario`."""
         content = dict(self.content)
         start_before = content.get('control_start_s')
         given = (
@@ -85,11 +86,11 @@ def load_scenario(
     """
     Return the scenario that a name or a YAML file describes, with overrides.
 
-    They are `KEY=VALUE` as text, or values by key, dotted ones. `clutch` is that of the run: not
-    every driveline can be integrated with one that sticks.
+    Overrides are texts `KEY=VALUE`, or values by dotted key. `clutch` is the clutch model of the
+    run: not every driveline can be integrated with a stick-slip clutch.
 
-    Values that belong together are kept so, as `consistency` tells, and values that no car has
-    get a word in `adjusted`, as `plausible` tells.
+    Dependent values are kept consistent (see `consistency`), and values that no car has get a
+    line in `adjusted` (see `plausible`).
     Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
     cannot be read.
     """
@@ -97,12 +98,12 @@ def load_scenario(
 
 
 def is_packaged(name_or_file: str) -> bool:
-    """Say whether it is the name of a scenario that comes with the package, and no file."""
+    """Return whether it is the name of a packaged scenario rather than a file."""
     return '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml'))
 
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
-    """Build a scenario from nested mappings, the form that YAML files have."""
+    """Return the scenario of nested mappings, the content of a YAML file."""
     content = {'description': '', **content}
     require_schema_version(content, SCHEMA_VERSION)
     content.pop(SCHEMA_KEY, None)
@@ -117,10 +118,10 @@ def scenario_to_yaml(scenario: Scenario) -> str:
 
 def scenario_digest(scenario: Scenario) -> str:
     """
-    Return a short hash over every value of the scenario, to tell two of one name apart.
+    Return a short hash over every value of the scenario, to distinguish two of one name.
 
-    What a file may leave out counts only where it is given, so the hash of a scenario stays when
-    a key is added that it does not have.
+    Optional keys count only where they are given, so that the hash of a scenario stays when the
+    schema gets a new key.
     """
     text = json.dumps(scenario_content(scenario), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
@@ -157,9 +158,9 @@ def _read(name_or_file: str) -> tuple[str, str]:
 
 def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
     """
-    Change one value, or a group of them; return the keys of what was given.
+    Set one value or group in `content`; return the dotted keys of the given values.
 
-    Every group on the way is copied: others may hold it too.
+    Every group on the way is copied, because other contents may share it.
     """
     *folders, leaf = key.split('.')
     target = content
@@ -174,7 +175,7 @@ def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
 
 
 def flat(content: Any, key: str = '') -> dict[str, Any]:
-    """Return every value within `content`, which stands at `key`, by its dotted key."""
+    """Return every value within `content`, which is at `key`, by its dotted key."""
     if not isinstance(content, Mapping):
         return {key: content}
     values: dict[str, Any] = {}
@@ -184,7 +185,7 @@ def flat(content: Any, key: str = '') -> dict[str, Any]:
 
 
 def _number(value: Any) -> float | None:
-    """Return a value that an override has replaced, None if it was none in the first place."""
+    """Return a replaced time of the file in s, None if it is no multiple of 10 ms or missing."""
     try:
         return time_of_step(steps_in('', value))
     except (ParameterError, TypeError, ValueError, OverflowError):
@@ -192,7 +193,7 @@ def _number(value: Any) -> float | None:
 
 
 def _in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int]:
-    """Return the lines with 0 for what `--set` gave, which is in no line of the file."""
+    """Return the lines, with 0 for the keys of `--set`, which are in no line of the file."""
     given = tuple(set_keys)
     within = tuple(f'{key}{mark}' for key in given for mark in '.[')
     kept = {key: line for key, line in lines.items() if not key.startswith(within)}
@@ -218,7 +219,7 @@ def _build(group: type[Group], content: Any) -> Group:
 
 
 def _value(field: dataclasses.Field[Any], value: Any) -> Any:
-    """Return what the dataclass takes for what YAML has: a group, a tuple, a whole number."""
+    """Convert a YAML value to the type of the field: a group, a tuple, a whole number."""
     group = group_of(field)
     if group and (value is not None or field.default is not None):
         return _build(group, value)
@@ -238,7 +239,7 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
 
 
 def scenario_content(group: OptionGroup) -> dict[str, Any]:
-    """Return what a file says of the group; what it may leave out is left out."""
+    """Return the content of a file for the group, without optional keys at their defaults."""
     content: dict[str, Any] = {}
     for field in dataclasses.fields(group):
         value = getattr(group, field.name)

@@ -1,4 +1,4 @@
-"""Every key of a scenario and of its run by its dotted name, and which one a wrong name means."""
+"""All keys of a scenario and of its run by dotted name, and hints for an unknown key."""
 
 import difflib
 import re
@@ -11,20 +11,20 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_MEANT = 3
-"""How many keys a hint names at most."""
+"""Largest number of keys in a hint."""
 _ALIKE = 0.8
-"""Least likeness of two keys; sections that they share make any two alike by half."""
+"""Least similarity of two keys; a common section alone gives about half."""
 _PAGE = 'docs/use/scenario.md'
 
 
 @cache
 def scenario_options() -> Options:
-    """Return every option of a scenario by its dotted key, without those of controllers."""
+    """Return every option of a scenario by dotted key, without those of controllers."""
     return dict(_options(Scenario))
 
 
 def key_hint(key: str, known: Options) -> str:
-    """Return which of the known keys may be meant by an unknown one, or where all are listed."""
+    """Return a hint for an unknown key: similar known keys, or the page that lists all keys."""
     meant = _meant(key, known)
     if not meant:
         return f'{_PAGE} lists the keys'
@@ -33,7 +33,7 @@ def key_hint(key: str, known: Options) -> str:
 
 
 def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
-    """Return what an unknown key of a scenario may mean: one of its section, any, an option."""
+    """Return a hint for an unknown key: a key of its section, an option of the run, or any key."""
     if close := difflib.get_close_matches(name, section, n=1):
         return f'did you mean {prefix}{close[0]}?'
     of_run = options_of(RunSettings)
@@ -49,10 +49,10 @@ def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
 
 def _meant(key: str, known: Options) -> list[str]:
     """
-    Return the few keys that `key` may mean, by the first rule that finds any.
+    Return the known keys that match `key`, by the first rule that finds any.
 
-    A key is meant by the symbol that its description begins with, such as K_usura, by a name like
-    its own, by one of the words in its name, by a symbol anywhere in its description.
+    The rules: the symbol at the start of the description, such as K_usura; a similar name; words
+    of the name; a symbol anywhere in the description.
     """
     name = key.rpartition('.')[2]
     if not name:
@@ -69,7 +69,7 @@ def _meant(key: str, known: Options) -> list[str]:
 
 
 def _has_words(key: str, words: list[str]) -> bool:
-    """Say whether the words stand in the key side by side."""
+    """Return whether the words are consecutive parts of the key."""
     parts = re.split('[._]', key)
     return any(parts[at : at + len(words)] == words for at in range(len(parts)))
 

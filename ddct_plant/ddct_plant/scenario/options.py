@@ -1,4 +1,4 @@
-"""Options of programs that say which scenario is meant, what in it is changed, how it is run."""
+"""Command-line options that choose a scenario, its overrides and its run settings."""
 
 import argparse
 import sys
@@ -17,7 +17,7 @@ SET_EXAMPLE = 'load.slope_rad=0.05'
 def add_scenario_options(
     parser: argparse._ActionsContainer, *, set_example: str = SET_EXAMPLE
 ) -> None:
-    """Add --scenario, and --set as `overrides`; `load_scenario` takes both."""
+    """Add --scenario, and --set as `overrides`: the arguments of `load_scenario`."""
     parser.add_argument(
         '--scenario',
         default='thesis',
@@ -37,7 +37,7 @@ def add_scenario_options(
 def scenario_of(
     options: argparse.Namespace, overrides: Sequence[str], clutch: str = LINEAR
 ) -> Scenario:
-    """Return the scenario of --scenario with overrides; say on standard error what they moved."""
+    """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
     scenario = load_scenario(options.scenario, overrides, clutch)
     for line in scenario.adjusted:
         print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
@@ -45,7 +45,7 @@ def scenario_of(
 
 
 def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:
-    """Add a described value as `--name`; what is given is checked where it is used."""
+    """Add the option `--name` for a described value, which is checked where it is used."""
     parser.add_argument(
         f'--{name.replace("_", "-")}',
         type=described.kind,

@@ -1,7 +1,7 @@
 """
-The models of a run, as its settings choose them, and the state that they start from.
+The models of a run by its settings, and their initial state.
 
-Nodes and the headless loop take them here.
+Nodes and the headless loop make their models here.
 """
 
 import math
@@ -29,8 +29,8 @@ def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
     """
     Raise ParameterError with a key for a driveline that cannot be integrated.
 
-    With either clutch if clutch and wheels cannot stick together, as H_S G_S is singular; with
-    the one that sticks also if its rates are too fast for the pieces of 1 ms.
+    That is so with either clutch if clutch and wheels cannot stick together, as H_S G_S is
+    singular; with the stick-slip clutch also if its rates are too fast for the pieces of 1 ms.
     """
     try:
         if clutch == STICK_SLIP:
@@ -45,7 +45,7 @@ def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
     """
-    Return the driveline in its initial state; `step` takes what the clutch of the run gives.
+    Return the driveline of the run's clutch model in its initial state.
 
     Raise ParameterError for parameters that cannot be integrated, such as a shaft without weight.
     """
@@ -62,7 +62,7 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
 
 
 def _least_usual(parameters: DrivelineParameters) -> str:
-    """Return the value that is furthest from its default, as a ratio, with its key."""
+    """Return key and value of the parameter with the largest ratio to its default."""
     ratios = {
         name: abs(math.log(getattr(parameters, name)) - math.log(option.default))
         for name, option in options_of(DrivelineParameters).items()
@@ -73,29 +73,29 @@ def _least_usual(parameters: DrivelineParameters) -> str:
 
 
 def make_engine(settings: RunSettings) -> Engine:
-    """Return the engine of the scenario, within its authority and limits."""
+    """Return the engine of the scenario, with its authority and limits."""
     scenario = settings.scenario
     return Engine(scenario.engine, scenario.engine_authority, scenario.engine_limits)
 
 
 def make_actuator(settings: RunSettings, initial: InitialState) -> Actuator:
-    """Return the actuator of the plant, at rest on the run's first request."""
+    """Return the actuator of the plant, in its steady state for the run's first request."""
     return Actuator(initial.torque_request, settings.scenario.actuator)
 
 
 def linear_clutch(settings: RunSettings) -> LinearClutch:
-    """Return the thesis's clutch."""
+    """Return the linear clutch of the thesis."""
     return LinearClutch(settings.wear_gain)
 
 
 def stick_slip_clutch(settings: RunSettings) -> FrictionClutch:
-    """Return the clutch that sticks, at its first temperatures."""
+    """Return the stick-slip clutch at its initial temperatures."""
     scenario = settings.scenario
     return FrictionClutch(scenario.friction, settings.wear_gain, scenario.heat)
 
 
 def make_load(settings: RunSettings) -> RoadLoad:
-    """Return the load at the wheel, in stick-slip runs that of air and slope alone."""
+    """Return the road load at the wheel; in stick-slip runs without rolling resistance."""
     scenario = settings.scenario
     if settings.stick_slip:
         return air_and_slope(scenario.load, scenario.vehicle, scenario.slope)
@@ -110,13 +110,13 @@ def holding_torque(settings: RunSettings) -> HoldingTorque:
 
 
 def driveline_sensors(settings: RunSettings) -> DrivelineSensors | None:
-    """Return what measures the driveline, None where control is told the truth."""
+    """Return the sensors of the driveline, None for a run without sensors."""
     sensors = settings.scenario.sensors
     return DrivelineSensors(sensors, settings.seed) if sensors else None
 
 
 def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
-    """Return what estimates C_m, None where control is told the truth."""
+    """Return the estimate of C_m, None for a run without sensors."""
     sensors = settings.scenario.sensors
     return TorqueEstimate(sensors, settings.seed) if sensors else None
 
@@ -125,8 +125,8 @@ def initial_state(settings: RunSettings) -> InitialState:
     """
     Return the state at t_0 of a run with these settings.
 
-    C_fOL is asked of the clutch before the run in `detailed`, and where the scenario starts with
-    a clutch that is locked or slipping.
+    Before the run the request is C_fOL in `detailed`, and where the scenario starts with a clutch
+    that is locked or slipping.
     """
     scenario = settings.scenario
     driveline = scenario.driveline
@@ -140,8 +140,8 @@ def initial_state(settings: RunSettings) -> InitialState:
     shaft_speed = scenario.initial.shaft_speed_rad_s
     static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
     phase = scenario.initial.clutch_phase
-    asked = settings.detailed if phase is None else phase != OPEN
-    torque_request = max(static_torque, 0.0) if asked else 0.0
+    engaged = settings.detailed if phase is None else phase != OPEN
+    torque_request = max(static_torque, 0.0) if engaged else 0.0
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     initial = InitialState(
         engine_speed=engine_speed,
@@ -158,11 +158,11 @@ def initial_state(settings: RunSettings) -> InitialState:
 
 def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
     """
-    Return the start of a run whose clutch and wheels stick, from that of the linear clutch.
+    Return the initial state of a stick-slip run, from that of the linear clutch.
 
     Plates that slip transmit the kinetic capacity of the first request against their slip. Plates
-    of one speed are locked, and carry the torque that keeps them so, as far as the static
-    capacity goes. So are wheels at rest, with the shaft between them and the clutch at rest too.
+    of one speed are locked, and carry the torque that keeps them so, at most the static capacity.
+    Wheels at rest are held likewise, and the shaft between them and the clutch is at rest too.
     """
     scenario = settings.scenario
     static = StaticTorque(scenario.driveline, scenario.equilibrium)

@@ -1,4 +1,4 @@
-"""Values that no car has: allowed, as a bench may try anything, but a word is due."""
+"""Remarks on values that no car has; they are allowed, as a test bench may try anything."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,8 @@ RANGES: Mapping[str, tuple[float, float, str]] = {
     'driveline.halfshaft_stiffness': (500.0, 500_000.0, 'N m/rad'),
     'driveline.total_ratio': (1.5, 60.0, ''),
 }
-"""Least and most that cars and trucks have, by key. Wide: beyond them it is another unit."""
+"""Least and largest value of cars and trucks and its unit, by key; a value beyond this wide range
+is probably in another unit."""
 
 
 def with_remarks(scenario: Scenario) -> Scenario:

@@ -1,4 +1,4 @@
-"""A scenario: everything about a run that is not the controller or the way it is started."""
+"""A scenario: everything about a run except the controller and the run settings."""
 
 import dataclasses
 import math
@@ -27,14 +27,14 @@ from ddct_plant.scenario.control import (
 from ddct_plant.sensors.parameters import SensorParameters
 
 GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
-"""Ratios of the C635, from the first gear on."""
+"""Gear ratios of the C635, from the first gear on."""
 FINAL_DRIVE = 4.118
-"""2.269 times this is the identified total ratio, to 0.03 %."""
+"""Ratio of the final drive: times 2.269 it is the identified total ratio, to 0.03 %."""
 
 
 @dataclass(frozen=True)
 class InitialSpeeds(OptionGroup, prefix='initial.'):
-    """The two clutch plates at t = 0; the wheel turns with the primary shaft."""
+    """Speeds of the two clutch plates at t = 0; the wheel turns with the primary shaft."""
 
     engine_speed_rad_s: float = option(
         160.0, 'w_m(0)', 'rad/s', source=ASSUMED, at_least=0.0, at_most=1000.0
@@ -49,7 +49,7 @@ class InitialSpeeds(OptionGroup, prefix='initial.'):
     )
     clutch_phase: str | None = option(
         None,
-        'phase of the clutch at t = 0, which must fit the speeds; `open`: nothing was asked of it '
+        'phase of the clutch at t = 0, which must fit the speeds; `open`: its request was zero '
         'before',
         otherwise='follows from the speeds',
         kind=str,
@@ -74,11 +74,11 @@ class InitialSpeeds(OptionGroup, prefix='initial.'):
 
 @dataclass(frozen=True)
 class Scenario(OptionGroup):
-    """One driving situation and how it is scored; see docs/use/scenario.md for every key."""
+    """One driving situation and its score window; docs/use/scenario.md lists every key."""
 
     name: str = option(
         REQUIRED,
-        'what scores call it: up to 64 letters A to Z, digits, dots, dashes and underscores, no '
+        'name in scores: up to 64 letters A to Z, digits, dots, dashes and underscores, no '
         'dot or dash first',
         otherwise="the file's name",
         kind=str,
@@ -141,7 +141,7 @@ class Scenario(OptionGroup):
     closing: ClosingParameters | None = section(None, stick_slip=True)
     sensors: SensorParameters | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    """Options by controller name, checked by the controller that takes them."""
+    """Options by controller name; each controller checks its own."""
     gear: int | None = option(
         None,
         'gear of the C635, whose total ratio `driveline.total_ratio` then is; its final drive of '
@@ -152,8 +152,8 @@ class Scenario(OptionGroup):
     )
     adjusted: tuple[str, ...] = option(
         (),
-        'what programs have moved to agree with what was given, and values that no car has, in '
-        'words; they write it',
+        'remarks that programs write: values that were moved to agree with given ones, and '
+        'values that no car has',
         kind=str,
         many=True,
         left_out=True,
@@ -175,21 +175,21 @@ class Scenario(OptionGroup):
 
     @property
     def steps(self) -> int:
-        """N, the number of 10 ms periods of the run."""
+        """Number N of 10 ms periods of the run."""
         return steps_in('duration_s', self.duration_s)
 
     def end_cause(self, engine_speed: float) -> str | None:
-        """Return why a run ends early with the engine at w_m in rad/s, None where it goes on."""
+        """Return the cause of an early end with the engine at w_m in rad/s, None without one."""
         return self.engine_limits.end_cause(engine_speed) if self.engine_limits else None
 
     @property
     def cut_speed(self) -> float:
-        """w_m in rad/s from which the rev limiter cuts the fuel, infinite without one."""
+        """Engine speed in rad/s at which the rev limiter cuts the fuel, infinite without one."""
         return self.engine_limits.cut_rad_s if self.engine_limits else math.inf
 
     @property
     def of_stick_slip(self) -> tuple[str, ...]:
-        """What is given that only the clutch that sticks heeds, by key."""
+        """Given keys that only the stick-slip clutch uses."""
         sections = [
             each.name
             for each in dataclasses.fields(self)

@@ -9,14 +9,14 @@ from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
-"""Control architectures: those of Section 1.6, and CRF's detailed model (Section 1.4)."""
+"""Names of the control architectures: those of Section 1.6, and CRF's detailed model (1.4)."""
 MODES = ('lockstep', 'realtime')
-"""Lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
+"""Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
 
 
 @dataclass(frozen=True)
 class RunSettings(OptionGroup):
-    """What is simulated and how, the same in every node of the graph."""
+    """Settings of one run, the same in every node of the graph."""
 
     scenario: Scenario
     architecture: str = option('detailed', 'control architecture', choices=ARCHITECTURES)
@@ -41,26 +41,27 @@ class RunSettings(OptionGroup):
     @property
     def detailed(self) -> bool:
         """
-        Whether the control is that of CRF's detailed model.
+        Whether the architecture is CRF's detailed model.
 
-        There the static controller is always on, feedback and reference start together. The other
-        architectures have feedback from t = 0 and a reference that is a stored function of time.
+        There the static controller is always on, and feedback and reference start together. The
+        other architectures have feedback from t = 0 and a reference that is a stored function of
+        time.
         """
         return self.architecture == 'detailed'
 
     @property
     def stick_slip(self) -> bool:
-        """Whether the clutch sticks, and rolling resistance and brake hold the wheels."""
+        """Whether the clutch sticks and slips, and rolling resistance and brake are friction."""
         return self.clutch == STICK_SLIP
 
     @property
     def sensed(self) -> bool:
-        """Whether controller and reference read sensors in place of the truth."""
+        """Whether controller and reference read sensors instead of the true signals."""
         return self.scenario.sensors is not None
 
     @property
     def reference_shape(self) -> str:
-        """How the reference runs to zero: the scenario's shape, or the architecture's tanh."""
+        """Shape of the slip reference: the scenario's, or the tanh of the architecture."""
         tanh = self.architecture == 'feedforward_tanh'
         return 'tanh' if tanh else self.scenario.reference.shape
 
@@ -70,7 +71,7 @@ class RunSettings(OptionGroup):
         return self.mode == 'lockstep'
 
     def _require_clutch(self) -> None:
-        """Refuse a scenario that gives what the linear clutch would ignore."""
+        """Refuse a scenario with keys that the linear clutch would ignore."""
         given = self.scenario.of_stick_slip
         if given and not self.stick_slip:
             raise ParameterError(

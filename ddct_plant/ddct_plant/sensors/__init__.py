@@ -1,1 +1,1 @@
-"""What sensors make of the true quantities: noise, quantisation, delay, dropout."""
+"""Sensor models: gain, constant offset, noise, quantisation, delay and dropout."""

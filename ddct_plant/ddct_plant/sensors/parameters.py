@@ -1,4 +1,4 @@
-"""What is wrong with the sensors of a run, as a scenario says it; nothing unless it is given."""
+"""Errors of the sensors of a run, as options of a scenario; by default there are none."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -12,30 +12,30 @@ _MOST = 1e6
 
 
 def _noise(unit: str) -> Any:
-    meaning = 'standard deviation of Gaussian noise, each sample by itself'
+    meaning = 'standard deviation of white Gaussian noise, one draw per sample'
     return option(0.0, meaning, unit, left_out=True, at_least=0.0, at_most=_MOST)
 
 
 def _quantum(unit: str) -> Any:
-    meaning = 'step between two values, to the nearest of which it is rounded; 0: none'
+    meaning = 'resolution: the value is rounded to the nearest multiple; 0: none'
     return option(0.0, meaning, unit, left_out=True, at_least=0.0, at_most=_MOST)
 
 
 def _bias(unit: str) -> Any:
-    meaning = 'what it always says too much'
+    meaning = 'constant offset, added to the true value'
     return option(0.0, meaning, unit, left_out=True, at_least=-_MOST, at_most=_MOST)
 
 
 @dataclass(frozen=True)
 class SensorOptions(OptionGroup):
-    """What every sensor may have."""
+    """Options that every sensor has."""
 
     gain: float = option(
-        1.0, 'what it says over what is true', left_out=True, above=0.0, at_most=10.0
+        1.0, 'ratio of the measured to the true value', left_out=True, above=0.0, at_most=10.0
     )
     delay_s: float = option(
         0.0,
-        'age of what it says, a multiple of 10 ms; up to then it says its first value',
+        'delay of the measured value, a multiple of 10 ms; until then it is the first value',
         's',
         at_least=0.0,
         at_most=10.0,
@@ -44,15 +44,15 @@ class SensorOptions(OptionGroup):
     )
     dropout: float = option(
         0.0,
-        'share of samples that are lost, below 1: the last value that came is repeated',
+        'share of lost samples, below 1: the last received value is repeated',
         at_least=0.0,
         at_most=1.0,
         left_out=True,
     )
     dropout_burst: float | None = option(
         None,
-        'mean number of samples that are lost in a row',
-        otherwise='1 / (1 - `dropout`): each sample is lost by itself',
+        'mean number of consecutive lost samples',
+        otherwise='1 / (1 - `dropout`): losses are independent',
         at_least=1.0,
         at_most=1e4,
         left_out=True,
@@ -71,18 +71,18 @@ class SensorOptions(OptionGroup):
             )
 
     def error(self, kind: str) -> float:
-        """Return its `noise`, `quantum` or `bias`: the option of that name and the unit."""
+        """Return the option `noise`, `quantum` or `bias`, in the unit of the sensor."""
         (name,) = (name for name in options_of(type(self)) if name.startswith(f'{kind}_'))
         return float(getattr(self, name))
 
     @property
     def delay_steps(self) -> int:
-        """Age of what it says, in periods."""
+        """Delay of the measured value, in periods of 10 ms."""
         return steps_in(f'{self.prefix}delay_s', self.delay_s)
 
     @property
     def given(self) -> tuple[str, ...]:
-        """What is given of it, `KEY VALUE UNIT`."""
+        """Options that differ from their defaults, each as `KEY VALUE UNIT`."""
         return tuple(
             f'{name} {getattr(self, name):g} {each.unit}'.rstrip()
             for name, each in options_of(type(self)).items()
@@ -92,22 +92,22 @@ class SensorOptions(OptionGroup):
 
 @dataclass(frozen=True)
 class SpeedSensor(SensorOptions):
-    """A sensor of the speed of a shaft."""
+    """Options of a sensor of a shaft's speed."""
 
     noise_rad_s: float = _noise('rad/s')
     quantum_rad_s: float = _quantum('rad/s')
     bias_rad_s: float = _bias('rad/s')
     teeth: int = option(
         0,
-        'teeth of an encoder that are counted: speeds then come in steps of '
-        '2π / (`teeth` × `count_s`); 0: the speed itself is measured',
+        'teeth of the encoder wheel: the speed then has the resolution '
+        '2π / (`teeth` × `count_s`); 0: the speed is measured directly',
         at_least=0,
         at_most=100000,
         left_out=True,
     )
     count_s: float = option(
         0.01,
-        'how long teeth are counted, a multiple of 10 ms; the speed is the mean over that time',
+        'counting time of the teeth, a multiple of 10 ms; the speed is the mean over that time',
         's',
         above=0.0,
         at_most=10.0,
@@ -117,28 +117,28 @@ class SpeedSensor(SensorOptions):
 
     @property
     def count_steps(self) -> int:
-        """How long teeth are counted, in periods."""
+        """Counting time of the teeth, in periods of 10 ms."""
         return steps_in(f'{self.prefix}count_s', self.count_s)
 
 
 @dataclass(frozen=True)
 class EngineSpeedSensor(SpeedSensor, prefix='sensors.engine_speed.'):
-    """The sensor of w_m."""
+    """Options of the sensor of the engine speed w_m."""
 
 
 @dataclass(frozen=True)
 class ShaftSpeedSensor(SpeedSensor, prefix='sensors.shaft_speed.'):
-    """The sensor of w_p."""
+    """Options of the sensor of the primary shaft's speed w_p."""
 
 
 @dataclass(frozen=True)
 class WheelSpeedSensor(SpeedSensor, prefix='sensors.wheel_speed.'):
-    """The sensor of w_r."""
+    """Options of the sensor of the wheel speed w_r."""
 
 
 @dataclass(frozen=True)
 class VehicleSpeedSensor(SensorOptions, prefix='sensors.vehicle_speed.'):
-    """What is known of V_x."""
+    """Options of the sensor of the vehicle speed V_x."""
 
     noise_m_s: float = _noise('m/s')
     quantum_m_s: float = _quantum('m/s')
@@ -147,7 +147,7 @@ class VehicleSpeedSensor(SensorOptions, prefix='sensors.vehicle_speed.'):
 
 @dataclass(frozen=True)
 class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
-    """What is known of C_m."""
+    """Options of the estimate of the engine torque C_m."""
 
     noise_n_m: float = _noise('N m')
     quantum_n_m: float = _quantum('N m')
@@ -156,7 +156,7 @@ class EngineTorqueEstimate(SensorOptions, prefix='sensors.engine_torque.'):
 
 @dataclass(frozen=True)
 class SensorParameters(OptionGroup, prefix='sensors.'):
-    """The sensors that controller and reference read; each is exact unless more is given."""
+    """Options of all sensors that controller and reference read; by default each is exact."""
 
     engine_speed: EngineSpeedSensor = section(EngineSpeedSensor(), left_out=True)
     shaft_speed: ShaftSpeedSensor = section(ShaftSpeedSensor(), left_out=True)
@@ -166,7 +166,7 @@ class SensorParameters(OptionGroup, prefix='sensors.'):
 
     @property
     def text(self) -> str:
-        """What is given of each sensor, in one line."""
+        """Options of each sensor that differ from their defaults, in one line."""
         given = {field.name: getattr(self, field.name).given for field in dataclasses.fields(self)}
         lines = [f'{name}: {", ".join(each)}' for name, each in given.items() if each]
         return '; '.join(lines) or 'each of them is exact'

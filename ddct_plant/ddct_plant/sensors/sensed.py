@@ -1,4 +1,4 @@
-"""The sensors of a run, and what they say at one step."""
+"""The sensors of a run, and their measurements at one step."""
 
 from abc import ABC, abstractmethod
 from typing import Generic, NamedTuple, Protocol, TypeVar
@@ -8,93 +8,94 @@ from ddct_plant.sensors.parameters import SensorParameters
 from ddct_plant.sensors.sensor import Sensor, ShaftSensor
 
 
-class Seen(Protocol):
-    """What control sees of the driveline: the truth, or what sensors say."""
+class MeasuredSpeeds(Protocol):
+    """Speeds that controller and reference receive: measured by sensors, or true without them."""
 
     @property
     def joint_speed(self) -> list[float]:
-        """w_m, w_p, w_r in rad/s, first of all."""
+        """Speeds in rad/s; the first three are w_m, w_p and w_r."""
 
     @property
     def slip_speed(self) -> float:
-        """w_d = w_m - w_p in rad/s."""
+        """Slip speed w_d = w_m - w_p in rad/s."""
 
     @property
     def vehicle_speed(self) -> float:
-        """V_x in m/s."""
+        """Vehicle speed V_x in m/s."""
 
 
-class Sensed(NamedTuple):
-    """What the sensors at the driveline say, as signals of the run."""
+class SpeedMeasurements(NamedTuple):
+    """Measurements of the speed sensors at one step, under the names of the run's signals."""
 
     sensed_joint_speed: list[float]
-    """(3,) rad/s: w_m, w_p, w_r."""
+    """Measured speeds w_m, w_p, w_r in rad/s, (3,)."""
     sensed_joint_held: list[float]
-    """(3,) 1 where the last value is repeated, else 0."""
+    """Flags of w_m, w_p, w_r, (3,): 1 where the last value is repeated, else 0."""
     sensed_slip_speed: float
-    """w_m - w_p in rad/s of the measured speeds."""
+    """Slip speed in rad/s: measured w_m less measured w_p."""
     sensed_slip_held: float
-    """1 where one of these two is repeated, else 0."""
+    """Flag of the slip speed: 1 where w_m or w_p is repeated, else 0."""
     sensed_vehicle_speed: float
-    """V_x in m/s."""
+    """Measured vehicle speed V_x in m/s."""
     sensed_vehicle_held: float
+    """Flag of the vehicle speed: 1 where the last value is repeated, else 0."""
 
     @property
     def joint_speed(self) -> list[float]:
-        """As `Seen` has it."""
+        """Measured speeds w_m, w_p, w_r in rad/s, (3,)."""
         return self.sensed_joint_speed
 
     @property
     def slip_speed(self) -> float:
-        """As `Seen` has it."""
+        """Measured slip speed w_d in rad/s."""
         return self.sensed_slip_speed
 
     @property
     def vehicle_speed(self) -> float:
-        """As `Seen` has it."""
+        """Measured vehicle speed V_x in m/s."""
         return self.sensed_vehicle_speed
 
 
-class SensedTorque(NamedTuple):
-    """What the engine says of its torque, as signals of the run."""
+class TorqueMeasurement(NamedTuple):
+    """Estimate of the engine torque at one step, under the names of the run's signals."""
 
     sensed_engine_torque: float
-    """C_m in N m over the coming period."""
+    """Estimated C_m in N m over the coming period."""
     sensed_torque_held: float
-    """1 where the last value is repeated, else 0."""
+    """Flag of the estimate: 1 where the last value is repeated, else 0."""
 
 
 Truth = TypeVar('Truth', contravariant=True)
-Said = TypeVar('Said')
+Measured = TypeVar('Measured')
 
 
-class Sensors(ABC, Generic[Truth, Said]):
-    """Sensors that are asked at the steps of a run."""
+class Sensors(ABC, Generic[Truth, Measured]):
+    """Base of sensors that are sampled once per step of a run."""
 
     _step = -1
-    _said: Said
+    _measured: Measured
 
-    def measure(self, step: int, truth: Truth) -> Said:
+    def measure(self, step: int, truth: Truth) -> Measured:
         """
-        Return what they say at a step, the same when that step is asked for again.
+        Return the measurement of `truth` at a step; a repeated step gives the same measurement.
 
-        Steps must not fall. Those that were left out, as they may be in real time, had this truth.
+        Steps must not decrease. Skipped steps, as real time may have, are sampled with this truth.
         """
         while self._step < step:
             self._step += 1
-            self._said = self._take(truth)
-        return self._said
+            self._measured = self._take(truth)
+        return self._measured
 
     @abstractmethod
-    def _take(self, truth: Truth) -> Said:
-        """Return what they say at the next step."""
+    def _take(self, truth: Truth) -> Measured:
+        """Return the measurement of the next step."""
 
 
-class DrivelineSensors(Sensors[DrivelineOutputs, Sensed]):
+class DrivelineSensors(Sensors[DrivelineOutputs, SpeedMeasurements]):
     """The sensors of w_m, w_p, w_r and V_x."""
 
     def __init__(self, parameters: SensorParameters, seed: int) -> None:
-        """Draw by the seed of the run."""
+        """Make the four sensors; their random numbers follow from the seed of the run."""
         self._shafts = [
             ShaftSensor(options, name, seed)
             for name, options in (
@@ -105,14 +106,14 @@ class DrivelineSensors(Sensors[DrivelineOutputs, Sensed]):
         ]
         self._vehicle = Sensor(parameters.vehicle_speed, 'vehicle_speed', seed)
 
-    def _take(self, now: DrivelineOutputs) -> Sensed:
+    def _take(self, truth: DrivelineOutputs) -> SpeedMeasurements:
         shafts = [
-            sensor.take(now.joint_position[joint], now.joint_speed[joint])
+            sensor.take(truth.joint_position[joint], truth.joint_speed[joint])
             for joint, sensor in enumerate(self._shafts)
         ]
         engine, shaft, _ = shafts
-        vehicle = self._vehicle.take(now.vehicle_speed)
-        return Sensed(
+        vehicle = self._vehicle.take(truth.vehicle_speed)
+        return SpeedMeasurements(
             sensed_joint_speed=[sample.value for sample in shafts],
             sensed_joint_held=[float(sample.held) for sample in shafts],
             sensed_slip_speed=engine.value - shaft.value,
@@ -122,13 +123,13 @@ class DrivelineSensors(Sensors[DrivelineOutputs, Sensed]):
         )
 
 
-class TorqueEstimate(Sensors[float, SensedTorque]):
-    """What is known of C_m."""
+class TorqueEstimate(Sensors[float, TorqueMeasurement]):
+    """The estimate of the engine torque C_m."""
 
     def __init__(self, parameters: SensorParameters, seed: int) -> None:
-        """Draw by the seed of the run."""
+        """Make the estimate; its random numbers follow from the seed of the run."""
         self._sensor = Sensor(parameters.engine_torque, 'engine_torque', seed)
 
-    def _take(self, truth: float) -> SensedTorque:
+    def _take(self, truth: float) -> TorqueMeasurement:
         value, held = self._sensor.take(truth)
-        return SensedTorque(value, float(held))
+        return TorqueMeasurement(value, float(held))

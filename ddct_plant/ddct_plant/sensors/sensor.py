@@ -1,7 +1,7 @@
 """
-One sensor: what it says at each step of the quantity that it measures.
+Model of one sensor, sampled once per step.
 
-Its random numbers are streams that follow from the seed of the run and the quantity alone.
+Its random numbers are streams that depend on the seed of the run and the quantity alone.
 """
 
 import math
@@ -16,16 +16,16 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.sensors.parameters import SensorOptions, SpeedSensor
 
 _BLOCK = 256
-"""Numbers drawn at a time, which does not change them."""
+"""Random numbers drawn at a time; the size of the block does not change the numbers."""
 
 
 class Sample(NamedTuple):
-    """What a sensor says at one step."""
+    """Measurement of a sensor at one step."""
 
     value: float
-    """In the unit of the quantity."""
+    """Measured value, in the unit of the quantity."""
     held: bool
-    """Whether the sample of this step was lost, and the value is the last that came."""
+    """Whether the sample of this step is lost, so that the value is the last received one."""
 
 
 class Sensor:
@@ -37,7 +37,7 @@ class Sensor:
     """
 
     def __init__(self, options: SensorOptions, quantity: str, seed: int) -> None:
-        """Take the random numbers that belong to the seed of the run and the quantity."""
+        """Make the sensor; its random numbers follow from seed and name of the quantity."""
         self._gain = options.gain
         self._noise = options.error('noise')
         self._bias = options.error('bias')
@@ -49,7 +49,7 @@ class Sensor:
         self._sample = Sample(math.nan, held=False)
 
     def take(self, truth: float) -> Sample:
-        """Return what it says at the next step."""
+        """Return the measurement of `truth`, in the unit of the quantity, at the next step."""
         reading = self._reading(truth)
         self._line.extend([reading] if self._line else [reading] * self._places)
         held = self._losses is not None and next(self._losses)
@@ -58,11 +58,11 @@ class Sensor:
         return self._sample
 
     def _reading(self, truth: float) -> float:
-        """Return s_k."""
+        """Return s_k: the value before delay and dropout."""
         value = self._gain * truth + self._bias
         if self._normal is not None:
             value += self._noise * next(self._normal)
-        if not self._quantum or math.isinf(value):  # of a loop that diverges
+        if not self._quantum or math.isinf(value):  # a loop that diverges
             return value
         # The remainder is exact, and no quantum is too small for it.
         return value - math.remainder(value, self._quantum)
@@ -72,8 +72,8 @@ class ToothCount:
     """
     The speed of a shaft by the teeth that passed: 2 pi (n_k - n_(k-m)) / (N m T).
 
-    n_k = floor(N theta_k / 2 pi) of N teeth, m periods T of 10 ms; one tooth is at the sensor at
-    t_0, and before it the shaft turned as fast as then. The sign is that of the speed.
+    n_k = floor(N theta_k / 2 pi) of N teeth, m periods T of 10 ms. One tooth is at the sensor at
+    t_0, and before t_0 the shaft has its speed of t_0. The sign is that of the speed.
     """
 
     def __init__(self, teeth: int, periods: int) -> None:
@@ -84,7 +84,7 @@ class ToothCount:
         self._periods = periods
 
     def take(self, position: float, speed: float) -> float:
-        """Return what is counted at the next step in rad/s, of theta in rad and w in rad/s."""
+        """Return the counted speed in rad/s at the next step, for theta in rad and w in rad/s."""
         if not self._counts:
             before = range(self._periods, 0, -1)
             self._counts.extend(self._count(position - k * PERIOD_S * speed) for k in before)
@@ -96,22 +96,22 @@ class ToothCount:
 
 
 class ShaftSensor:
-    """The sensor of a speed, which may count teeth."""
+    """The sensor of a shaft's speed, which counts teeth if its options give any."""
 
     def __init__(self, options: SpeedSensor, quantity: str, seed: int) -> None:
-        """As `Sensor`; what is counted stands for the truth."""
+        """Make the `Sensor`; with teeth its input is the counted speed instead of the true one."""
         self._sensor = Sensor(options, quantity, seed)
         self._teeth = ToothCount(options.teeth, options.count_steps) if options.teeth else None
 
     def take(self, position: float, speed: float) -> Sample:
-        """Return what it says at the next step, in rad/s, of theta in rad and w in rad/s."""
+        """Return the measurement in rad/s at the next step, for theta in rad and w in rad/s."""
         if self._teeth is not None and math.isfinite(position):
             speed = self._teeth.take(position, speed)
         return self._sensor.take(speed)
 
 
 def gaussian(seed: int, quantity: str) -> Iterator[float]:
-    """Yield numbers of the standard normal distribution, one for each step."""
+    """Yield random numbers of the standard normal distribution, one for each step."""
     random = _generator(seed, quantity, 'noise')
     while True:
         yield from random.standard_normal(_BLOCK).tolist()
@@ -119,11 +119,11 @@ def gaussian(seed: int, quantity: str) -> Iterator[float]:
 
 def losses(seed: int, quantity: str, options: SensorOptions) -> Iterator[bool]:
     """
-    Yield whether the sample of each step is lost; that of step 0 always comes.
+    Yield for each step whether its sample is lost; the sample of step 0 never is.
 
     A chain of two states (Gilbert 1960) with the share p lost and runs of mean length L: a lost
-    sample is followed by another with 1 - 1/L, one that came by a lost one with p / ((1 - p) L).
-    With L = 1 / (1 - p) both are p: each sample is lost by itself.
+    sample is followed by a lost one with probability 1 - 1/L, a received one with
+    p / ((1 - p) L). With L = 1 / (1 - p) both are p: the losses are independent.
     """
     share = options.dropout
     burst = options.dropout_burst or 1.0 / (1.0 - share)
@@ -138,6 +138,6 @@ def losses(seed: int, quantity: str, options: SensorOptions) -> Iterator[bool]:
 
 
 def _generator(seed: int, quantity: str, purpose: str) -> np.random.Generator:
-    """Return a generator of its own, whatever else is drawn, by whom and in which order."""
+    """Return the generator of one quantity and purpose, independent of all other generators."""
     stream = zlib.crc32(f'{quantity} {purpose}'.encode())
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([seed, stream])))

@@ -17,9 +17,9 @@ class BlockDiagram:
     """
     Gains, sums and integrators, evaluated block by block.
 
-    A block is called like the signal it puts out; signals of no block are inputs. A gain or a sum
-    is given by the factors of the signals that go into it, an integrator by the signal that it
-    integrates: a state.
+    A block has the name of its output signal; signals of no block are inputs. A gain or a sum
+    is given by the factors of its input signals, an integrator by the signal that it integrates;
+    its output is a state.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class BlockDiagram:
         self._ordered = [(name, tuple(sums[name].items())) for name in order]
 
     def signals(self, states: Iterable[float], inputs: Iterable[float]) -> dict[str, float]:
-        """Return every signal for the values of the integrators and of the inputs."""
+        """Return every signal by name, for the values of the integrators and of the inputs."""
         values = dict(zip(self._integrators, states, strict=True))
         values.update(zip(self._inputs, inputs, strict=True))
         for name, factors in self._ordered:
@@ -54,7 +54,7 @@ class BlockDiagram:
         return values
 
     def derivative(self, states: np.ndarray, inputs: Iterable[float]) -> np.ndarray:
-        """Return what each integrator integrates."""
+        """Return the input of each integrator."""
         values = self.signals(states.tolist(), inputs)
         return np.array([values[source] for source in self._integrators.values()])
 
@@ -83,7 +83,7 @@ def elementary_slip(parameters: DrivelineParameters, phase: SlipPhase) -> np.nda
 
 
 def _diagram(p: DrivelineParameters) -> BlockDiagram:
-    """Draw the diagram of Section 1.5's equations."""
+    """Return the block diagram of Section 1.5's equations."""
     return BlockDiagram(
         {
             'slip_speed': {'engine_speed': 1.0, 'shaft_speed': -1.0},

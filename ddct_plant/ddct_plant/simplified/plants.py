@@ -2,8 +2,8 @@
 The three simplified plants of Section 1.5.1, to compare with the detailed one (Figure 1.23).
 
 Each is a function from the driveline and a slip phase to w_d in rad/s at t_0..t_N, (N + 1,).
-Here are the two that are sums of three one-input systems, stepped exactly; `elementary` has the
-one that integrates a block diagram.
+This module has the two that are sums of three one-input systems, stepped exactly; `elementary` has
+the one that integrates a block diagram.
 """
 
 from collections.abc import Callable
@@ -34,16 +34,16 @@ class SlipPhase:
     """Torques in N m over N periods of 10 ms, and the state of the driveline before them."""
 
     engine_torque: np.ndarray
-    """(N,) C_m, held over each period."""
+    """C_m in N m, (N,), held over each period."""
     clutch_points: np.ndarray
-    """(N, 11) C_f, linear between the points."""
+    """C_f in N m, (N, 11), linear between the points."""
     load_torque: np.ndarray
-    """(N,) C_load, held over each period."""
+    """C_load in N m, (N,), held over each period."""
     initial_state: np.ndarray
-    """(4,) [w_m, w_p, w_r, theta_sr]."""
+    """Initial state [w_m, w_p, w_r, theta_sr], (4,)."""
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for other shapes."""
+        """Check the shapes; raise ParameterError that names a bad one."""
         periods = np.size(self.engine_torque)
         shapes = {
             'engine_torque': (periods,),
@@ -96,10 +96,10 @@ def _of_transfer_functions(
     functions: list[FactoredTransferFunction], parameters: DrivelineParameters, phase: SlipPhase
 ) -> np.ndarray:
     """
-    Add up what three transfer functions make of the torques, and C e^(A t) x_0.
+    Add up the responses of three transfer functions to the torques, and C e^(A t) x_0.
 
-    They start from zero and hold no initial condition, so the free response of the driveline is
-    a term of its own.
+    Transfer functions start from zero, without an initial condition, so the free response of the
+    driveline is a term of its own.
     """
     blocks = [function.to_state_space() for function in functions]
     model = driveline_matrices(parameters)
@@ -109,7 +109,7 @@ def _of_transfer_functions(
 
 
 def _added_up(blocks: list[StateSpace], phase: SlipPhase, clutch_start: np.ndarray) -> np.ndarray:
-    """Return the sum of the outputs for C_m, C_f and C_load; the second block has a start."""
+    """Return the sum of the outputs for C_m, C_f and C_load; `clutch_start` is C_f's state."""
     engine, clutch, load = blocks
     transition, nodes = lift_piecewise_linear(clutch.a, clutch.b, PERIOD_S, SUBSTEPS)
     pushes = phase.clutch_points @ nodes.T

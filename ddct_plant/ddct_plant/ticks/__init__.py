@@ -1,1 +1,1 @@
-"""Who steps when: the owner of time, its barrier, the join and the limits of stamps; no ROS."""
+"""Time stepping: the owner of time, the join of inputs and the limits of stamps; no ROS."""

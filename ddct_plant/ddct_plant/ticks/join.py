@@ -1,4 +1,4 @@
-"""Join the inputs of a node on their stamp; knows nothing of ROS."""
+"""Join the inputs of a node on their stamp; does not depend on ROS."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -9,20 +9,20 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 
 MOST_WAITING = 10
-"""Stamps that may wait for inputs at a time, as many messages as a topic's queue holds."""
+"""Largest number of incomplete stamps: the depth of a topic's queue."""
 
 
-class Verdict(Enum):
-    """What the arrival of one input means."""
+class JoinResult(Enum):
+    """Result of one arrived input."""
 
     WAIT = auto()
     """Other inputs of this stamp are still missing."""
     COMPLETE = auto()
     """Every input of a new stamp is here: compute the reply."""
     REPEAT = auto()
-    """The owner of time asks again: publish the last reply once more."""
+    """The owner of time repeats its tick: publish the last reply once more."""
     IGNORE = auto()
-    """An input that was already used, or older than the last stamp."""
+    """The input was already used, or is older than the last complete stamp."""
 
 
 @dataclass
@@ -30,39 +30,42 @@ class StampJoin:
     """
     Collect one message per input topic until all carry the same stamp.
 
-    The first topic of `topics` is the trigger: only its repetition asks for the last reply, so one
+    The first topic of `topics` is the trigger: only its repetition requests the last reply, so one
     re-sent tick makes one repeated reply, however many inputs a node has. A gap between the last
-    stamp and a complete one is an error in lock-step, and so are more than `MOST_WAITING` stamps
-    that wait. With `allow_gaps` (real time) the gap is passed over, and the oldest given up.
+    complete stamp and the next one is an error in lock-step, and so are more than `MOST_WAITING`
+    incomplete stamps. With `allow_gaps` (real time) a gap is skipped, and the oldest incomplete
+    stamp is dropped.
     """
 
     topics: Sequence[str]
+    """Names of the input topics, the trigger first."""
     allow_gaps: bool = False
+    """Whether steps may be missing between two complete stamps, as in real time."""
     last_step: int = -1
-    """Step of the last complete join, -1 before there is one."""
+    """Step of the last complete stamp, -1 before the first one."""
     _waiting: dict[int, dict[str, Any]] = field(default_factory=dict)
 
-    def offer(self, topic: str, stamp_ns: int, message: Any) -> Verdict:
-        """Take one message; raise DdctError for a stamp off the grid or, in lock-step, a gap."""
+    def offer(self, topic: str, stamp_ns: int, message: Any) -> JoinResult:
+        """Add one message; raise DdctError for a stamp off the grid or, in lock-step, a gap."""
         try:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
             raise DdctError(f'{topic}: {error}') from error
         if step <= self.last_step:
             again = step == self.last_step and topic == self.topics[0]
-            return Verdict.REPEAT if again else Verdict.IGNORE
+            return JoinResult.REPEAT if again else JoinResult.IGNORE
         inputs = self._waiting.get(step)
         if inputs is None:
             self._make_room(topic, step)
             inputs = self._waiting[step] = {}
         inputs[topic] = message
         if len(inputs) < len(self.topics):
-            return Verdict.WAIT
+            return JoinResult.WAIT
         self._accept(step)
-        return Verdict.COMPLETE
+        return JoinResult.COMPLETE
 
     def take(self) -> tuple[int, dict[str, Any]]:
-        """Return the step of the last complete join and its messages by topic, once."""
+        """Return the last complete step and its messages by topic, and remove them."""
         return self.last_step, self._waiting.pop(self.last_step)
 
     def _make_room(self, topic: str, step: int) -> None:

@@ -1,4 +1,4 @@
-"""The owner of time at 100 Hz on a steady clock; knows nothing of ROS."""
+"""The owner of time at 100 Hz on a steady clock; does not depend on ROS."""
 
 from collections.abc import Callable
 from typing import Any
@@ -9,23 +9,24 @@ from ddct_plant.fail_safe.request_watch import FailSafe
 from ddct_plant.ticks.tick_owner import TickOwner
 
 RECORDER_PATIENCE_S = 2.0
-"""How long a real-time run waits at t_N for the recorder, which may lack a reply for good."""
+"""Longest wait in s of a real-time run at t_N for the recorder, which may have missed a reply."""
 
 
 class RealtimeOwner(TickOwner):
     """
-    Step on a steady 10 ms grid with the replies to the tick before, and count the missing ones.
+    Step on a steady 10 ms grid with the replies to the previous tick, and count missing replies.
 
-    t_0 is waited for as in lock-step, recorder included: it is the start barrier. t_N waits for
-    the torques, which end the run, and a while for the recorder. In between a missing torque is
-    held at its last value; a clutch torque that stays away for longer than its timeout runs to
-    zero at the stated rate, and counts no more when it comes back: that is the safe state.
+    At t_0 the owner waits for all replies as in lock-step, recorder included: the start barrier.
+    At t_N it waits for the torques, which end the run, and up to `RECORDER_PATIENCE_S` for the
+    recorder. In between a missing torque is held at its last value. When the clutch torque is
+    missing for longer than its timeout, it runs to zero at the rate of the plan and later clutch
+    torques are ignored: that is the safe state.
     """
 
     def __init__(
         self, *arguments: Any, on_started: Callable[[], object] = lambda: None, **options: Any
     ) -> None:
-        """Take what `TickOwner` takes; `on_started` is called when the 10 ms grid begins."""
+        """Accept the arguments of `TickOwner`; call `on_started` when the 10 ms grid begins."""
         super().__init__(*arguments, **options)
         self._on_started = on_started
         self.missed_replies = dict.fromkeys(self._plan.torques, 0)
@@ -38,11 +39,11 @@ class RealtimeOwner(TickOwner):
 
     @property
     def safe(self) -> bool:
-        """Whether the clutch torque has stayed away and is being taken to zero."""
+        """Whether the clutch torque has timed out and is on its way to zero."""
         return self._clutch.stopped
 
     def tick(self) -> None:
-        """Take every step that is due by the wall clock."""
+        """Integrate every step that is due by the wall clock."""
         if self._started_at is None:
             return
         while self.step < self.last_step:
@@ -54,7 +55,7 @@ class RealtimeOwner(TickOwner):
             self._take_step()
 
     def watch(self) -> None:
-        """Guard the first and the last tick; the ones between never wait."""
+        """Check the timeouts of the first and the last tick; the ones between never wait."""
         if self._started_at is not None and self.step < self.last_step:
             return
         waited_s = self._clock() - self._opened_at
@@ -90,7 +91,7 @@ class RealtimeOwner(TickOwner):
         self._integrate({**self._held, clutch: self._clutch_torques(replies[clutch])})
 
     def _clutch_torques(self, reply: list[list[float]] | None) -> list[list[float]]:
-        """Return the rows of torques in N m of this period: the reply, the last, or a ramp."""
+        """Return the rows of torques in N m of this period: the reply, held values, or a ramp."""
         if reply is not None and not self.safe:
             self._held_clutch = [row[-1] for row in reply]
             self._clutch.request(self.step)
@@ -102,7 +103,7 @@ class RealtimeOwner(TickOwner):
         return [_line(*ends) for ends in zip(held, self._held_clutch, strict=True)]
 
     def _ramped(self, held: list[float]) -> list[float]:
-        """Return the torques one period later on the way to zero; the static one in proportion."""
+        """Return the torques in N m one period later on the ramp to zero, in proportion."""
         first = self._clutch.next_torque()
         share = first / held[0] if held[0] else 0.0
         return [first, *(max(share * other, first) for other in held[1:])]
@@ -120,6 +121,6 @@ class RealtimeOwner(TickOwner):
 
 
 def _line(first: float, last: float) -> list[float]:
-    """Return the (11,) torques of a period that run from one to the other."""
+    """Return the (11,) torques in N m of a period, linear from `first` to `last`."""
     change = (last - first) / SUBSTEPS
     return [*(first + i * change for i in range(SUBSTEPS)), last]

@@ -1,15 +1,15 @@
-"""Tell from their sequence numbers that messages have two publishers; knows nothing of ROS."""
+"""Detect two publishers of a topic by the sequence numbers of messages; independent of ROS."""
 
 PROOF = 3
-"""How often an earlier publisher must be heard again: once may be chance after lost messages."""
+"""Returns to an earlier sequence that prove two publishers: one may be chance after losses."""
 
 
 class SequenceWatch:
     """
-    Hear the numbers under which the messages of one topic were sent, each publisher counting up.
+    Detect two live publishers of one topic; each publisher numbers its messages in sequence.
 
-    A publisher that is started again begins anew and is heard once; two that are alive are heard
-    in turns, each going on from its own last number.
+    A restarted publisher begins a new sequence, and the old one ends. The sequences of two live
+    publishers alternate, each going on from its own last number.
     """
 
     def __init__(self) -> None:
@@ -19,11 +19,11 @@ class SequenceWatch:
 
     @property
     def two_alive(self) -> bool:
-        """Whether two publishers have been heard in turns."""
+        """Whether the sequences of two publishers alternate."""
         return self._returns >= PROOF
 
-    def hear(self, number: int) -> None:
-        """Take the number of the next message."""
+    def note(self, number: int) -> None:
+        """Note the sequence number of the next message."""
         if self._last is not None and number != self._last + 1:
             if number - 1 in self._earlier:
                 self._earlier.remove(number - 1)

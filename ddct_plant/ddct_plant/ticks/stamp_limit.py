@@ -1,4 +1,4 @@
-"""Which stamps can be true in real time, by a steady clock; knows nothing of ROS."""
+"""Plausible stamps in real time, judged by a steady clock; independent of ROS."""
 
 import time
 from collections.abc import Callable, Collection
@@ -7,18 +7,18 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_NS, START_NS, step_of_stamp
 
 TICK_LEAD_NS = 300_000_000
-"""How far ticks may run ahead of the time since the first one: a reader that starts late may have
-ten ticks in its queue (0.1 s), and the clocks of two machines part by 0.2 s in an hour."""
+"""Largest lead in ns of a tick over the time since the first one: a late subscriber may
+have ten ticks in its queue (0.1 s), and the clocks of two machines drift by 0.2 s in an hour."""
 
 
 class StampLimit:
     """
     Refuse stamps that no tick can have reached yet.
 
-    A tick may be as late as it likes: a node that was stopped finds its queue full of them, and
-    the steady clock went on meanwhile. Ahead of time, it may be by `TICK_LEAD_NS` since the first
-    tick that was seen, t_0 as a rule. A reply may be one period ahead of where the punctual ticks
-    put the driveline by now.
+    A tick may be late by any time: a node that was suspended finds its queue full, and the steady
+    clock went on meanwhile. It may be early by at most `TICK_LEAD_NS`, counted from the first
+    received tick, which is normally t_0. A reply may be one period ahead of the present tick, as
+    estimated from the ticks that were on time.
     """
 
     def __init__(
@@ -29,26 +29,27 @@ class StampLimit:
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         """
-        Take the topics that come with every tick from the owner of time, and a clock in ns.
+        Limit the stamps of `ticks`, the topics that the owner of time publishes, and of replies.
 
-        The clock is a steady one. All other topics reply to ticks. `from_t0` refuses to begin
-        with a later tick than t_0.
+        All other topics are replies to ticks. `clock_ns` is a steady clock in ns. With `from_t0`
+        a first tick later than t_0 is refused.
         """
         self._ticks = ticks
         self._clock_ns = clock_ns
         self._from_t0 = from_t0
         self._first: tuple[int, int] | None = None
-        """Stamp of the first tick, and when it was seen."""
+        """Stamp of the first tick in ns, and the clock in ns at which it was received."""
         self._lead_ns: int | None = None
-        """Largest stamp less clock of the ticks after the first, which waits for everybody."""
+        """Largest stamp less clock, in ns, of the ticks after the first, which is the start
+        barrier."""
 
     @property
-    def tick_seen(self) -> bool:
-        """Whether there was a tick at all."""
+    def tick_received(self) -> bool:
+        """Whether any tick was received."""
         return self._first is not None
 
     def why_refused(self, topic: str, stamp_ns: int) -> str:
-        """Return why a message with this stamp cannot be true now, or ''; note a true tick."""
+        """Return why a message with this stamp is refused now, or ''; note an accepted tick."""
         try:
             step_of_stamp(stamp_ns)
         except DdctError as error:
@@ -68,8 +69,8 @@ class StampLimit:
     def _latest_tick(self, now: int) -> int | None:
         if self._first is None:
             return START_NS if self._from_t0 else None
-        stamp, seen = self._first
-        return stamp + now - seen + TICK_LEAD_NS
+        stamp, received_ns = self._first
+        return stamp + now - received_ns + TICK_LEAD_NS
 
     def _latest_reply(self, now: int) -> int:
         if self._lead_ns is not None:
@@ -78,7 +79,7 @@ class StampLimit:
 
     def _note_tick(self, stamp_ns: int, now: int) -> None:
         if self._first is None or stamp_ns < self._first[0]:
-            # Ticks never fall: a lower one shows that what came first was none.
+            # Stamps of ticks never decrease: a lower one shows that the first message was no tick.
             self._first, self._lead_ns = (stamp_ns, now), None
         elif stamp_ns > self._first[0]:
             lead = stamp_ns - now

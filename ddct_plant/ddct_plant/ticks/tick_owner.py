@@ -1,4 +1,4 @@
-"""The owner of time: when the driveline steps, and on which replies. Knows nothing of ROS."""
+"""The owner of time: when the driveline steps, and on which replies. Independent of ROS."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -12,35 +12,36 @@ from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
 
 RESEND_AFTER_S = 0.1
-"""How long a tick may stay unanswered before it is sent again."""
+"""Time in s after which an unanswered tick is published again."""
 
 
 @dataclass(frozen=True)
 class TickPlan:
-    """How far a run goes, and on which topics its ticks are answered."""
+    """Length of a run, topics of the replies to its ticks, and timeouts."""
 
     torques: tuple[str, ...]
-    """What the driveline integrates, in the order in which it takes them."""
+    """Topics of the torques that the driveline integrates, in the order of its `step`."""
     clutch: str
-    """Which of these has rows of 11 torques: what is transmitted, or kinetic and static capacity;
-    each of the others has one number."""
+    """Topic with rows of 11 torques: the transmitted torque, or kinetic and static capacity. Each
+    of the others has one number."""
     recorder: str
-    """Where the recorder acknowledges a tick; empty where it is not waited for."""
+    """Topic on which the recorder acknowledges a tick; empty where the run does not wait for
+    it."""
     steps: int
-    """N: states run t_0..t_N."""
+    """N, the number of periods: states run from t_0 to t_N."""
     answer_timeout_s: float
-    """Wall time after which an unanswered tick ends the run."""
+    """Wall time in s after which an unanswered tick ends the run."""
     fail_safe: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
-    """Real time: when and how fast a clutch torque that stays away is taken to zero."""
+    """Real time: timeout of the clutch torque, and rate at which it then runs to zero."""
 
     @property
     def topics(self) -> tuple[str, ...]:
-        """The replies that a whole tick has."""
+        """Topics of all replies that complete a tick."""
         return (*self.torques, self.recorder) if self.recorder else self.torques
 
 
 def driveline_info(steps: int, clutch: FailSafeSettings | None = None) -> dict[str, str]:
-    """Return what the driveline says of itself: N, when and how fast it opens the clutch."""
+    """Return the `run_info` entries of the driveline: N, timeout and rate of its fail-safe."""
     clutch = clutch or FailSafeSettings(CLUTCH_TIMEOUT_S)
     return {
         'steps': str(steps),
@@ -53,7 +54,7 @@ class TickOwner:
     """
     Publish a tick, wait for every reply stamped exactly t_k, integrate, go on: lock-step.
 
-    Everything but those replies is ignored, so that old data never enters a step.
+    Any other message is ignored, so that old data never enters a step.
     `publish(step)` sends the driveline's present outputs; `finish(error)` ends the run.
     """
 
@@ -68,14 +69,14 @@ class TickOwner:
     ) -> None:
         self.step = 0
         self.last_step = plan.steps
-        """N, less where `over()` says that the run ends with the present state."""
+        """Last step of the run: N, or the first step at which `over()` is true."""
         self.resends = 0
         self.missed_steps = 0
         self.late = 0
-        """Replies to a tick that was already over."""
+        """Number of replies to a tick that was already complete."""
         self._awaited: tuple[str, ...] = ()
         self._replies: dict[str, Any] = {}
-        """What has come of them so far, by topic."""
+        """Replies to the present tick that have arrived, by topic."""
         self._driveline = driveline
         self._plan = plan
         self._publish = publish
@@ -90,7 +91,7 @@ class TickOwner:
         self._open(0)
 
     def offer(self, topic: str, stamp_ns: int, reply: Any) -> None:
-        """Take one reply; the one that completes the tick may make the driveline step."""
+        """Add one reply; the reply that completes the tick makes the driveline step."""
         due = stamp_of_step(self.step)
         if stamp_ns != due or topic not in self._awaited or topic in self._replies:
             self.late += stamp_ns < due
@@ -100,7 +101,7 @@ class TickOwner:
             self._on_complete()
 
     def missing(self) -> list[str]:
-        """Return the topics that have not answered, in the order of the plan."""
+        """Return the topics whose reply is missing, in the order of the plan."""
         return [topic for topic in self._awaited if topic not in self._replies]
 
     def watch(self) -> None:

@@ -1,4 +1,4 @@
-"""Silence is noticed at the stated step, and the ramp to an open clutch is as steep as stated."""
+"""Missing requests are detected at the stated step; the ramp to an open clutch has its rate."""
 
 from fractions import Fraction
 
@@ -8,7 +8,7 @@ from ddct_plant.fail_safe.guarded import steps_to_make_up
 from ddct_plant.fail_safe.request_watch import FailSafe, FailSafeSettings, RequestWatch
 
 
-def asked(step: int, torque: float, settings: FailSafeSettings | None = None) -> FailSafe:
+def with_request(step: int, torque: float, settings: FailSafeSettings | None = None) -> FailSafe:
     """Return a fail-safe that has had one request."""
     fail_safe = FailSafe(settings or FailSafeSettings())
     fail_safe.request(step)
@@ -18,14 +18,14 @@ def asked(step: int, torque: float, settings: FailSafeSettings | None = None) ->
 
 def test_fail_safe_holds_for_its_timeout_then_ramps_to_open():
     settings = FailSafeSettings(request_timeout_s=0.05, fail_safe_ramp_n_m_s=1000.0)
-    fail_safe = asked(10, 25.0, settings)
+    fail_safe = with_request(10, 25.0, settings)
     assert not any(fail_safe.tick(step) for step in range(11, 16))
     assert fail_safe.tick(16)
     assert [fail_safe.next_torque() for _ in range(4)] == [15.0, 5.0, 0.0, 0.0]
 
 
 def test_fail_safe_stays_engaged_when_requests_come_back():
-    fail_safe = asked(0, 25.0)
+    fail_safe = with_request(0, 25.0)
     assert fail_safe.tick(20)
     fail_safe.request(21)
     assert fail_safe.tick(21)
@@ -36,7 +36,7 @@ def test_fail_safe_does_not_engage_before_the_first_request():
     assert not fail_safe.tick(1000)
 
 
-def test_a_request_resets_the_silence():
+def test_a_request_restarts_the_timeout():
     watch = RequestWatch(0.05)
     for step in range(0, 100, 5):
         watch.request(step)
@@ -53,7 +53,7 @@ def test_every_timeout_in_hundredths_of_a_second_trips_one_step_after_it(since):
 
 
 def test_the_ramp_over_several_periods_is_that_of_each():
-    one, several = (asked(0, 300.0) for _ in range(2))
+    one, several = (with_request(0, 300.0) for _ in range(2))
     for _ in range(7):
         last = one.next_torque()
     assert several.next_torque(7) == last == 230.0
@@ -61,11 +61,11 @@ def test_the_ramp_over_several_periods_is_that_of_each():
 
 
 def test_a_negative_torque_runs_to_zero_too():
-    fail_safe = asked(0, -15.0)
+    fail_safe = with_request(0, -15.0)
     assert [fail_safe.next_torque() for _ in range(3)] == [-5.0, 0.0, 0.0]
 
 
-def test_the_steps_made_up_for_are_bounded_whatever_a_stamp_says():
+def test_the_steps_made_up_for_are_bounded_whatever_the_stamp():
     assert list(steps_to_make_up(3, 6)) == [3, 4, 5]
     assert len(steps_to_make_up(0, 214_748_364_800)) == 1000
     assert steps_to_make_up(0, 214_748_364_800)[-1] == 214_748_364_799

@@ -1,4 +1,4 @@
-"""A commanded engine with limits is held to them at w_m, the first of the four speeds."""
+"""A commanded engine with limits is limited by them at w_m, the first of the four speeds."""
 
 from types import SimpleNamespace
 from typing import Any

@@ -1,4 +1,4 @@
-"""A follower asked again repeats its reply, and takes another message for that tick as a fault."""
+"""A follower repeats its reply for a repeated tick; another message for it is a fault."""
 
 import pytest
 
@@ -24,8 +24,8 @@ class Sum(follower.FollowerNode):
         self.published = 0
         self.follow(JOINT_STATES, ENGINE_REQUEST)
 
-    def hear(self, *_: Any) -> None:
-        """Listen to nothing: the tests hand messages in."""
+    def subscribe_values(self, *_: Any) -> None:
+        """Subscribe to nothing: the tests pass messages in."""
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> follower.Reply:
         self.answers.append(inputs[TRIGGER] + inputs[OTHER])

@@ -26,7 +26,7 @@ VALUES = {
     'clutch/torque': (POINTS,),
     'clutch/phase': (1.0, 0.5, ()),
 }
-"""What a topic carries; one number per signal where nothing is said."""
+"""Values of a topic; one number per signal for the topics that are not listed."""
 SCALARS = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and not t.kind.sensed]
 SENSED = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and t.kind.sensed]
 
@@ -148,7 +148,7 @@ def test_slip_reference_is_10_ms_apart():
 
 
 @pytest.mark.parametrize('preview_steps', [0, 1, 3])
-def test_a_preview_is_read_as_far_as_the_controller_looks(preview_steps):
+def test_a_preview_is_read_as_far_as_the_controller_needs(preview_steps):
     speeds, rates = [5.0, 4.0, 2.0, 1.0], [-100.0, -200.0, -100.0, -50.0]
     message = topics.SLIP_REFERENCE.message(STAMP, speeds, rates)
     ahead = preview_steps + 1
@@ -157,7 +157,7 @@ def test_a_preview_is_read_as_far_as_the_controller_looks(preview_steps):
 
 
 @pytest.mark.parametrize('preview_steps', [4, 22])
-def test_a_preview_that_is_too_short_says_how_long_it_must_be(preview_steps):
+def test_the_error_of_a_short_preview_names_the_length_it_needs(preview_steps):
     message = topics.SLIP_REFERENCE.message(STAMP, [5.0, 4.0, 3.0, 2.0], [0.0] * 4)
     words = f'has 4 points and the controller needs {preview_steps + 1}: .*:={preview_steps}$'
     with pytest.raises(DdctError, match=words):

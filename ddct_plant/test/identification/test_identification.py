@@ -95,7 +95,7 @@ def test_334_4_fits_no_driveline_and_339_4_is_what_the_others_predict():
     assert std == pytest.approx(0.024, abs=0.001)
 
 
-def test_leaving_out_a_gain_leaves_a_parameter_free_and_says_so():
+def test_leaving_out_a_gain_leaves_a_parameter_free_and_is_an_error():
     with pytest.raises(DdctError, match='do not determine P2 gain'):
         predict_left_out(COEFFICIENTS, 'P2', 'gain')
     with pytest.raises(DdctError, match="P3 has no coefficient 'pole z'"):

@@ -1,4 +1,4 @@
-"""What a log says of C_load is a mean over its time, however its gaps part it."""
+"""The fitted C_load of a log is a mean over its time, whatever its gaps."""
 
 from dataclasses import fields, replace
 from pathlib import Path

@@ -54,10 +54,10 @@ def test_a_period_is_that_of_the_differential_equations():
     heat, power = ClutchHeat(start), 30_000.0
     for _ in range(100):
         heat.advance(power * 0.01)
-    told = solve_ivp(
+    solution = solve_ivp(
         lambda _, t: rates(start, t, power), (0.0, 1.0), (90.0, 240.0, 40.0), rtol=1e-11, atol=1e-9
     )
-    assert heat.temperatures_c == pytest.approx(told.y[:, -1], rel=1e-8)
+    assert heat.temperatures_c == pytest.approx(solution.y[:, -1], rel=1e-8)
 
 
 def test_a_clutch_at_ambient_temperature_stays_there_to_the_last_bit():
@@ -90,7 +90,7 @@ def launched(*, held: bool) -> tuple[float, float, float]:
     Return lock-up time in s, friction work in J and facing temperature at the end of a launch.
 
     240 degrees at first, 252 N m of engine and 250 N m of cold capacity at 290 rad/s of slip,
-    in sub-steps of 0.1 ms. Held, friction knows temperature and slip of the period's start and
+    in sub-steps of 0.1 ms. Held, friction has the temperature and slip of the period's start and
     `ClutchHeat` takes its work; else friction and the masses move with every sub-step.
     """
     clutch, heat = FrictionClutch(FADING), ClutchHeat(HOT)

@@ -66,13 +66,13 @@ def test_the_torque_limits_come_last():
 def test_what_is_reachable_is_delivered_and_nothing_beyond(authority, periods):
     lowest, highest = EngineResponse(authority).reachable(DEMAND, periods)
     assert lowest <= 0.0 <= highest
-    for asked, expected in (
+    for request, expected in (
         (lowest, lowest),
         (highest, highest),
         (lowest - 5.0, lowest),
         (highest + 5.0, highest),
     ):
-        torques = delivered(authority, [DEMAND + asked] * periods)
+        torques = delivered(authority, [DEMAND + request] * periods)
         assert torques[-1] == pytest.approx(DEMAND + expected)
 
 
@@ -81,7 +81,7 @@ def test_a_demand_that_leaves_the_limits_makes_no_empty_range():
     response = EngineResponse(limits)
     response.deliver(190.0, 200.0)
     lowest, highest = response.reachable(300.0, 1)
-    assert lowest == highest == pytest.approx(response.asked - 1.0)
+    assert lowest == highest == pytest.approx(response.requested - 1.0)
 
 
 @pytest.mark.parametrize(

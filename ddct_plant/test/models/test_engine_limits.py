@@ -23,7 +23,7 @@ def test_what_the_engine_can_give_is_given():
     assert LimitedEngine(LIMITS).deliver(123.4, 300.0) == 123.4
 
 
-def test_an_engine_asked_for_less_than_friction_takes_no_more_than_friction():
+def test_an_engine_with_a_request_below_friction_takes_no_more_than_friction():
     torque = LimitedEngine(LIMITS).deliver(-500.0, rad_s_from_rpm(2000))
     assert torque == pytest.approx(-16.0, rel=1e-3)
 
@@ -35,11 +35,11 @@ def test_the_friction_torque_is_heywoods():
         assert torque == pytest.approx(pressure * 1.368e-3 / (4.0 * math.pi), abs=0.051)
 
 
-def simulated(engine, speed, load, seconds, asked=0.0):
+def simulated(engine, speed, load, seconds, request=0.0):
     """Return w_m every 10 ms of an engine of 0.25 kg m^2 that carries `load` in N m."""
     speeds = [speed]
     for _ in range(round(seconds / 0.01)):
-        speeds.append(speeds[-1] + (engine.deliver(asked, speeds[-1]) - load) / 0.25 * 0.01)
+        speeds.append(speeds[-1] + (engine.deliver(request, speeds[-1]) - load) / 0.25 * 0.01)
     return speeds
 
 
@@ -62,8 +62,8 @@ def test_idle_control_does_not_wind_up_while_it_is_saturated():
     engine = LimitedEngine(LIMITS)
     for _ in range(10_000):
         assert engine.deliver(0.0, 0.7 * IDLE) <= LIMITS.idle_most_n_m
-    asked = [engine.deliver(0.0, 1.2 * IDLE) for _ in range(100)]
-    assert asked[-1] == 0.0
+    request = [engine.deliver(0.0, 1.2 * IDLE) for _ in range(100)]
+    assert request[-1] == 0.0
 
 
 def test_an_engine_loaded_beyond_idle_control_stalls_and_stays_off():
@@ -86,7 +86,7 @@ def test_the_limiter_cuts_fuel_with_hysteresis():
 
 def test_a_free_engine_at_full_pedal_hunts_below_the_over_rev_speed():
     engine = LimitedEngine(LIMITS)
-    speeds = simulated(engine, 300.0, 0.0, 5.0, asked=250.0)
+    speeds = simulated(engine, 300.0, 0.0, 5.0, request=250.0)
     assert LIMITS.resume_rad_s - 10.0 < min(speeds[-100:]) < LIMITS.cut_rad_s
     assert max(speeds) < LIMITS.over_rev_rad_s
     assert engine.end_cause is None

@@ -48,7 +48,7 @@ def test_below_the_kiss_point_nothing_is_carried_and_above_it_the_rest():
     assert clutch.capacity([0.0, 11.9, 12.0, 20.0]).kinetic == [0.0, 0.0, 0.0, 4.0]
 
 
-def test_a_hot_clutch_carries_more_at_one_actuator_torque_but_opens_when_asked():
+def test_a_hot_clutch_carries_more_at_one_actuator_torque_but_opens_at_a_request_of_zero():
     clutch = FrictionClutch(FrictionParameters(kiss_torque_n_m=12.0, kiss_drift_n_m_k=0.1))
     found = clutch.capacity([-1.0, 0.0, 50.0], temperature_c=220.0)
     assert found.kinetic == pytest.approx([0.0, 0.0, 50.0 - 12.0 + 0.1 * 200.0])

@@ -1,4 +1,4 @@
-"""Engine, load, clutch and actuator do what Section 1.4 of the thesis says."""
+"""Engine, load, clutch and actuator behave as in Section 1.4 of the thesis."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The work of each period warms the clutch of a stick-slip run before it says what it carries."""
+"""The work of each period warms the clutch of a stick-slip run before its capacity is computed."""
 
 import pytest
 
@@ -32,9 +32,9 @@ def test_the_work_of_a_period_counts_in_the_next_one():
     assert reply.kinetic[0] == pytest.approx(100.0 * (1.0 - 0.2 * (facing_c - 250.0) / 50.0))
 
 
-def test_periods_that_were_not_heard_of_count_with_the_work_of_the_one_after_them():
-    missed, heard = clutch(), clutch()
+def test_skipped_periods_count_with_the_work_of_the_one_after_them():
+    missed, complete = clutch(), clutch()
     for step in range(6):
-        expected = heard.reply(step, TORQUES, 0.0, 300.0 if step else 0.0)
+        expected = complete.reply(step, TORQUES, 0.0, 300.0 if step else 0.0)
     missed.reply(0, TORQUES, 0.0, 0.0)
     assert missed.reply(5, TORQUES, 0.0, 300.0) == expected

@@ -178,7 +178,7 @@ def test_capacities_that_cannot_be_are_refused():
 
 
 def test_the_clutch_is_open_as_soon_as_a_period_ends_without_capacity():
-    """Its capacity falls to zero within the period: the next tick says so, not the one after."""
+    """The capacity falls to zero within the period, and the next tick has the phase."""
     driveline = make(initial(300.0, 160.0))
     for last, expected in ((50.0, 'slipping'), (0.0, 'open'), (50.0, 'slipping')):
         capacity = np.linspace(100.0 if last else 50.0, last, 11).tolist()

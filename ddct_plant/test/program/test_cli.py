@@ -45,7 +45,7 @@ def test_a_fault_of_the_program_keeps_its_traceback():
 
 
 @pytest.mark.parametrize(
-    ('work', 'says'),
+    ('work', 'expected'),
     [
         ("print('x' * 100_000)", 'the output: No space left on device'),
         ("print('x')", 'the output: No space left on device'),
@@ -56,7 +56,7 @@ def test_a_fault_of_the_program_keeps_its_traceback():
     ],
 )
 @pytest.mark.parametrize('unbuffered', ['', '1'])
-def test_what_the_system_refuses_is_one_line_without_a_traceback(work, says, unbuffered):
+def test_what_the_system_refuses_is_one_line_without_a_traceback(work, expected, unbuffered):
     program = (
         'import sys\n'
         'from pathlib import Path\n'
@@ -78,7 +78,7 @@ def test_what_the_system_refuses_is_one_line_without_a_traceback(work, says, unb
     assert done.returncode == 1
     (line,) = done.stderr.splitlines()
     assert line.startswith('x: ')
-    assert says in line
+    assert expected in line
 
 
 def test_without_a_standard_output_the_work_is_done(monkeypatch):

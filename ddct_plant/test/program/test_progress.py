@@ -1,4 +1,4 @@
-"""Long work says how far it is; short work says nothing."""
+"""Long work prints its progress; short work prints nothing."""
 
 import io
 
@@ -10,7 +10,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_the_rate_and_the_time_that_remains_are_told_after_two_seconds() -> None:
+def test_the_rate_and_the_time_that_remains_are_printed_after_two_seconds() -> None:
     class Clock:
         now = 0.0
 
@@ -20,7 +20,7 @@ def test_the_rate_and_the_time_that_remains_are_told_after_two_seconds() -> None
     clock, stream = Clock(), io.StringIO()
     progress = Progress('runs', 10_000, done=4000, stream=stream, clock=clock)
     for clock.now, done in ((1.9, 4019), (2.5, 4025), (4.0, 4040), (13.0, 4130)):
-        progress.tell(done)
+        progress.update(done)
     assert stream.getvalue() == (
         'runs: 4025 of 10000, 10 a second, 9 min 58 s left\n'
         'runs: 4130 of 10000, 10 a second, 9 min 47 s left\n'
@@ -36,7 +36,7 @@ def test_a_terminal_has_one_line_that_goes_in_the_end() -> None:
     stream = Terminal()
     progress = Progress('runs', 100, stream=stream, clock=lambda: next(times))
     for done in (30, 31, 40):
-        progress.tell(done)
+        progress.update(done)
     progress.end()
     clear = '\r\x1b[K'
     assert stream.getvalue() == (

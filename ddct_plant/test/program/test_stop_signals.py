@@ -10,13 +10,13 @@ from ddct_plant.program.supervision import stop_signals
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_is_noted_and_its_handler_comes_back(number):
-    heard = []
-    before = signal.signal(number, lambda *_: heard.append('before'))
+    calls = []
+    before = signal.signal(number, lambda *_: calls.append('before'))
     try:
         with stop_signals() as stops:
             os.kill(os.getpid(), number)
-        assert (stops, heard) == ([number], [])
+        assert (stops, calls) == ([number], [])
         os.kill(os.getpid(), number)
-        assert (stops, heard) == ([number], ['before'])
+        assert (stops, calls) == ([number], ['before'])
     finally:
         signal.signal(number, before)

@@ -1,4 +1,4 @@
-"""Work shared among processes gives what it gives in one; a worker that dies is told."""
+"""Work shared among processes has the results of one process; a killed worker is reported."""
 
 import os
 import signal
@@ -20,7 +20,7 @@ def test_work_is_done_in_other_processes():
         assert os.getpid() not in set(results)
 
 
-def test_a_killed_worker_is_told_in_a_line():
+def test_a_killed_worker_is_reported_in_a_line():
     with (
         pytest.raises(DdctError, match='killed'),
         in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,

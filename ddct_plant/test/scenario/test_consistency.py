@@ -1,4 +1,4 @@
-"""One half of a pair moves the other and says so; halves that contradict are refused."""
+"""One value of a pair moves the other, with a remark; halves that contradict are refused."""
 
 import pytest
 
@@ -31,7 +31,7 @@ def the_line(scenario):
     return line
 
 
-def test_the_defaults_agree_and_nothing_is_said():
+def test_the_defaults_agree_without_a_remark():
     assert THESIS.adjusted == ()
     assert THESIS.gear is None
     assert GEAR_RATIOS[1] * FINAL_DRIVE == pytest.approx(THESIS.driveline.total_ratio, rel=3e-4)
@@ -87,7 +87,7 @@ def test_gear_and_total_ratio_follow_each_other():
     assert the_line(by_total) == 'gear is now 1, as driveline.total_ratio is 16.06'
 
 
-def test_a_total_ratio_that_no_gear_has_is_said(tmp_path):
+def test_a_total_ratio_that_no_gear_has_gets_a_remark(tmp_path):
     unnamed = changed('driveline.total_ratio=15')
     assert (
         the_line(unnamed) == 'gear stays none, as no gear of the C635 has driveline.total_ratio 15'
@@ -97,7 +97,7 @@ def test_a_total_ratio_that_no_gear_has_is_said(tmp_path):
     assert unnamed.gear is named.gear is None
 
 
-def test_a_file_of_another_car_that_names_no_gear_is_told_nothing(tmp_path):
+def test_a_file_of_another_car_that_names_no_gear_gets_no_remark(tmp_path):
     other = from_file(tmp_path, 'driveline: {total_ratio: 15}')
     assert (other.gear, other.adjusted) == (None, ())
 

@@ -147,7 +147,7 @@ def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, complai
     assert 'mine.yaml: line 4: ' in str(raised.value)
 
 
-def test_a_file_that_is_set_without_what_tells_of_it_says_what_it_needs():
+def test_a_file_that_is_set_without_its_description_is_refused_with_the_missing_keys():
     with pytest.raises(ParameterError) as raised:
         load_scenario('thesis', ['engine.csv=pedal.csv'])
     needed = 'engine.csv needs engine.time, engine.value, engine.unit beside it: give all'

@@ -1,4 +1,4 @@
-"""A scenario tells which values differ from the packaged one of its name."""
+"""The values of a scenario that differ from the packaged one of its name are listed."""
 
 import dataclasses
 from pathlib import Path
@@ -11,7 +11,7 @@ def test_packaged_scenarios_have_changed_nothing() -> None:
     assert [name for name in scenario_names() if changed_values(load_scenario(name))] == []
 
 
-def test_every_changed_value_is_told_also_what_follows_from_it() -> None:
+def test_every_changed_value_is_listed_also_what_follows_from_it() -> None:
     scenario = load_scenario('thesis', ['load.slope_rad=0.05', 'vehicle.mass_kg=1800'])
     changed = changed_values(scenario)
     assert 'load.slope_rad=0.05' in changed

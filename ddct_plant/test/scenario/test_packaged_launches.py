@@ -26,7 +26,7 @@ def test_each_value_or_the_section_it_is_in_has_a_comment(name):
         if line.startswith(('#', 'description:')):
             continue
         depth = len(line) - len(line.lstrip())
-        explained = {at: said for at, said in explained.items() if at < depth}
+        explained = {at: text for at, text in explained.items() if at < depth}
         explained[depth] = '#' in line
         is_section = line.split('#')[0].rstrip().endswith(':')
         assert is_section or any(explained.values()), line

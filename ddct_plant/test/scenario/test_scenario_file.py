@@ -46,7 +46,7 @@ def test_a_scenario_survives_its_yaml_to_the_last_bit(scenario_file):
     assert scenario_digest(again) == scenario_digest(scenario)
 
 
-def test_a_scenario_may_say_its_schema_version_and_a_written_one_does(scenario_file):
+def test_a_scenario_may_have_a_schema_version_and_a_written_one_does(scenario_file):
     without = load_scenario(scenario_file(MINIMAL))
     assert load_scenario(scenario_file(f'schema_version: 1\n{MINIMAL}')) == without
     assert scenario_to_yaml(without).startswith('schema_version: 1\n')

@@ -1,4 +1,4 @@
-"""The plant without ROS: what it delivers and what resists at each step."""
+"""The plant without ROS: delivered and resisting torques at each step."""
 
 import pytest
 
@@ -17,22 +17,24 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
     plant, load = WholePlant(settings, two_input=False), make_load(settings)
     found = []
     for step in range(60):
-        sight = plant.look(step)
-        reply = plant.reply(step, sight, 0.0, None)
-        assert reply['load_torque'] == load.torque(sight.now.vehicle_speed, time_of_step(step))
+        observation = plant.observe(step)
+        reply = plant.reply(step, observation, 0.0, None)
+        assert reply['load_torque'] == load.torque(
+            observation.true.vehicle_speed, time_of_step(step)
+        )
         found.append(reply['load_torque'])
         plant.advance(reply)
     assert found[-1] > found[0] + 400.0, 'at 0.118 rad'
 
 
 def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
-    """At rest in gear: the shaft stands, and at its speed the engine would give nothing."""
+    """At rest in gear: the shaft has no speed, at which the engine would deliver nothing."""
     settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
     plant, engine = WholePlant(settings, two_input=True), make_engine(settings)
-    sight = plant.look(0)
-    engine_speed, shaft_speed = sight.now.joint_speed[:2]
+    observation = plant.observe(0)
+    engine_speed, shaft_speed = observation.true.joint_speed[:2]
     assert engine_speed == pytest.approx(104.72)
     assert shaft_speed == 0.0
-    found = plant.reply(0, sight, 0.0, 80.0)['engine_torque']
+    found = plant.reply(0, observation, 0.0, 80.0)['engine_torque']
     assert found == engine.torque(0, 80.0, engine_speed)
     assert found != make_engine(settings).torque(0, 80.0, shaft_speed)

@@ -50,7 +50,7 @@ def test_the_measured_slip_is_the_difference_of_the_measured_speeds_with_the_fla
     assert flags == {(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)}
 
 
-def test_a_step_that_is_asked_for_again_has_the_same_answer_and_changes_nothing_after_it():
+def test_a_repeated_step_has_the_same_measurement_and_changes_no_later_one():
     once = run(DrivelineSensors(NOISY, 3))
     sensors = DrivelineSensors(NOISY, 3)
     for step, expected in enumerate(once):

@@ -1,4 +1,4 @@
-"""What one sensor makes of a quantity: each error by itself, and all in their order."""
+"""One sensor: each of its errors alone, and all of them in their order."""
 
 import dataclasses
 import itertools
@@ -16,8 +16,8 @@ Z = 4.5
 N = 40_000
 
 
-def said(options: SensorOptions, truth, seed: int = 0, quantity: str = 'engine_speed'):
-    """Return values and flags at each step."""
+def measured(options: SensorOptions, truth, seed: int = 0, quantity: str = 'engine_speed'):
+    """Return the measured values and the flags of each step."""
     sensor = Sensor(options, quantity, seed)
     samples = [sensor.take(float(value)) for value in truth]
     return np.array([each.value for each in samples]), np.array([each.held for each in samples])
@@ -27,14 +27,14 @@ def ramp(steps: int) -> np.ndarray:
     return 100.0 + 0.37 * np.arange(steps)
 
 
-def test_a_sensor_of_which_nothing_is_given_says_the_truth_to_the_bit():
-    values, held = said(EngineSpeedSensor(), ramp(50))
+def test_a_sensor_of_no_option_is_given_measures_the_truth_to_the_bit():
+    values, held = measured(EngineSpeedSensor(), ramp(50))
     assert np.array_equal(values, ramp(50))
     assert not held.any()
 
 
 def test_noise_has_its_mean_deviation_and_shape_and_no_memory():
-    noise = said(EngineSpeedSensor(noise_rad_s=0.2), np.full(N, 100.0))[0] - 100.0
+    noise = measured(EngineSpeedSensor(noise_rad_s=0.2), np.full(N, 100.0))[0] - 100.0
     assert abs(noise.mean()) < Z * 0.2 / math.sqrt(N)
     assert abs(noise.std() / 0.2 - 1.0) < Z / math.sqrt(2 * N)
     within = np.mean(np.abs(noise) < 0.2)
@@ -44,44 +44,46 @@ def test_noise_has_its_mean_deviation_and_shape_and_no_memory():
 
 
 def test_the_gain_multiplies_and_the_bias_adds():
-    values, _ = said(EngineTorqueEstimate(gain=1.5, bias_n_m=-2.0), [10.0, 0.0, -4.0])
+    values, _ = measured(EngineTorqueEstimate(gain=1.5, bias_n_m=-2.0), [10.0, 0.0, -4.0])
     assert values.tolist() == [13.0, -2.0, -8.0]
 
 
 def test_a_quantum_rounds_to_its_nearest_multiple_also_after_the_noise():
     truth = ramp(300)
-    values, _ = said(EngineSpeedSensor(quantum_rad_s=0.25), truth)
+    values, _ = measured(EngineSpeedSensor(quantum_rad_s=0.25), truth)
     assert np.array_equal(values % 0.25, np.zeros(300))
     assert np.abs(values - truth).max() <= 0.125
-    noisy, _ = said(EngineSpeedSensor(quantum_rad_s=0.25, noise_rad_s=1.0), truth)
+    noisy, _ = measured(EngineSpeedSensor(quantum_rad_s=0.25, noise_rad_s=1.0), truth)
     assert np.array_equal(noisy % 0.25, np.zeros(300))
     assert not np.array_equal(noisy, values)
 
 
 @pytest.mark.parametrize('truth', [1e300, math.inf, math.nan])
 def test_a_quantum_lets_the_numbers_of_a_loop_that_diverges_pass(truth):
-    (value,), _ = said(EngineSpeedSensor(quantum_rad_s=1e-300), [truth])
+    (value,), _ = measured(EngineSpeedSensor(quantum_rad_s=1e-300), [truth])
     assert value == truth or math.isnan(truth)
 
 
-def test_a_delay_says_what_was_and_before_that_the_first_value():
+def test_a_delayed_sensor_repeats_its_first_value_until_the_delay_has_passed():
     truth = ramp(30)
-    values, held = said(EngineSpeedSensor(delay_s=0.03), truth)
+    values, held = measured(EngineSpeedSensor(delay_s=0.03), truth)
     assert values.tolist() == [truth[0]] * 3 + truth[:27].tolist()
     assert not held.any()
 
 
 def test_a_delayed_noise_is_the_same_noise_later():
-    now, _ = said(EngineSpeedSensor(noise_rad_s=0.2, quantum_rad_s=0.01), ramp(60))
-    later, _ = said(EngineSpeedSensor(noise_rad_s=0.2, quantum_rad_s=0.01, delay_s=0.05), ramp(60))
+    now, _ = measured(EngineSpeedSensor(noise_rad_s=0.2, quantum_rad_s=0.01), ramp(60))
+    later, _ = measured(
+        EngineSpeedSensor(noise_rad_s=0.2, quantum_rad_s=0.01, delay_s=0.05), ramp(60)
+    )
     assert later[5:].tolist() == now[:55].tolist()
     assert set(later[:5]) == {now[0]}
 
 
 def test_a_lost_sample_repeats_the_last_that_came_and_is_flagged():
     truth = ramp(4000)
-    values, held = said(EngineSpeedSensor(dropout=0.3, delay_s=0.01), truth)
-    delayed, _ = said(EngineSpeedSensor(delay_s=0.01), truth)
+    values, held = measured(EngineSpeedSensor(dropout=0.3, delay_s=0.01), truth)
+    delayed, _ = measured(EngineSpeedSensor(delay_s=0.01), truth)
     assert not held[0]
     assert 0 < held.sum() < len(held)
     last = values[0]
@@ -92,7 +94,7 @@ def test_a_lost_sample_repeats_the_last_that_came_and_is_flagged():
 
 @pytest.mark.parametrize('share', [0.02, 0.3, 0.9])
 def test_samples_are_lost_in_their_share_each_by_itself(share):
-    _, held = said(EngineSpeedSensor(dropout=share), np.zeros(N))
+    _, held = measured(EngineSpeedSensor(dropout=share), np.zeros(N))
     assert abs(held.mean() - share) < Z * math.sqrt(share * (1 - share) / N)
     after_lost = held[1:][held[:-1]]
     allowed = Z * math.sqrt(share * (1 - share) / len(after_lost))
@@ -101,7 +103,7 @@ def test_samples_are_lost_in_their_share_each_by_itself(share):
 
 @pytest.mark.parametrize(('share', 'burst'), [(0.1, 5.0), (0.5, 1.0), (0.8, 20.0)])
 def test_bursts_have_their_mean_length_and_the_share_stays(share, burst):
-    _, held = said(EngineSpeedSensor(dropout=share, dropout_burst=burst), np.zeros(N))
+    _, held = measured(EngineSpeedSensor(dropout=share, dropout_burst=burst), np.zeros(N))
     edges = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]]).astype(int)))
     lengths = edges[1::2] - edges[::2]
     # Lengths are geometric; the share of a chain varies by its correlation time more.
@@ -114,7 +116,7 @@ def test_bursts_have_their_mean_length_and_the_share_stays(share, burst):
 
 def test_the_seed_gives_the_numbers_and_another_seed_others():
     options = EngineSpeedSensor(noise_rad_s=0.2, dropout=0.3)
-    first, again, other = (said(options, ramp(300), seed) for seed in (7, 7, 8))
+    first, again, other = (measured(options, ramp(300), seed) for seed in (7, 7, 8))
     assert np.array_equal(first, again)
     assert not np.array_equal(first[0], other[0])
     assert not np.array_equal(first[1], other[1])
@@ -124,15 +126,15 @@ def test_the_seed_gives_the_numbers_and_another_seed_others():
 def test_quantities_have_numbers_of_their_own(seed):
     options = EngineSpeedSensor(noise_rad_s=1.0)
     one, other = (
-        said(options, np.zeros(N), seed, name)[0] for name in ('engine_speed', 'shaft_speed')
+        measured(options, np.zeros(N), seed, name)[0] for name in ('engine_speed', 'shaft_speed')
     )
     assert abs(np.mean(one * other)) < Z / math.sqrt(N)
 
 
 def test_losses_leave_the_noise_as_it_is_and_do_not_depend_on_it():
     noisy = EngineSpeedSensor(noise_rad_s=1.0)
-    values, held = said(dataclasses.replace(noisy, dropout=0.5), np.zeros(500))
-    assert np.array_equal(values[~held], said(noisy, np.zeros(500))[0][~held])
+    values, held = measured(dataclasses.replace(noisy, dropout=0.5), np.zeros(500))
+    assert np.array_equal(values[~held], measured(noisy, np.zeros(500))[0][~held])
     # The first numbers of many seeds: later ones of one stream would part by themselves. A draw
     # below 1/16 has four leading zeros, of which numpy takes the size of a normal number too.
     rare = EngineSpeedSensor(dropout=1.0 / 16.0)

@@ -4,27 +4,27 @@ import pytest
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.ticks.join import MOST_WAITING, StampJoin, Verdict
+from ddct_plant.ticks.join import MOST_WAITING, JoinResult, StampJoin
 
 
-def offer(join: StampJoin, topic: str, step: int) -> Verdict:
+def offer(join: StampJoin, topic: str, step: int) -> JoinResult:
     return join.offer(topic, stamp_of_step(step), f'{topic}{step}')
 
 
 def test_a_stamp_is_complete_when_every_input_has_it():
     join = StampJoin(['a', 'b'])
-    assert offer(join, 'b', 0) is Verdict.WAIT
-    assert offer(join, 'a', 0) is Verdict.COMPLETE
+    assert offer(join, 'b', 0) is JoinResult.WAIT
+    assert offer(join, 'a', 0) is JoinResult.COMPLETE
     assert join.take() == (0, {'a': 'a0', 'b': 'b0'})
 
 
-def test_only_the_trigger_asks_for_the_reply_again():
+def test_only_the_trigger_requests_the_reply_again():
     join = StampJoin(['a', 'b'])
     offer(join, 'a', 0)
     offer(join, 'b', 0)
     join.take()
-    assert offer(join, 'a', 0) is Verdict.REPEAT
-    assert offer(join, 'b', 0) is Verdict.IGNORE
+    assert offer(join, 'a', 0) is JoinResult.REPEAT
+    assert offer(join, 'b', 0) is JoinResult.IGNORE
 
 
 def test_an_older_stamp_is_dropped():
@@ -32,17 +32,17 @@ def test_an_older_stamp_is_dropped():
     for step in (0, 1):
         offer(join, 'a', step)
         join.take()
-    assert offer(join, 'a', 0) is Verdict.IGNORE
+    assert offer(join, 'a', 0) is JoinResult.IGNORE
 
 
 def test_a_repeated_input_of_an_open_stamp_does_not_complete_it():
     join = StampJoin(['a', 'b'])
-    assert offer(join, 'a', 0) is Verdict.WAIT
-    assert offer(join, 'a', 0) is Verdict.WAIT
+    assert offer(join, 'a', 0) is JoinResult.WAIT
+    assert offer(join, 'a', 0) is JoinResult.WAIT
 
 
 @pytest.mark.parametrize('first', [1, 5])
-def test_a_node_that_joins_mid_run_says_so(first):
+def test_a_node_that_joins_mid_run_ends_with_an_error(first):
     with pytest.raises(DdctError, match=f'step {first} came where step 0 was due'):
         offer(StampJoin(['a']), 'a', first)
 
@@ -51,7 +51,7 @@ def test_a_gap_is_passed_over_where_gaps_are_allowed():
     join = StampJoin(['a'], allow_gaps=True)
     offer(join, 'a', 0)
     join.take()
-    assert offer(join, 'a', 3) is Verdict.COMPLETE
+    assert offer(join, 'a', 3) is JoinResult.COMPLETE
     assert join.take() == (3, {'a': 'a3'})
 
 
@@ -61,7 +61,7 @@ def test_inputs_that_were_passed_over_are_forgotten():
     offer(join, 'a', 1)
     offer(join, 'b', 1)
     assert join.take() == (1, {'a': 'a1', 'b': 'b1'})
-    assert offer(join, 'b', 0) is Verdict.IGNORE
+    assert offer(join, 'b', 0) is JoinResult.IGNORE
     assert not join._waiting
 
 
@@ -82,5 +82,5 @@ def test_where_gaps_are_allowed_the_oldest_stamp_that_waits_is_given_up():
     join = StampJoin(['a', 'b'], allow_gaps=True)
     for step in range(MOST_WAITING + 1):
         offer(join, 'b', step)
-    assert offer(join, 'a', 0) is Verdict.WAIT
-    assert offer(join, 'a', 2) is Verdict.COMPLETE
+    assert offer(join, 'a', 0) is JoinResult.WAIT
+    assert offer(join, 'a', 2) is JoinResult.COMPLETE

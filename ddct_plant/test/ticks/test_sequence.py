@@ -1,4 +1,4 @@
-"""Two publishers are told from one by their sequence numbers, and a restarted one is no second."""
+"""Sequence numbers distinguish two publishers from one, and from a restarted one."""
 
 from itertools import chain
 
@@ -10,7 +10,7 @@ from ddct_plant.ticks.sequence import SequenceWatch
 def two_alive(numbers):
     watch = SequenceWatch()
     for number in numbers:
-        watch.hear(number)
+        watch.note(number)
     return watch.two_alive
 
 
@@ -19,7 +19,7 @@ def in_turns(first, second, steps=6):
 
 
 @pytest.mark.parametrize('second', [1, 49, 50, 51, 52, 4000])
-def test_publishers_that_are_heard_in_turns_are_two(second):
+def test_sequences_that_alternate_prove_two_publishers(second):
     assert two_alive(in_turns(50, second))
 
 

@@ -1,4 +1,4 @@
-"""In real time no stamp is believed that no tick can have reached; late ones always are."""
+"""In real time stamps ahead of the ticks are refused; late ones are accepted."""
 
 import pytest
 
@@ -24,7 +24,7 @@ class Limit:
         return self._limit.why_refused(topic, stamp)
 
     def run_to(self, step):
-        """See every tick on time."""
+        """Pass every tick on time."""
         assert self.takes(TICK, 0)
         for each in range(1, step + 1):
             self.now += PERIOD_NS
@@ -115,7 +115,7 @@ def test_a_node_that_was_stopped_takes_all_that_waits_for_it_and_goes_on(limit, 
     assert not limit.takes(REPLY, 155)
 
 
-def test_a_driveline_that_was_stopped_and_catches_up_in_a_burst_is_believed(limit):
+def test_a_driveline_that_was_stopped_and_catches_up_in_a_burst_is_accepted(limit):
     limit.now += 50 * PERIOD_NS
     for step in range(101, 151):
         assert limit.takes(TICK, step)

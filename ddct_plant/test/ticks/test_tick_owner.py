@@ -111,7 +111,7 @@ def test_lockstep_sends_an_unanswered_tick_again_unchanged(lockstep):
     assert lockstep.owner.resends == 1
 
 
-def test_lockstep_names_the_silent_topics_and_the_stamp(lockstep):
+def test_lockstep_names_the_missing_topics_and_the_stamp(lockstep):
     lockstep.owner.start()
     lockstep.answer(0)
     lockstep.answer(1, topics=(ENGINE,))
@@ -160,7 +160,7 @@ def test_realtime_catches_up_after_a_late_timer(realtime):
 
 @pytest.fixture
 def recorded():
-    """Return a harness at t_2, the last tick, of a run with a recorder that heard t_0 alone."""
+    """Return a harness at t_2, the last tick, of a run with a recorder that received t_0 only."""
     harness = Harness(RealtimeOwner, steps=2, require_recorder=True)
     harness.owner.start()
     harness.answer(0)
@@ -193,7 +193,7 @@ def test_realtime_sends_the_last_tick_again_for_the_recorder_and_ends_well_witho
     assert recorded.ends == [None]
 
 
-def test_realtime_gives_up_on_a_topic_that_stays_silent():
+def test_realtime_gives_up_on_a_topic_that_stays_missing():
     harness = Harness(RealtimeOwner, steps=1000)
     harness.owner.start()
     harness.answer(0)

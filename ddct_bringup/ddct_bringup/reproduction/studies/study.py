@@ -13,7 +13,7 @@ from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import Column, Figure, Table
+from ddct_plant.program.table import Column, Quantity, Table
 
 WEAR_GAINS = (0.7, 1.0, 1.3)
 """Wear gains: the ends of the thesis's Table 5.2, and a new clutch."""
@@ -84,7 +84,7 @@ def friction_kj(run: HeadlessRun) -> float | None:
     return None if energy is None else energy / 1000.0
 
 
-def metric_column(quantity: Figure, form: str, heading: str = '') -> StudyColumn:
+def metric_column(quantity: Quantity, form: str, heading: str = '') -> StudyColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
     return Column(heading or quantity.heading, form, attrgetter(f'metrics.{quantity.key}'))
 

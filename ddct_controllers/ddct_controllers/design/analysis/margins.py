@@ -17,40 +17,40 @@ from ddct_controllers.design.analysis.loops import (
 )
 from ddct_controllers.design.state_space import close_loop
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.program.table import PURE, Figure
+from ddct_plant.program.table import PURE, Quantity
 
 LOOP_FIGURES = (
-    Figure(
+    Quantity(
         'gain_margin_db',
         'GM',
         'dB',
         '.1f',
         'least increase of the gain that makes the loop unstable',
     ),
-    Figure(
+    Quantity(
         'phase_margin_deg',
         'PM',
         'deg',
         '.1f',
         'least change of phase, lag or lead, that makes it unstable',
     ),
-    Figure('delay_margin_s', 'DM', 's', '.3f', 'least additional delay that makes it unstable'),
-    Figure('disk_margin', 'disk', PURE, '.2f', 'disk margin α = 2 / max |S − T|'),
-    Figure('sensitivity_peak', 'M_s', PURE, '.2f', 'peak of |1/(1 + L)|'),
-    Figure('complementary_peak', 'M_t', PURE, '.2f', 'peak of |L/(1 + L)|'),
-    Figure('crossover_rad_s', 'w_c', 'rad/s', '.2f', 'highest frequency with |L| = 1'),
-    Figure('bandwidth_rad_s', 'w_b', 'rad/s', '.2f', 'lowest frequency with |T| below 0.71'),
-    Figure(
+    Quantity('delay_margin_s', 'DM', 's', '.3f', 'least additional delay that makes it unstable'),
+    Quantity('disk_margin', 'disk', PURE, '.2f', 'disk margin α = 2 / max |S − T|'),
+    Quantity('sensitivity_peak', 'M_s', PURE, '.2f', 'peak of |1/(1 + L)|'),
+    Quantity('complementary_peak', 'M_t', PURE, '.2f', 'peak of |L/(1 + L)|'),
+    Quantity('crossover_rad_s', 'w_c', 'rad/s', '.2f', 'highest frequency with |L| = 1'),
+    Quantity('bandwidth_rad_s', 'w_b', 'rad/s', '.2f', 'lowest frequency with |T| below 0.71'),
+    Quantity(
         'driveline_mode_hz', 'mode', 'Hz', '.2f', 'closed-loop pole pair nearest the zeros of P_2'
     ),
-    Figure('driveline_mode_damping', 'damping', PURE, '.3f', 'damping ratio of that mode'),
+    Quantity('driveline_mode_damping', 'damping', PURE, '.3f', 'damping ratio of that mode'),
 )
 """Quantities in every table of loops as they run."""
 LOOP_FIGURE_OF = {
     figure.key: figure
     for figure in (
         *LOOP_FIGURES,
-        Figure(
+        Quantity(
             'driveline_mode_torsion_rpm',
             'w_sr',
             'rpm',

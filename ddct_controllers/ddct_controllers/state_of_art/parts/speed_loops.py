@@ -117,7 +117,7 @@ class EngineShare:
         request = self._transmission.engine_torque(measurement, clutch_torque, rate)
         demand, limits = measurement.engine_torque, self._authority
         delivered = self._response.deliver(demand, request)
-        reachable = demand + self._response.asked
+        reachable = demand + self._response.requested
         reachable = min(max(reachable, limits.minimum_torque_n_m), limits.maximum_torque_n_m)
         lacking = (request - reachable) / self._transmission.engine_inertia
         self._pid.unwind(lacking)

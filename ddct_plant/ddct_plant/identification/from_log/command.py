@@ -24,11 +24,13 @@ from ddct_plant.scenario.options import add_scenario_options
 from ddct_plant.scenario.options import scenario_of as base_scenario
 
 NEEDED = (*SPEEDS, *TORQUES)
+"""Quantities that a log must have."""
 HOLD_OUT = 0.3
+"""Default share of the log that is held out."""
 
 
 def add_log_options(parser: ProgramParser) -> None:
-    """Add what belongs to --from."""
+    """Add the options of `--from LOG`."""
     group = parser.add_argument_group('from a log')
     group.add_argument('--from', dest='log', metavar='LOG', type=Path, help='a CSV log or a bag')
     group.add_argument(
@@ -65,7 +67,7 @@ def add_log_options(parser: ProgramParser) -> None:
 
 
 def identify_log(options: argparse.Namespace) -> int:
-    """Fit, predict, print and write; return the exit code."""
+    """Fit the log, predict held-out data, print and write the result; return the exit code."""
     if not 0.1 <= options.hold_out <= 0.9:
         raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
     for option, file in (('--out', options.out), ('--json', options.json)):
@@ -98,7 +100,7 @@ def _more(reasons: Sequence[str]) -> str:
 
 
 def _logs(options: argparse.Namespace, columns: ColumnMap) -> tuple[MeasuredLog, MeasuredLog]:
-    """Return the log to fit and the one to predict."""
+    """Return the log to fit and the held-out log to predict."""
     log = read_log(options.log, columns, NEEDED)
     if options.check:
         return log, read_log(options.check, columns, NEEDED)

@@ -1,4 +1,4 @@
-"""How late a log has each of its signals: which delays can be found, and what they cost."""
+"""Delays of the signals of a log: which of them are identifiable, and the samples they cost."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -11,30 +11,32 @@ from ddct_plant.identification.from_log.names import LOAD, TORQUES
 from ddct_plant.measured.log import SPEEDS
 
 REFERENCE = SPEEDS[0]
-"""Its delay is not fitted: were all signals later by one time, no log would show it."""
+"""Signal whose delay is not fitted: a common delay of all signals is not identifiable."""
 DELAYED = (*SPEEDS[1:], *TORQUES, LOAD)
-"""Signals whose delay against the reference a log can show."""
+"""Signals whose delay relative to the reference is identifiable."""
 BEND_OF = 'bend_of_'
+"""Prefix of the name of a bend."""
 BENDS = tuple(f'{BEND_OF}{name}' for name in TORQUES)
 """
-Shares of their second differences that the lines between the rows of torques leave out.
+Names of the bends: shares of the torques' second differences that linear interpolation misses.
 
-A torque that bends between its rows is not on the line between them. Averaged over time, a smooth
-one is off by -1/12 of its second difference, one with a corner by 0 to -1/8, one whose rows are
-means over their step by -1/8, one with all corners on rows by 0.
+A torque that bends between its rows is not on the line between them. Averaged over time, the error
+of a smooth torque is -1/12 of its second difference, of one with a corner 0 to -1/8, of one whose
+rows are means over their step -1/8, of one with all corners on rows 0.
 """
 BEND_SCALE = 0.1
+"""Size of a usual bend, which scales bends in the fit."""
 DELAY_SCALE_S = 0.01
-"""Size of a usual delay, by which the fit scales them."""
+"""Size of a usual delay in s, which scales delays in the fit."""
 _FEWEST = 20
-"""Samples of a stretch that is used, after what the delays cost."""
+"""Fewest samples of a used stretch, without the samples that the delays cost."""
 
 
 def sampling_of(values: Mapping[str, float], *, load_known: bool) -> Sampling:
     """
-    Return delays in s by quantity, and bends, as the model takes them; what is not given is 0.
+    Return the delays in s and the bends of `values` in the form of the model; missing ones are 0.
 
-    Where C_load was not measured, what is known of it follows from w_r, and has its delay.
+    Where C_load was not measured, its known part is computed from w_r and has the delay of w_r.
     """
     by_name = {name: values.get(name, 0.0) for name in (*SPEEDS, *TORQUES, LOAD)}
     if not load_known:
@@ -47,16 +49,16 @@ def sampling_of(values: Mapping[str, float], *, load_known: bool) -> Sampling:
 
 
 def left_of(values: Mapping[str, float], stretch: Stretch) -> tuple[np.ndarray, np.ndarray]:
-    """Return `residuals_of` parameters and delays by name."""
+    """Return the residuals and nuisances of `residuals_of` for parameters and delays by name."""
     return residuals_of(values, sampling_of(values, load_known=stretch.load_known), stretch)
 
 
 def without_ends(stretches: Sequence[Stretch], values: Mapping[str, float]) -> list[Stretch]:
     """
-    Return the stretches without the samples whose torques the log does not have.
+    Return the stretches without the samples whose torques are not in the log.
 
-    A torque that is late by d is only in the log d after the sample of a speed. Raise DdctError
-    where nothing is left.
+    A torque with the delay d is in the log d after the sample of a speed. Raise DdctError when no
+    stretch is left.
     """
     kept = []
     for each in stretches:

@@ -1,4 +1,4 @@
-"""Whether what a fit leaves of the speeds depends on the torques, as no noise of a sensor does."""
+"""Test whether residuals of a fit depend on the torques, which sensor noise does not."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,21 +11,21 @@ from ddct_plant.identification.from_log.model import NUISANCE, OUTPUTS, Stretch,
 from ddct_plant.identification.from_log.noise import NoiseModel
 
 _LAGS = range(-3, 7)
-"""Steps of the speeds by which the torques are shifted against a speed."""
+"""Lags of the torques relative to a speed, in steps of the speeds."""
 _LEAST = 1e-9
-"""Least size of a direction, where torques do not change."""
+"""Least singular value of a used direction, for torques that do not change."""
 _RANK = 1e-6
-"""Least share of the largest direction of the shifted torques that counts as one."""
+"""Least singular value of a used direction, over the largest of the shifted torques."""
 
 
 @dataclass(frozen=True)
 class Dependence:
-    """What of the residual of one speed follows the torques."""
+    """Dependence of the residual of one speed on the torques."""
 
     p_value: float
-    """Probability that noise alone follows them as well."""
+    """Probability that noise alone gives at least this dependence."""
     rms_rad_s: float
-    """R.m.s. of what follows them, beyond what noise would, of the part that is not predicted."""
+    """R.m.s. in rad/s of the dependent part of the residual, beyond that expected of noise."""
 
 
 def dependences(
@@ -36,14 +36,14 @@ def dependences(
     noisier: Sequence[Sequence[Stretch]] = (),
 ) -> list[Dependence]:
     """
-    Return it for w_m, w_p and w_r, at the parameters and delays of a fit to `stretches`.
+    Return the dependences of w_m, w_p and w_r at the parameters and delays of a fit.
 
     The whitened residual is regressed on C_m and C_f, shifted by steps of the log and whitened
-    too. What start, C_load and the fitted numbers can make up for is taken out of both before;
-    `jacobian` (n, fitted) is that of the whitened residuals. The sum of squares of what is
-    explained is chi-square for noise that does not depend on the torques. Noise of the torques
-    themselves does: `noisier` are the stretches with twice its variance, and what they add is
-    allowed for, twice, as the noise that is added is half of what is then regressed on.
+    too. Initial state, C_load and the fitted numbers are projected out of both before;
+    `jacobian` (n, fitted) is that of the whitened residuals. The explained sum of squares is
+    chi-square for noise that does not depend on the torques. Noise of the torques themselves does:
+    `noisier` are the stretches with twice its variance, and their additional sum of squares is
+    allowed for, twice, as the added noise is half of that in the regressors.
     """
     taken = np.linalg.qr(jacobian)[0]
     residual = _residual(values, noise, stretches)
@@ -70,7 +70,7 @@ def dependences(
 def _residual(
     values: Mapping[str, float], noise: NoiseModel, stretches: Sequence[Stretch]
 ) -> np.ndarray:
-    """Return the whitened residuals of all stretches in a row."""
+    """Return the whitened residuals of all stretches, concatenated."""
     return np.concatenate(
         [_projected(values, noise, e, left_of(values, e)[0][:, :, None])[:, 0] for e in stretches]
     )
@@ -84,7 +84,7 @@ def _explained(
     residual: np.ndarray,
     taken: np.ndarray,
 ) -> tuple[int, float]:
-    """Return how many directions the shifted torques have, and the sum of squares along them."""
+    """Return the rank of the shifted torques, and the sum of squares that they explain."""
     white = np.vstack(
         [_projected(values, noise, e, _shifted_torques(values, e, output)) for e in stretches]
     )
@@ -98,7 +98,7 @@ def _explained(
 def _projected(
     values: Mapping[str, float], noise: NoiseModel, stretch: Stretch, columns: np.ndarray
 ) -> np.ndarray:
-    """Return columns (n, 3, q) whitened, without what start and C_load can make up for."""
+    """Return the whitened columns (n, 3, q) with initial state and C_load projected out."""
     basis = responses(values, sampling_of(values, load_known=stretch.load_known), stretch)[1]
     white = noise.white(columns)
     white = white.reshape(-1, columns.shape[2])
@@ -107,7 +107,7 @@ def _projected(
 
 
 def _shifted_torques(values: Mapping[str, float], stretch: Stretch, output: int) -> np.ndarray:
-    """Return (n, 3, q), in the column of one speed C_m and C_f at the times about each sample."""
+    """Return C_m and C_f at the lags about each sample, (n, 3, q), in the column of one speed."""
     shifts = sampling_of(values, load_known=stretch.load_known).shifts[output]
     step = float(np.median(np.diff(stretch.time_s)))
     found = np.zeros((len(stretch.time_s), OUTPUTS, 2 * len(_LAGS)))

@@ -1,4 +1,4 @@
-"""Which numbers of a fit a log determines."""
+"""Selection of the fitted numbers that a log does not determine."""
 
 import math
 from collections.abc import Sequence
@@ -9,21 +9,21 @@ from ddct_plant.identification.from_log.delays import BEND_OF, DELAY_SCALE_S, DE
 from ddct_plant.identification.from_log.problem import DAMPINGS
 
 DETERMINED = 0.25
-"""Largest relative standard deviation of a parameter that a log determines."""
+"""Largest relative standard deviation of a determined parameter."""
 DAMPING_DETERMINED = 0.05
-"""The same of a damping, over the torque per speed of the log."""
+"""Largest standard deviation of a determined damping, over the torque per speed of the log."""
 DELAY_DETERMINED_S = 0.005
-"""The same of a delay, in s."""
+"""Largest standard deviation of a determined delay, in s."""
 PULLED = 0.4
-"""Share of these by which the noise of the torques may move a number."""
+"""Largest shift of a number by the noise of the torques, over the limits above."""
 
 
 def not_determined(free: Sequence[str], std: np.ndarray, moved: np.ndarray) -> list[str]:
     """
-    Return the names that are too uncertain, or pulled too far to be moved back on a line.
+    Return the names that are too uncertain, or shifted too far for a linear correction.
 
-    `std` and `moved` are in the units of the fit. Where the names are of delays and parameters,
-    it is the delays alone: a parameter may be uncertain only because a delay is.
+    `std` and `moved` are in the units of the fit. If there are delays among them, only those are
+    returned: a parameter may be uncertain only because a delay is.
     """
     excess = np.maximum(std, moved / PULLED) / np.array([_most(name) for name in free])
     weak = [name for name, each in zip(free, excess, strict=True) if each > 1.0]
@@ -31,7 +31,7 @@ def not_determined(free: Sequence[str], std: np.ndarray, moved: np.ndarray) -> l
 
 
 def _most(name: str) -> float:
-    """Return the largest deviation of what counts as determined, in the units of a fit."""
+    """Return the largest standard deviation of a determined number, in the units of a fit."""
     if name.startswith(BEND_OF):
         return math.inf
     if name in DELAYED:

@@ -1,4 +1,4 @@
-"""Fit a driveline, and how late its signals are, to the log of a drive."""
+"""Fit driveline parameters and the delays of the signals to the log of a drive."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -30,18 +30,19 @@ from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
 RATIOS = (1.5, 60.0)
-"""Total ratios that gearbox and final drive of a car or truck can have."""
+"""Least and largest total ratio of gearbox and final drive of a car or truck."""
 _ROLLING = 1.0
-"""Wheel speed in rad/s from which the ratio of the speeds says something."""
+"""Least wheel speed in rad/s for an estimate of the ratio of the speeds."""
 _BENT = 0.02
 """
-Share of the step of a torque that is linear between samples by which its delay may deviate.
+Standard deviation of the delay of an interpolated torque, over the step of its samples.
 
-The torque of our own actuator is 0.02 steps later between rows of 10 ms than the line is.
+The torque of our own actuator is 0.02 steps later than linear interpolation of rows of 10 ms.
 """
 _MORE_NOISE = 4
-"""How often the noise of the torques is doubled to see what it does to the fit."""
+"""Number of fits with doubled noise of the torques, which measure its effect."""
 _ALL_FITTED: Mapping[str, float] = {}
+"""Known delays of a fit in which every delay is fitted."""
 
 
 def fit_log(
@@ -54,13 +55,14 @@ def fit_log(
     """
     Fit driveline and delays to a log; `fixed` parameters keep the value of `start`.
 
-    `known_delays` are those that are not fitted, in s by quantity. That of the engine speed is 0
-    if it is not given: the others are found against it.
+    `known_delays` are the delays in s, by quantity, that are not fitted. That of the engine speed
+    is 0 if it is not given: the others are relative to it.
 
-    White noise of the torques pulls a fit aside, as it is no torque of the car. So it is fitted
-    again with that noise doubled; what moves is moved back, and counts as a deviation (simulation
-    and extrapolation, Cook and Stefanski 1994). What the log does not determine is held, and
-    named. Raise DdctError when that is all, or when the fit does not converge.
+    White noise of the torques biases a fit, as it is no torque of the car. So the fit is repeated
+    with that noise doubled; the shift is subtracted, and counts as a deviation (simulation and
+    extrapolation, Cook and Stefanski 1994). Numbers that the log does not determine keep their
+    start value, and are listed. Raise DdctError when no number is determined, or when the fit does
+    not converge.
     """
     stretches = stretches_of(log, known_load)
     if 'total_ratio' not in fixed:
@@ -99,7 +101,7 @@ def fit_log(
 def _between(
     log: MeasuredLog, fitted: Sequence[str], deviations: Mapping[str, float]
 ) -> dict[str, float]:
-    """Return the deviations in s of delays whose torques may bend between their samples."""
+    """Return the deviations in s of the delays of linearly interpolated torques."""
     return {
         name: math.hypot(deviations[name], _BENT * float(np.median(np.diff(log.samples(name)[0]))))
         for name in (*TORQUES, LOAD)
@@ -108,7 +110,7 @@ def _between(
 
 
 def _ratio(log: MeasuredLog, stretches: Sequence[Stretch]) -> float:
-    """Return w_p over w_r; raise DdctError where no gearbox has that."""
+    """Return the median of w_p over w_r; raise DdctError where no gearbox has that ratio."""
     speeds = np.vstack([each.speeds for each in stretches])
     rolling = speeds[np.abs(speeds[:, 2]) > _ROLLING]
     ratio = float(np.median(rolling[:, 1] / rolling[:, 2])) if len(rolling) else math.nan

@@ -1,9 +1,9 @@
 """
-What the driveline of Section 1.5 makes of measured torques, exact between their samples.
+Response of the driveline of Section 1.5 to measured torques, exact between their samples.
 
-A log is modelled so: every sample is the true value of one instant, a delay before the time of
-its row, plus noise. Each signal has a delay of its own. Between its samples a torque is linear or
-keeps its value, as the column map says.
+Model of a log: every sample is the true value at one instant, a delay before the time of its row,
+plus noise. Each signal has a delay of its own. Between its samples a torque is linear or held,
+according to the column map.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,52 +18,56 @@ from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 
 OUTPUTS = 3
-"""w_m, w_p, w_r: the first states of the model, in its order."""
+"""Number of outputs: w_m, w_p, w_r, the first states of the model in this order."""
 NUISANCE = 5
-"""Numbers that each stretch has of its own: w_m, w_p, w_r, theta_sr at its start, and C_load."""
+"""Number of nuisances of each stretch: w_m, w_p, w_r, theta_sr at its start, and C_load."""
 _SMALL = 1e-2
+"""Size of z up to which the series of phi_1 and phi_2 are used."""
 _NEARLY_CONSTANT = 1e-6
-"""Pole times time up to which a mode only adds up what pushes it."""
+"""Largest pole times time of a mode that is treated as an integrator."""
 _NOTHING = 1e-12
-"""Share of the largest entry of a mode below which one counts as zero."""
+"""Size of an entry of a mode that counts as zero, over the largest entry."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
-    """A part of a log without a gap: n samples of the speeds, torques on a grid that is finer."""
+    """A part of a log without a gap: n samples of the speeds, and the torques on a finer grid."""
 
     time_s: np.ndarray
-    """(n,) of the samples."""
+    """Times of the samples in s, (n,)."""
     speeds: np.ndarray
-    """(n, 3) w_m, w_p, w_r in rad/s."""
+    """Speeds w_m, w_p, w_r in rad/s, (n, 3)."""
     grid_s: np.ndarray
-    """(m,) equal steps, from before the first sample to beyond the last."""
+    """Times of the grid in s, (m,), in equal steps from before the first sample to after the
+    last."""
     torques: np.ndarray
-    """(m, 3) C_m, C_f and what is known of C_load in N m on the grid."""
+    """Torques C_m, C_f and the known part of C_load in N m on the grid, (m, 3)."""
     bends: np.ndarray
-    """(m, 3) their second differences over a step of their own rows; 0 of those that are held."""
+    """Second differences of the torques in N m over a step of their own rows, (m, 3); 0 if
+    held."""
     held: tuple[bool, ...]
-    """Which of them keep their value until the next point; the others are linear between."""
+    """Whether each torque is held until its next sample; the others are linear between samples."""
     load_known: bool
     """Whether C_load was measured; otherwise a constant is fitted to each stretch."""
     known_s: tuple[float, float]
-    """The first and the last time of the log at which all torques were measured."""
+    """First and last time in s at which all torques were measured."""
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """How the rows of a log relate to its signals."""
+    """Relation of the rows of a log to its signals: delays and bends."""
 
     speeds: tuple[float, ...] = (0.0,) * OUTPUTS
-    """Delays in s."""
+    """Delays of w_m, w_p, w_r in s."""
     torques: tuple[float, ...] = (0.0,) * 3
     """Delays of C_m, C_f, C_load in s."""
     bends: tuple[float, ...] = (0.0,) * 3
-    """Of each torque the share of its second difference that the line between rows leaves out."""
+    """Bends of C_m, C_f, C_load: shares of the second difference missed by linear
+    interpolation."""
 
     @property
     def shifts(self) -> np.ndarray:
-        """(3, 3) What to add to the time of a speed's row for that of the torque then."""
+        """Time shifts in s from the row of a speed to the rows of the torques then, (3, 3)."""
         return np.array(self.torques) - np.array(self.speeds)[:, None]
 
 
@@ -71,13 +75,13 @@ def responses(
     values: Mapping[str, float], sampling: Sampling, stretch: Stretch
 ) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the speeds (n, 3) from rest under the torques, and what each nuisance adds, (n, 3, 5).
+    Return the speeds (n, 3) from rest under the torques, and the nuisances' responses (n, 3, 5).
 
     `values` are those of DrivelineParameters by name; while a fit runs a damping may be negative.
 
-    Over a step h the modes z' = lambda z + v with v linear are advanced exactly by
-    z_1 = e^(lambda h) z_0 + h (phi_1 - phi_2) v_0 + h phi_2 v_1. The system is linear, so a torque
-    that the log has late by d gives the response to the torque of the log, d later.
+    Over a step h the modes z' = lambda z + v with v linear are advanced exactly by z_1 = e^(lambda
+    h) z_0 + h (phi_1 - phi_2) v_0 + h phi_2 v_1. The system is linear, so for a torque with the
+    delay d in the log the response to the logged torque is d later.
     """
     model = driveline_matrices(cast(DrivelineParameters, SimpleNamespace(**values)))
     forced = np.zeros((len(stretch.time_s), OUTPUTS))
@@ -106,9 +110,9 @@ def residuals_of(
     values: Mapping[str, float], sampling: Sampling, stretch: Stretch
 ) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return measured less computed speeds (n, 3) in rad/s, with the best nuisances, (5,).
+    Return the residuals, measured less computed speeds (n, 3) in rad/s, and the nuisances (5,).
 
-    Start and C_load of the stretch are fitted to it, by least squares.
+    The nuisances, initial state and C_load of the stretch, are fitted by least squares.
     """
     forced, basis = responses(values, sampling, stretch)
     left = stretch.speeds - forced
@@ -118,9 +122,9 @@ def residuals_of(
 
 def _modes(a: np.ndarray) -> Iterator[tuple[complex, np.ndarray, np.ndarray]]:
     """
-    Yield each pole, its part of the outputs (3,) and of the state (4,).
+    Yield each pole, its right eigenvector in the outputs (3,), and its left eigenvector (4,).
 
-    Of a pair of poles only one comes, twice its part: what it gives is real.
+    Of a conjugate pair only one pole is yielded, with twice its outputs: the real part is used.
     """
     poles, vectors = np.linalg.eig(a)
     poles, vectors = poles.astype(complex), vectors.astype(complex)
@@ -132,20 +136,21 @@ def _modes(a: np.ndarray) -> Iterator[tuple[complex, np.ndarray, np.ndarray]]:
 
 
 def _present(entries: np.ndarray) -> np.ndarray:
-    """Return the places of the entries that are not zero."""
+    """Return the indices of the entries that are not zero."""
     sizes = np.abs(entries)
     return np.flatnonzero(sizes > _NOTHING * sizes.max())
 
 
 @dataclass(frozen=True, eq=False)
 class _Place:
-    """Where the times of the samples, shifted, lie on the grid."""
+    """Position of the shifted times of the samples on the grid."""
 
     before: np.ndarray
-    """(n,) The grid point before each."""
+    """Index of the grid point before each sample, (n,)."""
     rest_s: Any
-    """(n,) s from there; one number where all are equal."""
+    """Time in s from that grid point, (n,); one number where all are equal."""
     step_s: float
+    """Step of the grid in s."""
 
     @classmethod
     def of(cls, stretch: Stretch, shift: float) -> '_Place':
@@ -157,7 +162,7 @@ class _Place:
 
 
 class _Run:
-    """One mode under one torque, from rest at the first point of the grid."""
+    """Response of one mode to one torque, from rest at the first point of the grid."""
 
     def __init__(self, pole: complex, stretch: Stretch, torque: int, bend: float) -> None:
         self._pole, self._held = pole, stretch.held[torque]
@@ -171,7 +176,7 @@ class _Run:
         self._state = scipy.signal.lfilter([1.0], [1.0, -decay], pushed)
 
     def at(self, place: _Place) -> np.ndarray:
-        """Return the mode at a place, (n,)."""
+        """Return the state of the mode at the samples, (n,)."""
         start = self._torque[place.before]
         end = start
         if not self._held:
@@ -181,7 +186,7 @@ class _Run:
 
 
 def _under_one(pole: complex, since: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Return a mode that a constant 1 has pushed for `since`, in s, where it was 0 before."""
+    """Return the step response of a mode after the times `since` in s."""
     if abs(pole) * since[-1, 0] > _NEARLY_CONSTANT:
         return (free - 1.0) / pole
     z = pole * since
@@ -189,7 +194,7 @@ def _under_one(pole: complex, since: np.ndarray, free: np.ndarray) -> np.ndarray
 
 
 def _weights(z: Any, step: Any) -> tuple[Any, Any, Any]:
-    """Return e^z and the weights of the values at both ends of a step; z and it may be arrays."""
+    """Return e^z and the weights of the inputs at both ends of a step, for numbers or arrays."""
     if isinstance(z, np.ndarray):
         small = np.abs(z) < _SMALL
         near, far = _near_zero(np.where(small, z, 0.0)), _far_from_zero(np.where(small, 1.0, z))
@@ -206,7 +211,7 @@ def _far_from_zero(z: Any) -> tuple[Any, Any]:
 
 
 def _near_zero(z: Any) -> tuple[Any, Any]:
-    """Return the same of small z."""
+    """Return phi_1 and phi_2 of `_far_from_zero` for small z, by their series."""
     phi_1 = 1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0)))
     phi_2 = 0.5 + z / 6.0 * (1.0 + z / 4.0 * (1.0 + z / 5.0 * (1.0 + z / 6.0)))
     return phi_1, phi_2

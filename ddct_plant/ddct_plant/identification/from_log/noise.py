@@ -1,4 +1,4 @@
-"""The noise of the speeds of a log, as a model of what a fit leaves of them."""
+"""Noise model of the speeds of a log: an autoregressive model of the residuals of a fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,10 +7,11 @@ import numpy as np
 import scipy
 
 MOST_LAGS = 10
+"""Largest order of a noise model."""
 WHITE_LAGS = 10
-"""Over which the autocorrelations of what should be white are summed."""
+"""Number of lags of the autocorrelations in the test of whiteness."""
 _LEAST_VARIANCE = 1e-10
-"""Least variance of a speed, over that of all. Noise without any could not be whitened."""
+"""Least variance of a speed, over the sum of all: noise of zero variance cannot be whitened."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,13 +19,13 @@ class NoiseModel:
     """r_k = a_1 r_(k-1) + ... + a_p r_(k-p) + e_k for each speed, e white of covariance S."""
 
     lags: np.ndarray
-    """(3, p) a_1, ..., a_p of each of the three speeds."""
+    """Coefficients a_1, ..., a_p of each of the three speeds, (3, p)."""
     factor: np.ndarray
-    """(3, 3) lower triangular L with L L^T = S."""
+    """Lower triangular L with L L^T = S, (3, 3)."""
 
     @property
     def order(self) -> int:
-        """The number of lags, p."""
+        """Number of lags p."""
         return self.lags.shape[1]
 
     def white(self, values: np.ndarray) -> np.ndarray:
@@ -41,7 +42,8 @@ def fit_noise(residuals: Sequence[np.ndarray], fitted: int) -> NoiseModel:
     """
     Return the model of residuals (n, 3) of several stretches, its order by Akaike's criterion.
 
-    `fitted` numbers were fitted to get them, which the covariance allows for.
+    `fitted` is the number of fitted values behind the residuals, by which the covariance is
+    corrected.
     """
     models = [_of_order(residuals, order, fitted) for order in range(MOST_LAGS + 1)]
     return min(models, key=lambda model: model[0])[1]
@@ -50,7 +52,7 @@ def fit_noise(residuals: Sequence[np.ndarray], fitted: int) -> NoiseModel:
 def _of_order(
     residuals: Sequence[np.ndarray], order: int, fitted: int
 ) -> tuple[float, NoiseModel]:
-    """Return the criterion, over the same samples for every order, and the model."""
+    """Return Akaike's criterion, over the same samples for every order, and the model."""
     now = np.vstack([each[MOST_LAGS:] for each in residuals])
     lags, left = np.zeros((3, order)), now.copy()
     for output in range(3) if order else ():

@@ -1,4 +1,4 @@
-"""What a fitted driveline makes of data that took no part in the fit."""
+"""Prediction of held-out data by a fitted driveline."""
 
 import math
 from collections.abc import Sequence
@@ -14,30 +14,32 @@ from ddct_plant.identification.from_log.stretches import white_noise
 from ddct_plant.measured.log import SPEEDS
 
 WHITE_FROM = 0.01
-"""Smallest p-value of residuals that count as white."""
+"""Least p-value of residuals that count as white."""
 _STILL = 1e-9
-"""Deviation in rad/s of a speed that does not change."""
+"""Standard deviation in rad/s assumed for a speed that does not change."""
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """One speed of the data that were held out, beside what the fitted driveline makes of it."""
+    """Quality of the prediction of one speed of the held-out data."""
 
     signal: str
+    """Name of the speed."""
     rms_rad_s: float
-    """R.m.s. of measured less predicted."""
+    """R.m.s. of measured less predicted speed in rad/s."""
     nrmse: float | None
-    """The same over the standard deviation of what was measured; None where it is constant."""
+    """R.m.s. over the standard deviation of the measured speed; None where that is constant."""
     error: float
-    """R.m.s. less white noise, over the deviation here or in the fitted data, what is larger."""
+    """R.m.s. without white noise, over the larger standard deviation of held-out and fitted
+    data."""
     whiteness_p: float | None
-    """p of Ljung and Box for the residuals behind the fit's noise model; None for the slip."""
+    """p-value of Ljung and Box for the whitened residuals; None for the slip."""
     torque_p: float | None
-    """p of the fit's residuals for noise that does not follow the torques; None for the slip."""
+    """p-value of the fit's residuals for noise independent of the torques; None for the slip."""
 
     @property
     def white(self) -> bool | None:
-        """Whether nothing but noise is left, as far as the tests show; None where not tested."""
+        """Whether both tests accept the residual as white noise; None where not tested."""
         if self.whiteness_p is None or self.torque_p is None:
             return None
         return min(self.whiteness_p, self.torque_p) >= WHITE_FROM
@@ -47,8 +49,8 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
     """
     Return the prediction of w_m, w_p, w_r and of the slip w_m - w_p.
 
-    The speeds at the start of each stretch, and its C_load where it was not measured, are fitted
-    to it, the driveline is not.
+    The initial state of each stretch, and its C_load where it was not measured, are fitted to the
+    held-out data; the driveline is not.
     """
     values = fit.values | fit.delays | fit.bends
     stretches = without_ends(stretches, values)

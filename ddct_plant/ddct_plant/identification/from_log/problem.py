@@ -1,4 +1,4 @@
-"""One fit of driveline parameters to the stretches of a log, and the noise that it leaves."""
+"""Least-squares problem of a fit to the stretches of a log, with the noise model."""
 
 from collections.abc import Mapping, Sequence
 
@@ -22,30 +22,32 @@ from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.models.parameters import DrivelineParameters
 
 DAMPINGS = ('engine_damping', 'shaft_damping')
-"""These may be zero, so their values are fitted; of all others the logarithms are."""
+"""Parameters that may be zero, so that their values are fitted; the others' logarithms are."""
 _PRIOR_STD = float(np.log(10.0))
-"""Deviation of a logarithm from its start: what the log does not show stays where it was."""
+"""Prior standard deviation of a logarithm: undetermined parameters stay near their start."""
 _DELAY_PRIOR = MOST_DELAY_S / DELAY_SCALE_S
-"""The same of a delay, over its scale."""
+"""Prior standard deviation of a delay, over its scale."""
 _INSIDE = 0.999
 """Share of the bounds within which a fit starts."""
 _BOUND = float(np.log(1000.0))
+"""Bound of the change of a logarithm, damping or bend, in the units of x."""
 _LEAST_SPREAD = 1e-9
-"""Spread in rad/s of a speed that does not change."""
+"""Standard deviation in rad/s assumed for the steps of a constant speed."""
 _MOST_ROUNDS = 5
+"""Most rounds of fit and noise model."""
 _COARSE = 1e-4
-"""Relative change of cost or x at which a fit that is only near ends."""
+"""Relative change of cost or x at which an approximate fit ends."""
 _SETTLED = 0.05
-"""Change of every estimate, over its deviation, after which no further round is made."""
+"""Largest change of an estimate in the last round, over its standard deviation."""
 
 
 class LogProblem:
     """
-    One fit of the parameters and delays called `free`.
+    Least-squares problem for the parameters and delays called `free`.
 
-    x holds ln(value / start), of a damping the change over torque per speed, of a delay the change
-    over DELAY_SCALE_S, of a bend it over BEND_SCALE. The nuisances are linear, so they are
-    projected out of the whitened residuals.
+    x has ln(value / start) of a parameter, the change over torque per speed of a damping, the
+    change over DELAY_SCALE_S of a delay, the value over BEND_SCALE of a bend. The nuisances are
+    linear, so they are projected out of the whitened residuals.
     """
 
     def __init__(
@@ -65,7 +67,7 @@ class LogProblem:
         self.noise = NoiseModel(np.zeros((3, 0)), np.diag(np.maximum(spread, _LEAST_SPREAD)))
 
     def values(self, x: np.ndarray) -> dict[str, float]:
-        """Return every parameter and delay by name."""
+        """Return every parameter, delay in s and bend at x, by name, in SI units."""
         found = dict(self._start)
         for name, change in zip(self.free, x.tolist(), strict=True):
             if name in DAMPINGS:
@@ -79,18 +81,18 @@ class LogProblem:
         return found
 
     def in_units(self, std: np.ndarray) -> dict[str, float]:
-        """Return deviations of x by name: of a damping, delay or bend its own, else relative."""
+        """Return deviations by name: in SI units for dampings and delays, else relative."""
         scales = dict.fromkeys(DAMPINGS, self.damping) | dict.fromkeys(DELAYED, DELAY_SCALE_S)
         scales |= dict.fromkeys(BENDS, BEND_SCALE)
         return {n: scales.get(n, 1.0) * e for n, e in zip(self.free, std.tolist(), strict=True)}
 
     def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """
-        Fit, and model the noise, in turn; return x, its covariance and the Jacobian behind it.
+        Alternate fit and noise model; return x, its covariance and the Jacobian of the residuals.
 
-        The first fit takes the noise as white: what a wrong start leaves is no noise, and to
-        whiten it would hide the way. It goes over all samples, later ones over those whose torques
-        the log has at the delays found.
+        The first fit assumes white noise: residuals of a wrong start are no noise, and a noise
+        model of them would mask the error. It uses all samples; later fits use those whose torques
+        are in the log at the present delays.
         """
         x = self._fitted(np.zeros(len(self.free)), self._whole, _COARSE)[0]
         for _ in range(_MOST_ROUNDS):
@@ -106,18 +108,18 @@ class LogProblem:
         return x, covariance, jacobian[: -len(x)]
 
     def used(self, stretches: Sequence[Stretch]) -> list[Stretch]:
-        """Return the samples of stretches that the last round of the fit took."""
+        """Return the stretches with the samples that the last round of the fit used."""
         return without_ends(stretches, self._at)
 
     def moved_by(self, x: np.ndarray, others: Sequence[Sequence[Stretch]]) -> np.ndarray:
-        """Return how far the fits to other stretches of the same noise are from x on average."""
+        """Return the mean shift of x in fits to other stretches, with the present noise model."""
         fits = [self._fitted(x, self.used(each), _COARSE)[0] for each in others]
         return np.mean(fits, axis=0) - x
 
     def _fitted(
         self, x: np.ndarray, stretches: Sequence[Stretch], settled: float = 1e-7
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return x of the best fit, and the Jacobian there, the rows of the prior last."""
+        """Return x of the best fit and its Jacobian, whose last rows are those of the prior."""
         answer = scipy.optimize.least_squares(
             self._residuals,
             np.clip(x, -self._bounds * _INSIDE, self._bounds * _INSIDE),
@@ -137,7 +139,7 @@ class LogProblem:
         return np.array([delay if name in DELAYED else _BOUND for name in self.free])
 
     def _residuals(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
-        """Return what is left of the whitened residuals of all stretches, and x over its prior."""
+        """Return the whitened residuals without nuisances of all stretches, then x over prior."""
         parts = []
         values = self.values(x)
         for stretch in stretches:

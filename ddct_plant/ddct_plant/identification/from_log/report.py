@@ -20,7 +20,7 @@ def content_of(
     fitted: MeasuredLog,
     held_out: MeasuredLog,
 ) -> dict[str, Any]:
-    """Return what is printed and written; null stands for what does not exist."""
+    """Return the result for tables and JSON; null for a value that does not exist."""
     rows = []
     for name in PARAMETERS:
         symbol, unit = SYMBOLS_AND_UNITS[name]
@@ -75,7 +75,7 @@ def _delays(fit: LogFit) -> list[dict[str, Any]]:
 
 
 def print_fit(content: dict[str, Any]) -> None:
-    """Print it, reasons against the fit first."""
+    """Print the result as tables, with reasons against the fit first."""
     if content['reasons']:
         print('REFUSED. Do not use this fit:')
         for reason in content['reasons']:

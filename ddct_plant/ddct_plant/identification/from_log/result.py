@@ -1,4 +1,4 @@
-"""What a log says of a driveline."""
+"""Result of a fit to a log."""
 
 from dataclasses import dataclass
 
@@ -10,43 +10,48 @@ from ddct_plant.identification.from_log.problem import DAMPINGS
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETERS = tuple(vars(DrivelineParameters()))
+"""Names of all driveline parameters."""
 SLIP = 'slip_speed'
+"""Name of the slip among the speeds."""
 SIGMAS_95 = 1.96
+"""Half-width of a 95 % interval, in standard deviations."""
 NO_DAMPING = 1e-6
-"""Size of a damping in N m s/rad that is none: 0.001 N m at 1000 rad/s."""
+"""Damping in N m s/rad that counts as zero: 0.001 N m at 1000 rad/s."""
 
 
 @dataclass(frozen=True)
 class LogFit:
-    """What a log says of the driveline."""
+    """Driveline parameters and delays that are fitted to a log, with their uncertainty."""
 
     values: dict[str, float]
-    """Values of all parameters, fitted or held. A fitted damping may be below 0."""
+    """Values of all parameters in SI units, by name, fitted or kept; a fitted damping may be
+    negative."""
     std: dict[str, float]
-    """Standard deviation of each fitted one: of the value of a damping, else relative."""
+    """Standard deviation of each fitted parameter, by name: relative, of a damping in SI units."""
     delays: dict[str, float]
-    """How late the log has each signal in s, fitted or given, against the engine speed."""
+    """Delay of each signal in s, by name, fitted or given, relative to the engine speed."""
     delay_std: dict[str, float]
-    """Standard deviation of each fitted one in s."""
+    """Standard deviation of each fitted delay in s, by name."""
     bends: dict[str, float]
-    """Shares of the second differences of the torques, as BENDS tells."""
+    """Shares of the second differences of the torques, by the names of BENDS."""
     undetermined: tuple[str, ...]
-    """Parameters and delays that the log does not determine; they keep the value of the start."""
+    """Parameters and delays that the log does not determine; they keep their start value."""
     noise: NoiseModel
+    """Noise model of the residuals."""
     dependences: dict[str, Dependence]
-    """By speed, how far the residuals of the fit depend on the torques."""
+    """Dependence of the residuals on the torques, by speed."""
     spreads: dict[str, float]
-    """Standard deviation of each speed and of the slip in the log, in rad/s."""
+    """Standard deviation of each speed and of the slip in the log in rad/s, by name."""
     load_torque: float | None
-    """Mean of the constants that were fitted as C_load, in N m; None where it was measured."""
+    """Mean of the fitted constants of C_load in N m; None where C_load was measured."""
 
     @property
     def parameters(self) -> DrivelineParameters:
-        """The values, dampings below 0 as 0."""
+        """Parameters of the driveline, with 0 for a negative damping."""
         return DrivelineParameters(**{name: max(each, 0.0) for name, each in self.values.items()})
 
     def interval(self, name: str) -> tuple[float, float] | None:
-        """Return the ends of the 95 % interval of a parameter or delay, None of one not fitted."""
+        """Return the ends of the 95 % interval of a parameter or delay, None if not fitted."""
         if name in self.delay_std:
             value, reach = self.delays[name], SIGMAS_95 * self.delay_std[name]
             return value - reach, value + reach

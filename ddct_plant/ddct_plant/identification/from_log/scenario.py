@@ -1,4 +1,4 @@
-"""What a base scenario says of a measured car, and the scenario that replays its log."""
+"""Scenario that replays the log of a measured car, made from a base scenario."""
 
 import dataclasses
 import math
@@ -21,17 +21,17 @@ from ddct_plant.scenario.csv_profiles import MOST_ROWS
 from ddct_plant.scenario.scenario import InitialSpeeds, Scenario
 
 STEEPEST_RAD = 0.6
-"""Slope that a scenario may have."""
+"""Largest slope angle in rad of a scenario."""
 _LEVEL_RAD = 1e-4
-"""Change of the slope that nobody notices: 0.1 m in a kilometre."""
+"""Negligible change of the slope angle in rad: 0.1 m in a kilometre."""
 _PIECES = 10
-"""Instants of a period over which C_m is averaged."""
+"""Number of instants of a period over which C_m is averaged."""
 _MOVED = ('driveline.', 'vehicle.mass_kg', 'gear')
-"""Beginnings of what a base scenario says of values that the log replaces."""
+"""Beginnings of the lines in `adjusted` about values that the log replaces."""
 
 
 def load_of(base: Scenario) -> KnownLoad:
-    """Return the drag of the base scenario; all else of C_load is a constant that is fitted."""
+    """Return the drag of the base scenario as the known part of C_load; the rest is fitted."""
     road = RoadLoad(base.load, base.vehicle)
     constant = road.torque(-base.load.wind_speed_m_s)
 
@@ -43,7 +43,7 @@ def load_of(base: Scenario) -> KnownLoad:
 
 
 def name_of(log: Path) -> str:
-    """Return what a scenario of a log is called: as its file, of letters that a name may have."""
+    """Return the scenario name for a log: that of its file, with allowed characters only."""
     plain = re.sub(r'[^A-Za-z0-9._-]', '_', log.stem).lstrip('.-')
     return plain[:LONGEST_NAME] or 'log'
 
@@ -53,9 +53,9 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
     Return `base` with the driveline of the fit and the drive of the log, from its first row on.
 
     The log gives C_m, the speeds at the start and the duration. The wheel radius stays and the
-    mass is J_v / r_w^2. The slope is the one with which rolling resistance and slope make the
-    fitted C_load; it stays where C_load was measured. What is moved is said in `adjusted`. Raise
-    DdctError for a C_load that no slope makes, and for a log that is too short.
+    mass is J_v / r_w^2. The slope is set so that rolling resistance and slope give the fitted
+    C_load; it stays where C_load was measured. Moved values have lines in `adjusted`. Raise
+    DdctError for a C_load that no slope gives, and for a log that is too short.
     """
     start_s, steps = _span(log, fit)
     moved = _with_car(base, fit)
@@ -75,7 +75,7 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
 
 
 def _span(log: MeasuredLog, fit: LogFit) -> tuple[float, int]:
-    """Return the first time of the log at which all is known, and the whole periods from there."""
+    """Return the first time in s with all signals, and the number of whole periods from there."""
     stretches = stretches_of(log, lambda speeds: np.zeros(len(speeds)))
     first, last = stretches[0].time_s[0], stretches[-1].time_s[-1]
     steps = int(math.floor((last - first) / PERIOD_S + 1e-6))
@@ -86,9 +86,9 @@ def _torque(
     base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float, steps: int
 ) -> dict[str, Any]:
     """
-    Return the profile of C_m, its means over whole periods, and what is adjusted for it.
+    Return the profile of C_m, its means over whole periods, and the lines in `adjusted`.
 
-    An engine keeps its torque over a period, so the mean is what does the same to the car.
+    An engine holds its torque over a period, so the mean has the same effect on the car.
     """
     every = -(-steps // MOST_ROWS)
     periods = np.arange(0, steps, every)
@@ -114,7 +114,7 @@ def _torque(
 
 
 def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> InitialSpeeds:
-    """Return the fitted speeds of both plates at the start, one speed where no slip is known."""
+    """Return the fitted speeds of both plates at the start, equal if the slip is within noise."""
     values = fit.values | fit.delays | fit.bends
     (first, *_) = without_ends(stretches_of(log, load_of(base)), values)
     left = left_of(values, first)[0]
@@ -133,7 +133,7 @@ def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> I
 
 
 def _with_car(base: Scenario, fit: LogFit) -> Scenario:
-    """Return the base with the car of the fit, and with lines of what moved with it."""
+    """Return the base with the parameters of the fit, and a line in `adjusted` per moved value."""
     driveline, radius = fit.parameters, base.vehicle.wheel_radius_m
     mass = driveline.vehicle_inertia / radius**2
     lines = [line for line in base.adjusted if not line.startswith(_MOVED)]

@@ -12,19 +12,19 @@ from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 
 FEWEST_SAMPLES = 40
-"""Samples of the shortest stretch: 0.4 s at 100 Hz, just over a period when locked."""
+"""Fewest samples of a stretch: 0.4 s at 100 Hz, just over a period of the locked driveline."""
 _GAP = 5.0
-"""Times the usual step of a signal: a longer one is a gap."""
+"""Shortest gap, in median steps of a signal."""
 _UNEVEN = 0.02
-"""Share of the usual step up to which steps count as equal."""
+"""Largest deviation of equal steps, over the median step."""
 _FINEST = 20
-"""Grid steps in one step of the speeds at most."""
+"""Most grid steps in one step of the speeds."""
 _NOISY = 1e-3
-"""White noise of a torque over its deviation, below which a fit does not feel it."""
+"""White noise of a torque over its standard deviation, below which a fit is not affected."""
 _FOR_UNEVEN = 4
-"""Grid steps in the usual step of the speeds where their steps are not equal."""
+"""Grid steps in the median step of the speeds where their steps are not equal."""
 KnownLoad = Callable[[np.ndarray], np.ndarray]
-"""Returns what is known of C_load in N m, (n,), at wheel speeds in rad/s."""
+"""Function from wheel speeds in rad/s to the known part of C_load in N m, (n,) each."""
 
 
 def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
@@ -32,7 +32,7 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     Return the stretches of a log; raise DdctError when none is long enough.
 
     A sample is a row with all three speeds. Each torque has its own rows. A gap of any of them
-    ends a stretch. Where C_load was not measured `known_load` gives what is known of it.
+    ends a stretch. Where C_load was not measured `known_load` gives its known part.
     """
     speeds = np.column_stack([log.signals[name] for name in SPEEDS])
     rows = np.isfinite(speeds).all(axis=1)
@@ -58,7 +58,7 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
 
 
 def with_more_torque_noise(log: MeasuredLog, seed: int) -> MeasuredLog:
-    """Return the log with the white noise of its torques doubled, as far as they show it."""
+    """Return the log with the estimated variance of the white noise of its torques doubled."""
     random = np.random.default_rng(seed)
     signals = {
         name: log.signals[name]
@@ -69,7 +69,7 @@ def with_more_torque_noise(log: MeasuredLog, seed: int) -> MeasuredLog:
 
 
 def torques_are_noisy(log: MeasuredLog) -> bool:
-    """Whether a torque has white noise that a fit could feel."""
+    """Return whether a torque has white noise that affects a fit."""
     samples = [log.samples(name)[1] for name in TORQUES]
     return any(white_noise(each) > _NOISY * float(np.std(each)) for each in samples)
 
@@ -78,7 +78,7 @@ def white_noise(values: np.ndarray) -> float:
     """
     Return the standard deviation of white noise on a smooth signal, from its third differences.
 
-    Their variance is 20 times that of the noise; the median passes over steps and bends.
+    Their variance is 20 times that of the noise; the median is robust against steps and bends.
     """
     if len(values) < FEWEST_SAMPLES:
         return 0.0
@@ -111,7 +111,7 @@ def _stretch(
     finer = [1.0 if even else _FOR_UNEVEN]
     finer += [usual / float(np.median(np.diff(log.samples(name)[0]))) for name in TORQUES]
     step = usual / min(max(round(max(finer)), 1), _FINEST)
-    # A torque that is late, of a speed that is early.
+    # The largest shift: a torque with the largest delay, of a speed with the largest lead.
     before = int(np.ceil(2.0 * MOST_DELAY_S / step))
     after = before + int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6))
     grid_s = time_s[0] + step * np.arange(-before, after + 1)
@@ -131,7 +131,7 @@ def _stretch(
 
 
 def _bend(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
-    """Return the second difference of a torque over a step of its rows, 0 of one that is held."""
+    """Return the second difference in N m of a torque over a step of its rows, 0 if it is held."""
     if name in log.held:
         return np.zeros(len(grid_s))
     step = float(np.median(np.diff(log.samples(name)[0])))

@@ -1,4 +1,4 @@
-"""Whether a fit to a log can be trusted, and if not, why."""
+"""Reasons for which a fit to a log is refused, and notes on an accepted one."""
 
 from collections.abc import Iterator, Sequence
 
@@ -20,32 +20,32 @@ USUAL = {
     'total_ratio': (2.0, 25.0),
     'vehicle_inertia': (40.0, 800.0),
 }
-"""Ranges of cars, in SI units. A value outside was probably measured in other units."""
+"""Ranges of cars, in SI units, by parameter; a value outside is probably in other units."""
 MOST_DAMPING = 1.0
 """Largest damping of engine or shaft in N m s/rad: 200 N m at 2000 rpm."""
 ENGINE_RAD_S = (40.0, 800.0)
-"""Median speeds of an engine that drives a car: from a stall at 380 rpm to 7600 rpm."""
+"""Least and largest median speed of a car's engine: from a stall at 380 rpm to 7600 rpm."""
 MOST_ERROR = 0.1
-"""Largest r.m.s. of a prediction less the noise, over the deviation of the speed."""
+"""Largest r.m.s. of a prediction without noise, over the standard deviation of the speed."""
 DEPENDS_BELOW = 5e-4
-"""p-value below which a residual depends on the torques."""
+"""p-value below which a residual counts as dependent on the torques."""
 MATERIAL = 2e-4
-"""Share of a speed's deviation up to which what depends on them does not matter."""
+"""Largest negligible r.m.s. of a dependent residual, over the standard deviation of the speed."""
 NEGATIVE_SIGMAS = 3.0
-"""Deviations below 0 from which a damping is negative beyond chance: one in 700 of no damping."""
+"""Standard deviations below 0 at which a damping counts as negative: chance gives one in 700."""
 LEAD_S = 0.02
-"""How far C_f may be ahead of C_m before it looks like a request."""
+"""Largest lead in s of C_f over C_m: beyond it C_f is probably a request."""
 _AT_BOUND = 0.99
 _SMOOTHED = 5
-"""Samples over which acceleration and torque are averaged to find a wrong sign."""
+"""Samples over which acceleration and torque are averaged to detect a wrong sign."""
 _FOLLOWS = 0.5
-"""Correlation, the wrong way, of the engine's acceleration with its torques."""
+"""Negative correlation of the engine's acceleration with C_m - C_f that means a wrong sign."""
 
 
 def reasons_against(
     fit: LogFit, predictions: Sequence[Prediction], stretches: Sequence[Stretch]
 ) -> list[str]:
-    """Return why a fit to `stretches` cannot be trusted, in sentences; none if it can."""
+    """Return the reasons to refuse a fit to `stretches`, as sentences; none to accept it."""
     return [
         *_speed_reasons(stretches),
         *_sign_reasons(stretches),
@@ -66,7 +66,7 @@ def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
 
 
 def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
-    """Compare the engine's acceleration with C_m - C_f, which a wrong sign or a swap turns."""
+    """Compare the sign of the engine's acceleration with that of C_m - C_f."""
     work = [(np.diff(each.speeds[:, 0]), np.diff(_impulse(each))) for each in stretches]
     change, impulse = (np.concatenate(parts) for parts in zip(*work, strict=True))
     smooth = np.ones(_SMOOTHED) / _SMOOTHED
@@ -130,7 +130,7 @@ def _residual_reasons(fit: LogFit) -> Iterator[str]:
 
 
 def doubts(fit: LogFit, predictions: Sequence[Prediction]) -> list[str]:
-    """Return what a reader of a fit should know besides, in sentences."""
+    """Return notes on the limits of a fit, as sentences."""
     return [*_undetermined(fit), *_coloured(fit, predictions), *_zeroed(fit), *_leading(fit)]
 
 
@@ -163,7 +163,7 @@ def _zeroed(fit: LogFit) -> Iterator[str]:
 
 
 def _leading(fit: LogFit) -> Iterator[str]:
-    """Look for a clutch torque that is asked for, not transmitted."""
+    """Detect a clutch torque that is requested rather than transmitted."""
     ahead = fit.delays[TORQUES[0]] - fit.delays[TORQUES[1]]
     if ahead > LEAD_S:
         yield (
