@@ -97,7 +97,7 @@ def test_a_delay_of_all_signals_is_not_identifiable_and_changes_nothing() -> Non
 
 @pytest.mark.slow
 def test_intervals_cover_delays_and_parameters_at_their_rate_on_white_noise() -> None:
-    """Of 144 intervals 136 are expected, with a deviation of 3."""
+    """The expected number of covering intervals is 136 of 144, with a deviation of 3."""
     held = []
     for seed in range(SEEDS):
         delays = np.random.default_rng(seed).uniform(-0.05, 0.05, len(NONE_LATE)).tolist()

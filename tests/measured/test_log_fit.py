@@ -52,7 +52,7 @@ def test_every_parameter_of_a_car_of_other_code_is_found_from_another_start(fit:
 
 @pytest.mark.slow
 def test_intervals_of_95_percent_cover_the_true_values_at_that_rate(fit: LogFit) -> None:
-    """Of 96 intervals 91 are expected, with a deviation of 2."""
+    """The expected number of covering intervals is 91 of 96, with a deviation of 2."""
     true = DrivelineParameters(**TRUE)
     held = [hits(fit_log(log_of(drive().noisy(seed)), true, drag)) for seed in range(SEEDS)]
     assert sum(map(sum, held)) >= 85
@@ -89,7 +89,7 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
 
 
 def test_a_start_that_is_far_off_is_not_taken_for_noise() -> None:
-    """With 2 N m on the torques, which hide the effects of J_p and c_sa: these are named."""
+    """The torques have 2 N m of noise, which hides the effects of J_p and c_sa: both are named."""
     fit = fit_log(log_of(drive(2).noisy(0, 2.0)), START, drag)
     assert {'engine_damping', 'halfshaft_stiffness'} <= set(fit.std)
     assert 'shaft_inertia' in fit.undetermined

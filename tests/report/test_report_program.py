@@ -306,7 +306,7 @@ def test_the_page_goes_to_standard_output_on_request(
 
 
 def test_a_controller_that_fell_back_is_named(tmp_path, capsys):
-    """Its scores would otherwise count as those of the controller."""
+    """The scores of such a run are not those of the controller's own program."""
     changes = ['controllers.mpc3.iteration_limit=1', 'controllers.mpc3.highest_torque_n_m=300']
     options = [part for change in changes for part in ('--set', change)]
     folder = tmp_path / 'runs'

@@ -85,7 +85,7 @@ def one_or_more(stack: Trajectory, index: Any) -> Trajectory:
 
 
 def _rows(columns: Mapping[str, Any], runs: int) -> list[dict[str, float | int | None]]:
-    """Return the values of each run by name, None for what is not finite."""
+    """Return the values of each run by name, None for a value that is not finite."""
     lists = [_column(values, runs) for values in columns.values()]
     return [dict(zip(columns, row, strict=True)) for row in zip(*lists, strict=True)]
 

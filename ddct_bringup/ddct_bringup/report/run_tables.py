@@ -27,7 +27,7 @@ class RunOrigin:
 
 
 def run_origin(run: ReportRun) -> RunOrigin:
-    """Return the origin of a run, with dashes for what a log or an unreadable bag lacks."""
+    """Return the origin of a run, with dashes for missing facts of a log or an unreadable bag."""
     unknown = [name for name in _CONDITIONS if run.entry[name] is None]
     if run.measured:
         unknown.append('seed')

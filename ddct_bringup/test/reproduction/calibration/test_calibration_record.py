@@ -68,7 +68,7 @@ def test_chosen_optimum_is_the_lowest_with_a_stable_pi():
 
 @pytest.mark.parametrize('row', ['ls8', 'hinf1'])
 def test_row_left_out_took_no_part_in_the_fit_that_predicts_it(row):
-    """Its parameters beat the frozen ones on the other two rows, and predict what is recorded."""
+    """The fit beats the frozen one on the other two rows, and predicts the recorded value."""
     one = next(entry for entry in RECORD['left_out'] if entry['row'] == row)
     problem = Problem(RECORD['score_window_s'][1])
     predicted = row_values(problem.scenario(values(one)), row)

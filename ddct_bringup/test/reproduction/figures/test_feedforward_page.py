@@ -27,7 +27,7 @@ def assert_printed(cell: str, value: float) -> None:
 
 
 def test_the_table_of_weights(weight_table):
-    """After a change: make docs KINDS=feedforward."""
+    """The page has the computed table; after a change run `make docs KINDS=feedforward`."""
     assert shown_tables('feedforward')['weight'] == as_markdown({'weight': weight_table})['weight']
 
 
@@ -37,7 +37,7 @@ def test_the_weight_that_we_take_has_the_lowest_std_of_the_acceleration(weight_t
 
 
 def test_the_table_of_controllers():
-    """After a change: make docs KINDS=feedforward."""
+    """The page has the computed table; after a change run `make docs KINDS=feedforward`."""
     computed = as_markdown({'controllers': controllers()})
     assert shown_tables('feedforward')['controllers'] == computed['controllers']
 

@@ -26,7 +26,7 @@ def figures(cell: str) -> list[float | None]:
 
 
 def test_page_has_the_tables_of_the_studies(studies):
-    """After a change: make docs KINDS=studies."""
+    """The page has the computed tables; after a change run `make docs KINDS=studies`."""
     shown = shown_tables('studies')
     assert {name: shown[name] for name in studies} == as_markdown(studies)
 
