@@ -97,7 +97,7 @@ def test_the_time_left_counts_each_controller_by_its_own_runs(
     left_by_shard: list[float | None] = []
     monkeypatch.setattr(conduct, 'timed_shard', timed)
     monkeypatch.setattr(
-        conduct.Progress, 'tell', lambda self, done, left_s=None: left_by_shard.append(left_s)
+        conduct.Progress, 'update', lambda self, done, left_s=None: left_by_shard.append(left_s)
     )
     use(OneByOne())
     carried_out(tmp_path / 'out')
