@@ -28,6 +28,8 @@ _WIDTH_IN, _PANEL_IN, _LINE_IN = 11.0, 2.7, 0.25
 _LEGEND_COLUMNS = 5
 _TITLE_CHARACTERS = 120
 """Largest number of characters in a line of the title."""
+_MOST_TICKS = 5
+"""Largest number of ticks of an x axis, so that the labels of large values do not overlap."""
 _MOST_STEPS = 500
 """Largest number of steps of a curve: more cannot be distinguished."""
 
@@ -63,6 +65,7 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
         for group, look in zip(results.groups, looks, strict=True):
             _draw(axes, results, group, quantity, look_style(look))
         axes.set_xlabel(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit)))))
+        axes.locator_params(axis='x', nbins=_MOST_TICKS - 1)
         axes.set_ylim(0.0, 1.02)
     for axes in panels[:, 0]:
         axes.set_ylabel('share of valid runs')

@@ -1,11 +1,15 @@
 """The figure of a campaign: curves that end at the share of engaged runs, with title and scale."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from made_results import made_results
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from ddct_bringup.campaign_report.distributions import distributions_figure
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_controllers.design.drawing.chart_style import chart_style
 
 JERK = 'peak_jerk_m_s3'
 
@@ -59,3 +63,22 @@ def test_a_curve_of_very_many_runs_keeps_its_ends():
     assert len(curve) < 600
     assert (curve[0, 0], curve[-1, 0]) == (values.min(), values.max())
     assert curve[-1, 1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize('highest', [0.0123, 9.9, 123.0, 100_000.0, 123_456.0, 987_654.0])
+def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
+    results = made_results(
+        [ENGAGED, ENGAGED],
+        {'wear_gain': [0.7, 0.8]},
+        {'friction_energy_j': [0.2 * highest, highest]},
+    )
+    with chart_style():
+        figure = distributions_figure(results, 'thesis')
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        axis = figure.axes[0].xaxis
+        low, high = axis.get_view_interval()
+        ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+        boxes = [tick.label1.get_window_extent(canvas.get_renderer()) for tick in ticks]
+    assert 2 <= len(ticks) <= 5
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
