@@ -17,7 +17,7 @@ from ddct_controllers.design.drawing.charts import (
     draw_step_response,
     label_time_axis,
 )
-from ddct_controllers.design.drawing.distinct_lines import told_apart
+from ddct_controllers.design.drawing.distinct_lines import distinct_styles
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.verification import contours
@@ -71,7 +71,7 @@ def draw_over_time(
     Where two lines would share a colour or a dash, one of them gets another.
     """
     others = line_styles()
-    apart = told_apart({name: styles.get(name) or next(others) for name in lines})
+    apart = distinct_styles({name: styles.get(name) or next(others) for name in lines})
     for name, (time, values) in lines.items():
         axes.plot(time, values, label=name, **apart[name])
     label_time_axis(axes, quantity, range_s)

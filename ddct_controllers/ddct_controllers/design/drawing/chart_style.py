@@ -1,7 +1,7 @@
 """
-The one look of every chart, and its files: a picture, a drawing to scale, and its data.
+Style of all charts, and their files: a picture (PNG), a scalable drawing (SVG) and the data (CSV).
 
-The colours are fit for colour-blind readers.
+The colours are distinct for colour-blind readers.
 """
 
 import io
@@ -33,24 +33,28 @@ PURPLE = '#cc79a7'
 ORANGE = '#e69f00'
 SKY = '#56b4e9'
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
-"""Okabe's and Ito's, without the yellow that is faint on white."""
+"""Colours of lines: the palette of Okabe and Ito without its yellow, which is faint on white."""
 _DASHES = (DASHES[0], *DASHES[2:], DOTS)
-"""As many as colours, so that a grey print can be read; none like that of references."""
+"""
+Dashes of lines, as lengths of line and gap in points, empty for a solid line.
+
+There are as many as colours, so that lines differ in a grey print; none is the dash of references.
+"""
 REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth': 1.3}
-"""How what should be followed is drawn."""
+"""Matplotlib keywords of the line of a reference, which a signal should follow."""
 BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
-"""How what should not be exceeded is drawn."""
+"""Matplotlib keywords of the line of a bound, which a signal should not exceed."""
 LINE_WIDTH = 1.5
-"""Of a line in points; dashes are in widths of it."""
+"""Width of a line in points; matplotlib's dash lengths are multiples of it."""
 _MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
-"""A symbol with its index and perhaps a power, such as W_s^-1."""
+"""Pattern of a symbol with an index and optionally a power, such as W_s^-1."""
 _LETTERS_IN = 10.0
-"""Letters of a title per inch."""
+"""Number of letters of a title per inch of width."""
 _MOST_NAMED = 8
 ENDINGS = ('.png', '.svg', '.csv')
 Column = tuple[str, np.ndarray]
-"""Heading with the unit, and the values, (n,)."""
+"""Column of a CSV file: its heading with the unit, and its values, (n,)."""
 _STYLE: dict[Any, Any] = {
     'figure.figsize': (8.0, 5.0),
     'figure.dpi': 130.0,
@@ -73,7 +77,7 @@ _STYLE: dict[Any, Any] = {
 
 
 def chart_style() -> AbstractContextManager[None]:
-    """Return a context in which charts are to be made and saved."""
+    """Return the context with the style of charts, in which charts are made and saved."""
     return matplotlib.rc_context(_STYLE)
 
 
@@ -86,34 +90,34 @@ def new_chart(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
 
 
 def headed(title: str, conditions: str, width_in: float) -> str:
-    """Return a title with the conditions below it, in lines that a figure so wide holds."""
+    """Return a title with the conditions below it, wrapped to a figure of `width_in` inches."""
     columns = int(_LETTERS_IN * width_in)
     return '\n'.join(line for text in (title, conditions) for line in wrap(text, columns))
 
 
 def controllers_text(names: Sequence[str]) -> str:
-    """Return the controllers for a title; of many, how many there are."""
+    """Return the names of the controllers for a title, or their number when they are many."""
     return ', '.join(names) if len(names) <= _MOST_NAMED else f'{len(names)} controllers'
 
 
 def line_styles() -> Iterator[dict[str, Any]]:
-    """Yield the keywords of one line after the other, without end."""
+    """Yield matplotlib keywords of one line after the other, without end."""
     pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
     return ({'color': colour, 'linestyle': dash_style(dash)} for colour, dash in pairs)
 
 
 def dash_style(dash: tuple[int, ...]) -> Any:
-    """Return matplotlib's name of a line with these lengths of line and gap in points."""
+    """Return matplotlib's `linestyle` for these lengths of line and gap in points."""
     return (0, tuple(length / LINE_WIDTH for length in dash)) if dash else '-'
 
 
 def controller_style(name: str, repeat: int = 0) -> dict[str, Any]:
-    """Return the keywords of a controller's line, which follow from its name."""
+    """Return matplotlib keywords of a controller's line, see `controller_look`."""
     return look_style(controller_look(name, repeat))
 
 
 def look_style(look: LineLook) -> dict[str, Any]:
-    """Return the keywords of a line with this look."""
+    """Return matplotlib keywords of a line with this look."""
     style: dict[str, Any] = {'color': look.light, 'linestyle': dash_style(look.dash)}
     if look.mark:
         style |= {'marker': _MARKERS[look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
@@ -123,9 +127,9 @@ def look_style(look: LineLook) -> dict[str, Any]:
 
 def save_chart(figure: Figure, path: Path) -> None:
     """
-    Write the figure to a file of the kind that its ending tells.
+    Write the figure to a file of the kind of its extension, `.png` or `.svg`.
 
-    Symbols such as w_sr or W_s^-1 come out typeset. Raise DdctError when it cannot be written.
+    Symbols such as w_sr or W_s^-1 are typeset. Raise DdctError when the file cannot be written.
     """
     write_bytes(str(path), chart_bytes(figure, path.suffix.removeprefix('.')))
 
@@ -142,7 +146,7 @@ def chart_bytes(figure: Figure, kind: str) -> bytes:
 
 
 def typeset(text: str) -> str:
-    """Return the text with its indexed symbols as Matplotlib's mathematics."""
+    """Return the text with its indexed symbols in matplotlib's mathematical notation."""
     return text if '$' in text else INDEXED_SYMBOL.sub(_mathematics, text)
 
 
@@ -176,8 +180,9 @@ def figure_data(figure: Figure) -> list[Column]:
     """
     Return the labelled lines of a figure as columns.
 
-    Lines over the same values share that column. A heading is the axis label with its unit, after
-    the title of the panel where there are several and the name of the curve. Lines across the
+    Lines over the same x values share the column of these values. A heading is the
+    axis label with its unit, after the name of the curve, and after the title of the panel where
+    there are several. Lines across the
     whole panel, such as a reference of 1, have no data.
     """
     panels = figure.axes

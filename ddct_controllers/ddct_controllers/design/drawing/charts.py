@@ -45,10 +45,10 @@ from ddct_controllers.from_file.designed import DesignedController
 from ddct_plant.linear.lti import StateSpace
 
 _PHASE_DEG, _MAGNITUDE_DB = (-360.0, 0.0), (-40.0, 40.0)
-"""What a Nichols chart shows."""
+"""Ranges of open-loop phase in degrees and magnitude in dB of a Nichols chart."""
 _BOUNDED_LINES = ((BLUE, DASHES[0]), (GREEN, DASHES[2]))
 _STEP_RISE_TIMES = 8.0
-"""Length of the step chart in rise times asked for."""
+"""Duration of the step chart as a multiple of the specified rise time."""
 
 
 def draw_nichols(
@@ -61,8 +61,8 @@ def draw_nichols(
     """
     Draw loops by name in a Nichols chart.
 
-    It has the specifications' constant-|S| and constant-|T| curves, which L should not enter.
-    `styles` are the keywords of each line.
+    The chart has the specifications' constant-|S| and constant-|T| curves, which L should not
+    enter. `styles` are matplotlib keywords, one set for each line.
     """
     draw_nichols_grid(axes, _PHASE_DEG, _MAGNITUDE_DB)
     s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
@@ -90,16 +90,16 @@ def draw_step_response(
     """
     Draw (time, output) of unit steps by name, with rise time and overshoot in the legend.
 
-    `styles` are the keywords of each line.
+    `styles` are matplotlib keywords, one set for each line.
     """
     drawn = zip(responses.items(), styles or line_styles(), strict=False)
     for (name, (time, output)), style in drawn:
         rise = rise_time_s(time, output)
-        figures = f'overshoot {100.0 * overshoot(time, output):.1f} %'
+        values = f'overshoot {100.0 * overshoot(time, output):.1f} %'
         if rise is not None:
-            figures = f't_r = {rise:.2f} s, {figures}'
+            values = f't_r = {rise:.2f} s, {values}'
             axes.plot(rise, 1.0, 'o', color=style['color'])
-        axes.plot(time, output, label=f'{name}: {figures}', **style)
+        axes.plot(time, output, label=f'{name}: {values}', **style)
         highest = int(np.argmax(output))
         axes.plot(time[highest], output[highest], 's', color=style['color'], markersize=5)
     axes.axhline(1.0, label='reference', **REFERENCE_LINE)
@@ -141,8 +141,8 @@ def write_design_charts(
     """
     Write NAME_nyquist, NAME_nichols and NAME_step as .png, .svg and .csv, or raise DdctError.
 
-    The loop is shown as designed, continuous without delay, which the thesis judges, and as run:
-    sampled with hold and delay.
+    The charts have the loop as designed, which is continuous without delay and which the thesis
+    judges, and as run: sampled, with hold and delay.
     """
     loops: dict[str, ContinuousLoop | StateSpace] = {
         'continuous, no delay': continuous_loop(designed.transfer_function),

@@ -1,8 +1,8 @@
 """
-Lines of one chart that no two share: each has a colour and a dash of its own.
+Distinct lines within one chart: no two lines have the same colour or the same dash.
 
-A line keeps what it has where no other has it, so a controller looks alike from chart to chart as
-far as its neighbours let it.
+A line keeps its colour and its dash unless another line of the chart has it. So a controller's
+line changes between charts only where another line of the chart requires it.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,19 +13,20 @@ from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LIGHT_COLOU
 
 _COLOURS = (*LIGHT_COLOURS, '#c77400', GREY)
 _DASHES = (*DASHES, DOTS, (16, 3, 7, 3))
-"""Lengths of line and gap in points, as on the screen in pixels."""
+"""Dashes of lines, as lengths of line and gap in points; a page has them in pixels."""
 _SOLID, _DASHED = DASHES[:2]
 _NAMED: Mapping[Any, tuple[int, ...]] = {'-': _SOLID, '--': _DASHED}
-"""What matplotlib has names for; its dashed line is much like ours."""
+"""Dash for each named `linestyle` of matplotlib, whose dashed line is nearly ours."""
 Part = TypeVar('Part')
 
 
-def told_apart(styles: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+def distinct_styles(styles: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
     """
-    Return the keywords of each line by name, with neither colour nor dash twice.
+    Return matplotlib keywords of each line by name, with no colour and no dash used twice.
 
-    What is dashed by its kind, as a reference, goes first, then solid lines, then the others. Of
-    more than eight lines the last keep what they have; marks may tell them apart.
+    Lines with matplotlib's own dash, such as a reference, choose first, then solid lines, then the
+    others. Of more than eight lines the last keep their colour and dash; marks may distinguish
+    them.
     """
     apart: dict[str, dict[str, Any]] = {}
     own_colours = [style['color'] for style in styles.values()]
@@ -50,16 +51,20 @@ def _rank(style: Mapping[str, Any]) -> int:
 
 
 def _dash(style: Mapping[str, Any]) -> tuple[int, ...]:
-    """Return the dash of a line in points."""
+    """Return the dash of a line, as lengths of line and gap in points."""
     line = style.get('linestyle', '-')
     return _NAMED[line] if line in _NAMED else tuple(round(LINE_WIDTH * each) for each in line[1])
 
 
 def _free(
-    own: Part, taken: Sequence[Part], choices: Iterable[Part], wanted: Sequence[Part]
+    own: Part, taken: Sequence[Part], choices: Iterable[Part], originals: Sequence[Part]
 ) -> Part:
-    """Return what a line has if it is free, else the first that is, best one that none wants."""
+    """
+    Return a line's own colour or dash unless it is taken; otherwise the first free choice.
+
+    Choices that are the original one of another line come last; without a free one it is `own`.
+    """
     if own not in taken:
         return own
     free = [choice for choice in choices if choice not in taken]
-    return next((choice for choice in free if choice not in wanted), next(iter(free), own))
+    return next((choice for choice in free if choice not in originals), next(iter(free), own))

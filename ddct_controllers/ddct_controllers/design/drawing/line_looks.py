@@ -1,8 +1,8 @@
 """
-How the line of a controller looks, in every report and figure.
+Look of a controller's line, in every report and figure.
 
-Colour and dash follow from the controller's name alone. They stay the same whichever other
-controllers are shown, and in whichever order.
+Colour and dash follow from the controller's name alone. They do not depend on the
+other controllers of a page, nor on the order.
 """
 
 import hashlib
@@ -13,18 +13,28 @@ from itertools import product
 LIGHT_COLOURS = ('#3748b5', '#e3301c', '#709f38', '#188ffb', '#855095', '#1b776f')
 DARK_COLOURS = ('#727bff', '#f4511e', '#ffdd23', '#b7e2ff', '#f06b9a', '#13ea79')
 """
-On a light and on a dark page, pair by pair of about the same hue. Chosen by a search for colours
-far apart for normal, protanopic, deuteranopic and tritanopic eyes, at a contrast of 3 or more.
+Colours of lines on a light and on a dark page, as #rrggbb; both of a pair have about the same hue.
+
+A search chose colours far apart for normal, protanopic, deuteranopic and tritanopic eyes, with a
+contrast of at least 3 to the page.
 """
 
 DASHES = ((), (7, 3), (2, 2), (9, 3, 2, 3), (14, 4), (9, 3, 2, 3, 2, 3))
-"""Lengths of line and gap in pixels, for a grey print and for more controllers than colours."""
+"""
+Dashes of lines, as lengths of line and gap in pixels, empty for a solid line.
+
+They distinguish lines in a grey print, and more controllers than there are colours.
+"""
 
 DOTS = (2, 5)
-"""A dash for charts in which those are taken."""
+"""Further dash, for charts in which all `DASHES` are taken."""
 
 MARKS = ('circle', 'square', 'star', 'plus')
-"""Shapes on a line, filled or hollow. Triangles and diamonds mark events and printed figures."""
+"""
+Shapes of marks on a line, filled or hollow.
+
+Triangles and diamonds are absent: they mark events and printed values.
+"""
 
 _PACKAGED = (
     ('ls8', 'hinf1', 'pi', 'mpc4', 'mpc3', 'lqi'),
@@ -36,31 +46,31 @@ _PACKAGED = (
 """
 The packaged controllers: a row for each of `DASHES`, a column for each colour.
 
-Those of Table 5.1 are solid. What is often drawn together differs in colour.
+Controllers of Table 5.1 have solid lines. Those often drawn together differ in colour.
 """
 
 
 @dataclass(frozen=True)
 class LineLook:
-    """How a line is drawn."""
+    """Look of a line: colour, dash and marks."""
 
     colour: int
-    """Index into the colours of either theme."""
+    """Index of the colour in `LIGHT_COLOURS` and `DARK_COLOURS`."""
     dash: tuple[int, ...]
-    """One of `DASHES`, empty for a solid line."""
+    """Dash of the line, one of `DASHES`; empty for a solid line."""
     mark: str = ''
-    """One of `MARKS`, empty for a line without marks."""
+    """Shape of the marks, one of `MARKS`; empty for a line without marks."""
     filled: bool = False
-    """Whether the marks are."""
+    """Whether the marks are filled; otherwise they are hollow."""
 
     @property
     def light(self) -> str:
-        """The colour on a light page, as #rrggbb."""
+        """Colour on a light page, as #rrggbb."""
         return LIGHT_COLOURS[self.colour]
 
     @property
     def dark(self) -> str:
-        """The colour on a dark page, as #rrggbb."""
+        """Colour on a dark page, as #rrggbb."""
         return DARK_COLOURS[self.colour]
 
 
@@ -91,18 +101,18 @@ def controller_look(name: str, repeat: int = 0) -> LineLook:
 
 
 def looks_of(controllers: Iterable[str]) -> list[LineLook]:
-    """Return one look per run, given the controllers of the runs."""
+    """Return the look of each run's line, in order, from the names of the runs' controllers."""
     names = list(controllers)
     return [controller_look(name, names[:run].count(name)) for run, name in enumerate(names)]
 
 
 def css_colours(colours: Sequence[str]) -> str:
-    """Return the colours of one theme as the CSS variables `--run-0` and on."""
+    """Return the colours of one theme as CSS variables `--run-0`, `--run-1`, ..."""
     return ''.join(f'--run-{index}:{colour};' for index, colour in enumerate(colours))
 
 
 def sample_svg(look: LineLook) -> str:
-    """Return a short piece of the line as an SVG element, in the colours of `css_colours`."""
+    """Return a sample of the line, 36 by 12 pixels, as an SVG element; see `css_colours`."""
     colour = f'var(--run-{look.colour})'
     dash = f' stroke-dasharray="{" ".join(map(str, look.dash))}"' if look.dash else ''
     shapes = f'<line x1="1" y1="6" x2="35" y2="6" style="stroke:{colour}"{dash}/>'
@@ -118,9 +128,9 @@ _MARK_PATHS = {
     'star': 'M18 1l1.5 3.4 3.7 .3-2.8 2.4.9 3.6-3.3-1.9-3.3 1.9.9-3.6-2.8-2.4 3.7-.3z',
     'plus': 'M16.6 1.5h2.8v3.1h3.1v2.8h-3.1v3.1h-2.8v-3.1h-3.1v-2.8h3.1z',
 }
-"""Around (18, 6)."""
+"""SVG path of each mark, centred at (18, 6), in pixels."""
 
 
 def _hash(name: str) -> int:
-    """Return a number that is the same in every process and version of Python."""
+    """Return a hash of the name that is the same in every process and version of Python."""
     return int.from_bytes(hashlib.sha256(name.encode(errors='surrogatepass')).digest()[:8], 'big')

@@ -1,4 +1,4 @@
-"""The Nichols chart: its coordinates, curves of constant |T|, |S| and arg T, and its grid."""
+"""Nichols chart: coordinates, curves of constant |T|, |S| and arg T, and the grid."""
 
 import math
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ from ddct_plant.base.errors import require_number
 
 _CURVE_POINTS = 720
 _UNIT_CIRCLE = np.exp(2j * math.pi * (np.arange(_CURVE_POINTS) + 0.5) / _CURVE_POINTS)
-"""Points of it, symmetric, none of them at 1, where L is infinite or 0."""
+"""Points on the unit circle, (720,), symmetric; none is 1, where L is infinite or 0."""
 _SMALLEST_SIZE = 1e-4
-"""Of |T| on a curve of constant phase."""
+"""Smallest |T| on a curve of constant arg T; the largest is its reciprocal."""
 TURN_DEG = 360.0
 _MAGNITUDES_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
-"""Levels of |T|."""
+"""Levels of |T| in dB that the grid has."""
 _PHASES_DEG = (-30.0, -60.0, -90.0, -120.0, -150.0, -210.0, -240.0, -270.0, -300.0, -330.0)
-"""Levels of arg T."""
+"""Levels of arg T in degrees that the grid has."""
 _LINE: dict[str, Any] = {
     'color': '#c4c4c4',
     'linewidth': 0.7,
@@ -37,41 +37,41 @@ _TEXT: dict[str, Any] = {
 }
 _LABEL = 'closed loop: |T| in dB, arg T in °'
 _INSET = 0.045
-"""Of a label from the edge of the chart, as a share of its height or width."""
+"""Distance of a label from the edge of the chart, as a share of its height or width."""
 
 
 @dataclass(frozen=True, eq=False)
 class NicholsCurve:
-    """A curve of L in the chart's coordinates."""
+    """Curve of L in the coordinates of the chart."""
 
     phase_deg: np.ndarray
-    """arg L, (n,)."""
+    """Phase arg L in degrees, (n,)."""
     magnitude_db: np.ndarray
-    """20 log10 |L|, (n,)."""
+    """Magnitude 20 log10 |L| in dB, (n,)."""
 
 
 def constant_m_curve(level: float) -> NicholsCurve:
-    """Return where |T| = |L/(1 + L)| is `level` (an M-circle), from L = T/(1 - T)."""
+    """Return the curve of L with |T| = |L/(1 + L)| = `level`, an M-circle, from L = T/(1 - T)."""
     closed = require_number('level of |T|', level, above=0.0) * _UNIT_CIRCLE
     return nichols_curve(closed / (1.0 - closed), unwrap=False)
 
 
 def constant_n_curve(phase_deg: float) -> NicholsCurve:
-    """Return where arg T = arg(L/(1 + L)) is `phase_deg`, from L = T/(1 - T); it is not closed."""
+    """Return the open curve of L with arg T = arg(L/(1 + L)) = `phase_deg`, from L = T/(1 - T)."""
     sizes = np.geomspace(_SMALLEST_SIZE, 1.0 / _SMALLEST_SIZE, _CURVE_POINTS)
     closed = sizes * np.exp(1j * math.radians(phase_deg))
     return nichols_curve(closed / (1.0 - closed), unwrap=False)
 
 
 def constant_s_curve(level: float) -> NicholsCurve:
-    """Return where |S| = 1/|1 + L| is `level`, from L = 1/S - 1."""
+    """Return the curve of L with |S| = 1/|1 + L| = `level`, from L = 1/S - 1."""
     closed = require_number('level of |S|', level, above=0.0) * _UNIT_CIRCLE
     return nichols_curve(1.0 / closed - 1.0, unwrap=False)
 
 
 def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
     """
-    Return L's values in the coordinates of the chart.
+    Return the complex values of L in the coordinates of the chart.
 
     The phase starts in (-360, 0] degrees and is continuous from there, or stays there with
     `unwrap=False`.
@@ -88,7 +88,7 @@ def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
 def draw_nichols_grid(
     axes: Axes, phase_deg: tuple[float, float], magnitude_db: tuple[float, float]
 ) -> None:
-    """Draw the contours within the range of the chart, each with its value."""
+    """Draw the contours of |T| and arg T within the range of the chart, each with its value."""
     axes.plot([], [], label=_LABEL, **_LINE)
     bottom = magnitude_db[0] + _INSET * (magnitude_db[1] - magnitude_db[0])
     for level in _PHASES_DEG:
@@ -113,7 +113,7 @@ def draw_turns(
     closed: bool = True,
     **style: Any,
 ) -> None:
-    """Draw a curve that repeats every turn wherever the range of the phase has it."""
+    """Draw a curve, which repeats every 360 degrees, at each repetition in the range of phases."""
     phase, magnitude = curve.phase_deg, curve.magnitude_db
     if closed:
         phase, magnitude = (np.append(values, values[0]) for values in (phase, magnitude))
@@ -126,10 +126,10 @@ def draw_turns(
 
 def _place(level_db: float, curve: NicholsCurve, top_db: float) -> tuple[float, float]:
     """
-    Return phase and magnitude of a level's label.
+    Return the phase in degrees and the magnitude in dB of the label of a level of |T|.
 
-    A closed contour has it at its highest point. One below 0 dB crosses the whole chart and has
-    it near phase 0, that of 0 dB near the top.
+    A closed contour has its label at its highest point. A contour below 0 dB crosses the whole
+    chart and has its label near phase 0; the contour of 0 dB has it near the top.
     """
     if level_db > 0.0:
         highest = int(np.argmax(curve.magnitude_db))
@@ -152,6 +152,6 @@ def _label(
 
 
 def _turns(phase_deg: tuple[float, float]) -> range:
-    """Return the turns, in which the phase of a curve is from -360 to 0, that the range has."""
+    """Return the indices of the turns that the range covers; turn 0 is from -360 to 0 degrees."""
     first, last = math.floor(phase_deg[0] / TURN_DEG), math.ceil(phase_deg[1] / TURN_DEG)
     return range(first + 1, last + 1)

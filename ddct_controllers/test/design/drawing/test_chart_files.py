@@ -1,4 +1,4 @@
-"""A figure's files: its data with headings and units, the same file for the same figure."""
+"""Files of a figure: data with headings and units, and the same bytes for the same figure."""
 
 import csv
 import re

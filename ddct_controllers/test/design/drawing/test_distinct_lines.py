@@ -1,14 +1,14 @@
-"""Lines that share a colour or a dash are told apart; the others stay as they are."""
+"""Lines that share a colour or a dash get different ones; the others stay as they are."""
 
 from itertools import combinations
 
 from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
-from ddct_controllers.design.drawing.distinct_lines import told_apart
+from ddct_controllers.design.drawing.distinct_lines import distinct_styles
 
 
 def test_a_line_keeps_what_no_other_line_has():
     styles = {name: controller_style(name) for name in ('ls8', 'hinf2', 'ls4')}
-    apart = told_apart(styles)
+    apart = distinct_styles(styles)
     assert apart['ls8'] == styles['ls8']
     assert apart['hinf2']['linestyle'] == styles['hinf2']['linestyle']
     assert apart['ls4'] == styles['ls4']
@@ -18,7 +18,7 @@ def test_a_line_keeps_what_no_other_line_has():
 def test_eight_lines_differ_in_both_and_the_reference_stays_as_it_is():
     names = ('ls4', 'ls5', 'ls6', 'ls7', 'ls8', 'ls9', 'pi')
     styles = {'reference': REFERENCE_LINE} | {name: controller_style(name) for name in names}
-    apart = told_apart(styles)
+    apart = distinct_styles(styles)
     assert list(apart) == list(styles)
     assert apart['reference'] == REFERENCE_LINE
     for one, other in combinations(apart.values(), 2):
@@ -27,11 +27,11 @@ def test_eight_lines_differ_in_both_and_the_reference_stays_as_it_is():
 
 
 def test_two_runs_of_one_controller_differ_too():
-    apart = told_apart({f'{n}': controller_style('hinf2', n) for n in range(2)})
+    apart = distinct_styles({f'{n}': controller_style('hinf2', n) for n in range(2)})
     assert apart['0']['color'] != apart['1']['color']
     assert apart['0']['linestyle'] != apart['1']['linestyle']
 
 
 def test_more_lines_than_looks_are_drawn_all_the_same():
     styles = {str(index): controller_style(f'mine_{index}') for index in range(12)}
-    assert len(told_apart(styles)) == 12
+    assert len(distinct_styles(styles)) == 12

@@ -1,4 +1,4 @@
-"""Lines of controllers: by the name alone, distinct, visible on either page and to all eyes."""
+"""Lines of controllers follow from the name alone, and are distinct on both pages for all eyes."""
 
 import itertools
 from xml.etree import ElementTree
@@ -48,7 +48,11 @@ EYES = {
         ]
     ),
 }
-"""Machado, Oliveira and Fernandes (2009), severity 1, on linear sRGB."""
+"""
+Matrix from linear sRGB to its simulation for each kind of colour vision, (3, 3).
+
+From Machado, Oliveira and Fernandes (2009), severity 1.
+"""
 
 
 def linear(colour):
@@ -77,8 +81,8 @@ def test_every_colour_stands_out_from_its_page(colours, page):
 @pytest.mark.parametrize('eyes', EYES)
 @pytest.mark.parametrize('colours', [LIGHT_COLOURS, DARK_COLOURS], ids=['light', 'dark'])
 def test_colours_differ_for_all_eyes(colours, eyes):
-    seen = [lab(EYES[eyes] @ linear(colour)) for colour in colours]
-    distances = [np.linalg.norm(a - b) for a, b in itertools.combinations(seen, 2)]
+    simulated = [lab(EYES[eyes] @ linear(colour)) for colour in colours]
+    distances = [np.linalg.norm(a - b) for a, b in itertools.combinations(simulated, 2)]
     assert min(distances) > 15.0
 
 
