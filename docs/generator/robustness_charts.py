@@ -37,9 +37,9 @@ def draw_robustness(maps: Mapping[str, StateMap]) -> None:
         with chart_style():
             save_chart(robustness_figure(maps[name], architecture, *LABELS[name]), picture)
         with Image.open(picture) as image:
-            said = PngInfo()
-            said.add_text(DRAWN_FROM, maps[name].digest)
-            image.convert('P', palette=Image.Palette.ADAPTIVE).save(picture, pnginfo=said)
+            metadata = PngInfo()
+            metadata.add_text(DRAWN_FROM, maps[name].digest)
+            image.convert('P', palette=Image.Palette.ADAPTIVE).save(picture, pnginfo=metadata)
 
 
 def robustness_figure(found: StateMap, architecture: str, label: str, factor: float) -> Figure:

@@ -99,8 +99,8 @@ def record_of(campaigns: Mapping[str, Path]) -> dict[str, Any]:
 def _kept(name: str, campaign: Path) -> dict[str, Any]:
     spec = read_spec(SPECS[name])
     keys = ('controller', *spec.grid)
-    wanted = [*keys, 'verdict_state', JERK]
-    rows = parquet.read_table(campaign / 'results.parquet', columns=wanted).to_pylist()
+    columns = [*keys, 'verdict_state', JERK]
+    rows = parquet.read_table(campaign / 'results.parquet', columns=columns).to_pylist()
     expected = list(product(spec.controllers, *spec.grid.values()))
     if [tuple(row[key] for key in keys) for row in rows] != expected:
         raise ValueError(f'{campaign}: these are not the runs of {SPECS[name]}')

@@ -1,10 +1,10 @@
 """
 The graph's topics, hops and processes in bare rclpy, doing no work: the floor of `make bench`.
 
-Each node publishes its constant messages as soon as it has heard its inputs, with the same QoS,
+Each node publishes its constant messages as soon as it has received its inputs, with the same QoS,
 executor and message sizes as the real graph. Run one node per process with `python bare_chain.py
 NODE STEPS [PATIENCE_S]`, or all in one process with NODE `all`; `driveline` prints microseconds
-per step. Nothing is sent twice, so no node may miss the first message: see `_say_when_ready`.
+per step. Nothing is sent twice, so no node may miss the first message: see `_announce_when_ready`.
 """
 
 import sys
@@ -35,7 +35,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     'actuator/torque': (POINTS,),
     'clutch/torque': (POINTS,),
 }
-"""What a topic carries; one number per signal where nothing is said."""
+"""Values of the message of a topic; other topics have the number 1 for each signal."""
 
 
 def _example(topic: Topic) -> Any:
@@ -47,7 +47,7 @@ EXAMPLES: dict[str, Callable[[], Any]] = {
     for topic in recorded_topics(RunKind())
     if topic.every_tick
 }
-"""One message of each topic of a tick, of the size that the real graph sends."""
+"""Function that makes a message, by topic of a tick; its size is that of the real graph."""
 
 WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'engine': (['driveline/joint_states'], ['engine/torque', 'engine/torque_demand']),
@@ -62,25 +62,25 @@ WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'recorder': ([topic for topic in EXAMPLES if topic != 'recorder/ack'], ['recorder/ack']),
     'driveline': (['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'], TICK),
 }
-"""Inputs and outputs of each node, as in the real graph."""
+"""Topics that a node subscribes to and topics that it publishes, by node, as in the real graph."""
 
 
 READY = 'ready'
-"""`ready/NODE` has a publisher, which sends nothing, once that node has all its matches."""
+"""Prefix of topics: `ready/NODE` has a publisher, which sends nothing, once NODE is matched."""
 POLL_S = 0.05
 PATIENCE_S = 60.0
-"""How long the driveline waits for the others to start, or for the answer to a tick."""
+"""Timeout of the driveline for the start of the other nodes, or the answer to a tick, s."""
 
 
 class BareNode(Node):
-    """Publish all outputs once every input has come once more."""
+    """Node that publishes all its outputs once it has received every input once more."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f'bare_{name}')
         self._name = name
         inputs, outputs = WIRING[name]
-        self._wanted = len(inputs)
-        self._heard = 0
+        self._expected = len(inputs)
+        self._received = 0
         self._outputs = [
             (self.create_publisher(type(EXAMPLES[topic]()), topic, LOOP_QOS), EXAMPLES[topic]())
             for topic in outputs
@@ -89,15 +89,15 @@ class BareNode(Node):
         for topic in inputs:
             kind = type(EXAMPLES[topic]())
             qos = RECORDER_QOS if raw else LOOP_QOS
-            self.create_subscription(kind, topic, self._hear, qos, raw=raw)
-        self._looks = self.create_timer(POLL_S, self._say_when_ready)
+            self.create_subscription(kind, topic, self._receive, qos, raw=raw)
+        self._match_timer = self.create_timer(POLL_S, self._announce_when_ready)
 
-    def _say_when_ready(self) -> None:
+    def _announce_when_ready(self) -> None:
         """
-        Look whether each of our endpoints is matched with those at its other end, and say so.
+        Create the publisher of `ready/NODE` once all endpoints of this node are matched.
 
-        Discovery is not symmetric: that a writer knows its reader does not yet mean that the
-        reader takes in what it writes. Once both know each other, nothing is lost.
+        Discovery is not symmetric: a writer may be matched with its reader before the reader is
+        matched with the writer and receives its messages. Once both are, no message is lost.
         """
         inputs = [topic for wiring in WIRING.values() for topic in wiring[0]]
         matched = all(
@@ -105,17 +105,17 @@ class BareNode(Node):
             for (publisher, _), topic in zip(self._outputs, WIRING[self._name][1], strict=True)
         )
         if matched and all(each.get_publisher_count() == 1 for each in self.subscriptions):
-            self._looks.cancel()
+            self._match_timer.cancel()
             self.create_publisher(Header, f'{READY}/{self._name}', 1)
 
-    def _hear(self, _: Any) -> None:
-        self._heard += 1
-        if self._heard == self._wanted:
-            self._heard = 0
+    def _receive(self, _: Any) -> None:
+        self._received += 1
+        if self._received == self._expected:
+            self._received = 0
             self.complete()
 
     def complete(self) -> None:
-        """Answer the tick."""
+        """Answer the tick: publish every output."""
         self.send()
 
     def send(self) -> None:
@@ -125,7 +125,7 @@ class BareNode(Node):
 
 
 class BareDriveline(BareNode):
-    """Begin each tick when the last is answered, the first once every node is ready."""
+    """Node that begins a tick when the last one is answered, and the first once all are ready."""
 
     def __init__(self, steps: int) -> None:
         super().__init__('driveline')
@@ -144,14 +144,14 @@ class BareDriveline(BareNode):
     def _not_ready(self) -> list[str]:
         return [name for name in WIRING if not self.count_publishers(f'{READY}/{name}')]
 
-    def complaint(self, patience_s: float) -> str:
-        """Return what to say after waiting in vain."""
+    def timeout_message(self, patience_s: float) -> str:
+        """Return the error message for a timeout of `patience_s` seconds."""
         if not self._started:
             return f'not ready after {patience_s:g} s: {", ".join(self._not_ready())}'
         return f'no answer to step {self._steps - self.left} within {patience_s:g} s'
 
     def complete(self) -> None:
-        """Count the tick and begin the next one."""
+        """Count the tick and begin the next one; after the last print the time per step in us."""
         self.left -= 1
         if self.left:
             self.send()
@@ -162,7 +162,7 @@ class BareDriveline(BareNode):
 
 
 def main() -> None:
-    """Run the named node, or all of them, until the driveline has done its steps."""
+    """Run the node of the command line, or all of them, until the driveline has done its steps."""
     name, steps = sys.argv[1], int(sys.argv[2])
     patience_s = float(sys.argv[3]) if len(sys.argv) > 3 else PATIENCE_S
     rclpy.init()
@@ -182,14 +182,14 @@ def main() -> None:
 
 
 def spin_driveline(executor: Executor, driveline: BareDriveline, patience_s: float) -> None:
-    """Spin until it is done; end the program with a line when nothing happens for too long."""
+    """Spin until the run is done; end the program with an error when no step ends in time."""
     left, since = driveline.left, time.monotonic()
     while not driveline.done.done():
         executor.spin_until_future_complete(driveline.done, SLICE_S)
         if driveline.left != left:
             left, since = driveline.left, time.monotonic()
         elif time.monotonic() - since > patience_s:
-            sys.exit(f'bare_chain: {driveline.complaint(patience_s)}')
+            sys.exit(f'bare_chain: {driveline.timeout_message(patience_s)}')
 
 
 if __name__ == '__main__':

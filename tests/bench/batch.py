@@ -1,5 +1,5 @@
 """
-How long a run takes in a batch: of this process, for each run, over runs that are all different.
+Processor time per run of a batch in one process, over runs that all differ.
 
 Each run has a driveline, wear, engine torque and reference of its own.
 """
@@ -22,19 +22,19 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 GOAL_US = 100.0
-"""Of simulation and metrics."""
+"""Goal of the time per run of simulation and metrics, us."""
 RUNS = 5000
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
 
 
 def measure() -> dict[str, dict[str, float]]:
-    """Return by controller the times per run in us of simulation, metrics and verdict."""
+    """Return the times per run in us of simulation, metrics and verdict, by controller."""
     return {name: _times(name) for name in CONTROLLERS}
 
 
-def print_table(figures: dict[str, dict[str, float]]) -> None:
-    """Print what `measure` returned."""
-    for name, times in figures.items():
+def print_table(results: dict[str, dict[str, float]]) -> None:
+    """Print the results of `measure`."""
+    for name, times in results.items():
         to_metrics = times['simulation'] + times['metrics']
         print(
             f'batch of {RUNS} runs, {name}: {to_metrics:.0f} us per run and core to every metric '

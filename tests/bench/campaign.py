@@ -1,7 +1,7 @@
 """
-What campaigns cost: predictive control on a clutch that sticks, and a Dask cluster of two workers.
+Time of campaigns: predictive control with a stick-slip clutch, and Dask with two workers.
 
-Processor time counts beside the wall: on a busy machine the wall tells of the others too.
+Processor time is measured too, since wall time depends on the other programs of the machine.
 """
 
 import os
@@ -33,7 +33,7 @@ random:
 
 
 def measure(runs: int = MPC3_RUNS, dask_runs: int = _DASK_RUNS) -> dict[str, Any]:
-    """Return the time of the runs of mpc3 here, and of fewer on one and on two Dask workers."""
+    """Return the times in s of a campaign of mpc3 here, and of a shorter one with Dask workers."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         wall_s, cpu_s = _campaign(place / 'here', runs, '--workers', '2')
@@ -54,26 +54,26 @@ def measure(runs: int = MPC3_RUNS, dask_runs: int = _DASK_RUNS) -> dict[str, Any
     }
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    thousand_s = figures['mpc3_s'] * MPC3_RUNS / figures['mpc3_runs']
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    thousand_s = results['mpc3_s'] * MPC3_RUNS / results['mpc3_runs']
     print(
-        f'campaign: {figures["mpc3_runs"]} stick_slip runs of mpc3, two processes: '
-        f'{figures["mpc3_s"]:.1f} s (1000: {thousand_s:.1f} s, goal {MPC3_GOAL_S:g}: '
+        f'campaign: {results["mpc3_runs"]} stick_slip runs of mpc3, two processes: '
+        f'{results["mpc3_s"]:.1f} s (1000: {thousand_s:.1f} s, goal {MPC3_GOAL_S:g}: '
         f'{"met" if thousand_s < MPC3_GOAL_S else "MISSED"}), '
-        f'{figures["mpc3_cpu_ms"]:.1f} ms of processor time a run'
+        f'{results["mpc3_cpu_ms"]:.1f} ms of processor time a run'
     )
-    ratio = figures['dask_ratio']
+    ratio = results['dask_ratio']
     print(
-        f'campaign: {figures["dask_runs"]} of them on one Dask worker '
-        f'{figures["dask_one_s"]:.1f} s, on two {figures["dask_two_s"]:.1f} s: {ratio:.2f} times '
+        f'campaign: {results["dask_runs"]} of them on one Dask worker '
+        f'{results["dask_one_s"]:.1f} s, on two {results["dask_two_s"]:.1f} s: {ratio:.2f} times '
         f'as fast (goal {DASK_GOAL:g}: '
         f'{"met" if ratio >= DASK_GOAL else "MISSED"})'
     )
 
 
 def _campaign(out: Path, runs: int, *options: str) -> tuple[float, float]:
-    """Carry out a campaign; return its time and the processor time of all its processes, in s."""
+    """Carry out a campaign; return its wall time and its processes' processor time in s."""
     spec = out.with_suffix('.yaml')
     spec.write_text(_SPEC.format(runs=runs), encoding='utf-8')
     before = _children_s()
@@ -95,7 +95,7 @@ def _children_s() -> float:
 
 @contextmanager
 def _cluster(workers: int) -> Iterator[str]:
-    """Give the address of a scheduler with so many workers of one thread."""
+    """Run a Dask cluster of workers with one thread each; yield the address of its scheduler."""
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         port = free.getsockname()[1]

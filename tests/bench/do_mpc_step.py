@@ -9,11 +9,11 @@ from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, Transmissi
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.timebase import PERIOD_S
 
-_SILENT = {'ipopt.print_level': 0, 'ipopt.sb': 'yes', 'print_time': 0}
+_NO_OUTPUT = {'ipopt.print_level': 0, 'ipopt.sb': 'yes', 'print_time': 0}
 
 
 class DoMpcController(Controller):
-    """The same observer, model, weights and prediction horizon; every move of it is free."""
+    """do-mpc with our observer, model, weights and prediction horizon; all moves are free."""
 
     def __init__(
         self, model: TransmissionModel, observer: Observer, settings: MpcSettings
@@ -37,15 +37,15 @@ class DoMpcController(Controller):
             n_horizon=settings.prediction_steps,
             t_step=PERIOD_S,
             store_full_solution=False,
-            nlpsol_opts=_SILENT,
+            nlpsol_opts=_NO_OUTPUT,
         )
         error = reference - model.c[[SLIP_SPEED]] @ x
         cost = (settings.outputs[0].weight * error) ** 2
         self._mpc.set_objective(mterm=cost, lterm=cost)
         self._mpc.set_rterm(u=settings.inputs[0].move_weight ** 2)
         self._mpc.bounds['lower', '_u', 'u'] = 0.0
-        self._known = self._mpc.get_tvp_template()
-        self._mpc.set_tvp_fun(lambda _: self._known)
+        self._forecast = self._mpc.get_tvp_template()
+        self._mpc.set_tvp_fun(lambda _: self._forecast)
         self._mpc.setup()
         self.reset()
 
@@ -60,9 +60,9 @@ class DoMpcController(Controller):
     def update(self, measurement: Measurement) -> Command:
         state = self._correct(measurement).reshape(-1, 1)
         for step, reference in enumerate(measurement.slip_reference):
-            self._known['_tvp', step, 'reference'] = reference
-            self._known['_tvp', step, 'engine'] = measurement.engine_torque
-            self._known['_tvp', step, 'load'] = measurement.load_torque
+            self._forecast['_tvp', step, 'reference'] = reference
+            self._forecast['_tvp', step, 'engine'] = measurement.engine_torque
+            self._forecast['_tvp', step, 'load'] = measurement.load_torque
         if not self._started:
             self._mpc.reset_history()
             self._mpc.x0, self._mpc.u0 = state, np.array([[measurement.open_loop_torque]])

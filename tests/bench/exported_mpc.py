@@ -1,4 +1,4 @@
-"""One step of exported controllers as C, against the Python controllers that they come from."""
+"""Time of one step of exported C controllers, and of the Python controllers they come from."""
 
 import re
 import shutil
@@ -27,8 +27,10 @@ CASES = {
     'mpc_offset_free': ('mpc_offset_free', ()),
 }
 """
-Registry name and changes of the scenario. Not mpc4: alone, without the plant that it commands, it
-is unstable, so that measurements that come from a file soon lead it astray.
+Registry name of the controller and changes of the scenario, by case.
+
+mpc4 is absent: by itself, without the plant that it commands, it is unstable, so that it
+diverges when the measurements come from a file.
 """
 _ROUNDS = 20
 _FLAGS = ('-std=c99', '-O2', '-fstack-usage')
@@ -72,11 +74,11 @@ int main(void)
 
 def measure() -> dict[str, Any]:
     """
-    Return for each case median and p99 per step of both in us, the C's sizes and iterations.
+    Return for each case median and p99 per step of both in us, and sizes and iterations of the C.
 
-    Both answer the measurements of one closed-loop run; the C's time includes reading the clock.
-    Sizes are those of this machine's code: flash is code and tables, ram the state, stack the sum
-    of all frames. Without cc there is nothing but `skipped`.
+    Both update with the measurements of one closed-loop run; the time of the C includes reading
+    the clock. Sizes are those of this machine's code: flash is code and tables, ram the state,
+    stack the sum of all frames. Without cc the only entry is `skipped`, the reason.
     """
     compiler = shutil.which('cc')
     if compiler is None:
@@ -84,13 +86,13 @@ def measure() -> dict[str, Any]:
     return {case: _measure(compiler, *what) for case, what in CASES.items()}
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    if 'skipped' in figures:
-        print(f'exported controllers not measured: {figures["skipped"]}')
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    if 'skipped' in results:
+        print(f'exported controllers not measured: {results["skipped"]}')
         return
     print('exported controllers, one step:')
-    for case, row in figures.items():
+    for case, row in results.items():
         print(
             f'  {case}: C median {row["c_us"][0]:.2f} us, p99 {row["c_us"][1]:.2f} us; Python '
             f'{row["python_us"][0]:.1f} us, {row["python_us"][1]:.1f} us '
@@ -102,13 +104,13 @@ def print_table(figures: dict[str, Any]) -> None:
 
 def _measure(compiler: str, name: str, changes: tuple[str, ...]) -> dict[str, Any]:
     settings = RunSettings(load_scenario('thesis', list(changes)))
-    heard = measurements_of(settings, make_controller(name, settings))
+    measurements = measurements_of(settings, make_controller(name, settings))
     original = make_controller(name, settings)
-    times_us = times_of(original, heard, _ROUNDS)
+    times_us = times_of(original, measurements, _ROUNDS)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         export_controller(original, name, settings, folder)
-        rows, sizes = _run_c(compiler, folder, *heard)
+        rows, sizes = _run_c(compiler, folder, *measurements)
     python_us, c_us = (np.percentile(times, [50, 99]) for times in (times_us, rows[:, 0]))
     return {
         'c_us': c_us.tolist(),
@@ -122,7 +124,7 @@ def _measure(compiler: str, name: str, changes: tuple[str, ...]) -> dict[str, An
 def _run_c(
     compiler: str, folder: Path, held: list[Measurement], updated: list[Measurement]
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Return rows of time in us and iterations, and the sizes."""
+    """Return the time in us and the iterations of each step, (n, 2), and the sizes by name."""
     values = np.array([_values(measurement) for measurement in (*held, *updated)])
     sizes = {'ROUNDS': _ROUNDS, 'STEPS': len(values), 'HELD': len(held)}
     data = f'{macros(sizes)}\n{constants({"VALUES": values})}'
@@ -143,14 +145,14 @@ def _run_c(
 
 
 def _values(measurement: Measurement) -> list[float]:
-    """Return the fields of ddct_mpc_measurement in their order."""
+    """Return the values of the fields of ddct_mpc_measurement, in the order of the fields."""
     names = ('engine_speed', 'shaft_speed', 'wheel_speed', 'engine_torque', 'load_torque')
     scalars = [getattr(measurement, name) for name in (*names, 'open_loop_torque')]
     return [*scalars, *measurement.slip_reference, *measurement.slip_reference_rate]
 
 
 def _stack_bytes(usage: Path) -> int:
-    """Return the sum of all frames: calls without recursion need no more."""
+    """Return the sum of all stack frames in bytes, an upper bound for calls without recursion."""
     return sum(int(line.split('\t')[1]) for line in usage.read_text().splitlines())
 
 

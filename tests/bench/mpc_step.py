@@ -1,4 +1,4 @@
-"""One step of `mpc_preview`: filter, program and command, against peers."""
+"""Time of one step of `mpc_preview`, that is filter, program and command, against peers."""
 
 import warnings
 from collections.abc import Callable
@@ -29,13 +29,13 @@ _SLOW_ROUNDS = 1
 
 def measure() -> dict[str, Any]:
     """
-    Return per way of taking the step its median and p99 in us, and their ratios to ours.
+    Return median and p99 of the step in us, and their ratios to ours, by implementation.
 
-    All answer the measurements of one closed-loop run of `mpc_preview`, in turn. What is not
-    installed is named in `skipped`.
+    All update with the measurements of one closed-loop run of `mpc_preview`, in turn. `skipped`
+    names the libraries that are not installed.
     """
     settings = PREVIEW.settings()
-    heard = measurements_of(RUN, _controller(settings))
+    measurements = measurements_of(RUN, _controller(settings))
     ways: dict[str, tuple[Controller, int]] = {
         'ours, daqp': (_controller(settings), _ROUNDS),
         'ours, osqp': (_controller(replace(settings, backend='osqp')), _ROUNDS),
@@ -50,28 +50,26 @@ def measure() -> dict[str, Any]:
             ways[name] = (make(settings), rounds)
         except ImportError as error:
             skipped.append(f'{name} is not installed ({error})')
-    times = {name: times_of(way, heard, rounds) for name, (way, rounds) in ways.items()}
+    times = {name: times_of(way, measurements, rounds) for name, (way, rounds) in ways.items()}
     ours = np.percentile(times['ours, daqp'], [50, 99])
-    ways_figures = {
-        name: compared(np.percentile(each, [50, 99]), ours) for name, each in times.items()
-    }
-    return {'ways': ways_figures, 'skipped': skipped}
+    by_way = {name: compared(np.percentile(each, [50, 99]), ours) for name, each in times.items()}
+    return {'ways': by_way, 'skipped': skipped}
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    ours = figures['ways']['ours, daqp']
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    ours = results['ways']['ours, daqp']
     met = ours['median_us'] <= MEDIAN_GOAL_US and ours['p99_us'] <= P99_GOAL_US
     print(
         f'mpc_preview step (goal: median {MEDIAN_GOAL_US:g} us, p99 {P99_GOAL_US:g} us: '
         f'{"met" if met else "MISSED"}):'
     )
-    for name, row in figures['ways'].items():
+    for name, row in results['ways'].items():
         print(
             f'  {name:10} median {row["median_us"]:8.1f} us ({row["median_ratio"]:6.1f}x), '
             f'p99 {row["p99_us"]:8.1f} us ({row["p99_ratio"]:6.1f}x)'
         )
-    for reason in figures['skipped']:
+    for reason in results['skipped']:
         print(f'  not compared: {reason}')
 
 
@@ -80,7 +78,7 @@ def _controller(settings: MpcSettings) -> MpcController:
 
 
 class _Solver:
-    """What a controller needs of a backend, around a bare function."""
+    """Backend of a controller that calls a bare function."""
 
     def __init__(self, solve: Callable[..., np.ndarray]) -> None:
         self._solve = solve
@@ -110,7 +108,7 @@ def _do_mpc(settings: MpcSettings) -> Controller:
 
     It has no control horizon: all 22 moves are free, where ours has 4.
     """
-    # It warns of every optional feature that is not installed, and of numpy's names.
+    # do-mpc warns of every optional feature that is not installed, and of deprecated numpy names.
     warnings.simplefilter('ignore')
     from do_mpc_step import DoMpcController
 

@@ -1,4 +1,4 @@
-"""How long a browser takes until all charts of a report are drawn."""
+"""Time until a browser has drawn all charts of a report."""
 
 import statistics
 import sys
@@ -20,7 +20,7 @@ sys.path.append(str(Path(__file__).parents[1] / 'report'))
 from headless_chromium import chromium, visit
 
 GOALS_MS = {5: 2000.0, len(own_controller_names()): 4000.0}
-"""By the number of runs."""
+"""Goal of the time until all charts are drawn in ms, by number of runs."""
 
 
 def measure(repeats: int = 5) -> dict[str, Any]:
@@ -30,13 +30,13 @@ def measure(repeats: int = 5) -> dict[str, Any]:
     return {str(count): _measure(own_controller_names()[:count], repeats) for count in GOALS_MS}
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    if 'skipped' in figures:
-        print(f'report drawn: not measured: {figures["skipped"]}')
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    if 'skipped' in results:
+        print(f'report drawn: not measured: {results["skipped"]}')
         return
     for count, goal_ms in GOALS_MS.items():
-        found = figures[str(count)]
+        found = results[str(count)]
         print(
             f'report of {count} runs drawn: {found["median_ms"]:.0f} ms (goal {goal_ms:.0f} ms), '
             f'{found["megabytes"]:.2f} MB'

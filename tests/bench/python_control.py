@@ -1,12 +1,12 @@
 """
-How long a headless run takes beside python-control's `input_output_response` on the same loop.
+Time of a headless run, and of python-control's `input_output_response` on the same loop.
 
 The loop is that of PI in `detailed`: driveline, actuator with delay and cut-off, road load with
-drag, open loop, feedback from control start on. python-control has it twice, both sampled at 10 ms
-with our own exact matrices: of blocks that `interconnect` wires, as one builds a loop there, and
-by hand as one block, the least that it can take. They give the slip at 10 ms, and have to give
-that of ours; ours gives every signal, and the clutch torque at 1 ms. C_m and the reference are
-given to theirs.
+drag, open loop, feedback from control start on. python-control simulates it twice, both
+times sampled at 10 ms with our own exact matrices: as blocks that `interconnect` wires, which is
+its usual way to build a loop, and as one block written by hand, the fastest form. Both compute the
+slip at 10 ms, which must equal ours; ours computes every signal, and the clutch torque at 1 ms.
+C_m and the reference are inputs of both.
 """
 
 import statistics
@@ -30,14 +30,14 @@ from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.settings import RunSettings
 
 GOAL = 3.0
-"""How many times as long the blocks take."""
+"""Goal of the ratio of the time of python-control's blocks to ours, at least."""
 _ROUNDS = 5
 _NODES = [f'node{index}' for index in range(11)]
 _SPEEDS = ['engine_speed', 'shaft_speed', 'wheel_speed']
 
 
 def measure() -> dict[str, float]:
-    """Return the median times in ms, taken in turn, of ours, the blocks and the one block."""
+    """Return the median times in ms of ours, the blocks and the one block, measured in turn."""
     settings = RunSettings(load_scenario('thesis'))
     ours, run = _ours(settings)
     loop = _Loop(settings, run)
@@ -49,15 +49,15 @@ def measure() -> dict[str, float]:
     return {name: statistics.median(times) for name, times in taken.items()}
 
 
-def print_table(figures: Mapping[str, float]) -> None:
-    """Print what `measure` returned."""
-    ours = figures['ours_ms']
-    ratio = figures['blocks_ms'] / ours
+def print_table(results: Mapping[str, float]) -> None:
+    """Print the results of `measure`."""
+    ours = results['ours_ms']
+    ratio = results['blocks_ms'] / ours
     print(
         f'headless run of 3 s: {ours:.1f} ms; python-control of blocks '
-        f'{figures["blocks_ms"]:.1f} ms, {ratio:.1f} times as long (goal {GOAL:g}: '
+        f'{results["blocks_ms"]:.1f} ms, {ratio:.1f} times as long (goal {GOAL:g}: '
         f'{"met" if ratio >= GOAL else "MISSED"}); as one block by hand '
-        f'{figures["one_block_ms"]:.1f} ms, {figures["one_block_ms"] / ours:.1f} times'
+        f'{results["one_block_ms"]:.1f} ms, {results["one_block_ms"] / ours:.1f} times'
     )
 
 
@@ -69,7 +69,7 @@ def _ours(settings: RunSettings) -> tuple[float, Trajectory]:
 
 
 class _Loop:
-    """The loop in python-control."""
+    """Closed loop of PI as systems of python-control."""
 
     def __init__(self, settings: RunSettings, run: Trajectory) -> None:
         scenario, initial = settings.scenario, initial_state(settings)
@@ -90,7 +90,7 @@ class _Loop:
         self._times = np.arange(run.steps + 1) * PERIOD_S
 
     def response(self, loop: Any, run: Trajectory) -> float:
-        """Return in ms how long it takes; the slip must be that of our run."""
+        """Return the time of the simulation in ms; require the slip of our run."""
         started = time.thread_time()
         result = control.input_output_response(loop, self._times, self._inputs, self._start)
         taken = time.thread_time() - started

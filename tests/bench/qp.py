@@ -1,4 +1,4 @@
-"""Quadratic programs of slip control: both backends, bare OSQP and cvxpy, in one run."""
+"""Time of quadratic programs of slip control with both backends, bare OSQP and cvxpy."""
 
 import time
 from typing import Any
@@ -15,31 +15,32 @@ SIZES = {
     '4 moves, 8 hard and 22 soft rows': (4, 22, True),
     '50 moves, 100 hard and 50 soft rows': (50, 50, True),
 }
-"""Moves, predicted outputs, and whether these have soft rows."""
+"""Number of moves, number of predicted outputs, and whether these have soft rows, by label."""
 LARGEST = '50 moves, 100 hard and 50 soft rows'
 P99_GOAL_US = 1000.0
 _ROUNDS = 3
 _COMPARED = 10
-"""Every so many steps the solutions are compared with Clarabel's."""
+"""Number of steps from one comparison with Clarabel's solution to the next."""
 
 
 def measure() -> dict[str, Any]:
     """
     Return for each size and solver the times per solve, their ratios to ours, and the error.
 
-    The solvers go through the programs of a run in turn, several rounds, each program warm from
-    the one before. The error is the largest distance from Clarabel's solution over the largest
-    solution, both in the norm of the hessian. Without cvxpy there is none: `skipped` says why.
+    The solvers solve the programs of a run in turn, in several rounds; each program starts from
+    the solution of the one before. The error is the largest distance from Clarabel's solution
+    over the largest solution, both in the norm of the hessian. Without cvxpy there is no error,
+    and `skipped` is the reason.
     """
     return {label: _measure_size(SlipControl(*size)) for label, size in SIZES.items()}
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    p99_us = figures[LARGEST]['solvers'][DEFAULT_BACKEND]['p99_us']
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    p99_us = results[LARGEST]['solvers'][DEFAULT_BACKEND]['p99_us']
     verdict = 'met' if p99_us <= P99_GOAL_US else 'MISSED'
     print(f'QP of 50 steps with soft outputs, p99 at most {P99_GOAL_US:g} us: {verdict}')
-    for label, found in figures.items():
+    for label, found in results.items():
         print(f'QP, {label} (against {DEFAULT_BACKEND}):')
         for name, row in found['solvers'].items():
             error = f', error {row["error"]:.0e}' if 'error' in row else ''
@@ -91,7 +92,7 @@ def _run(control: SlipControl, solvers: dict[str, Solve], exact: Solve | None) -
 
 
 def compared(times_us: np.ndarray, ours_us: np.ndarray) -> dict[str, float]:
-    """Return a median and a 99th percentile in us, (2,), and their ratios to ours."""
+    """Return median and p99 in us and their ratios to ours, by key; both arguments are (2,)."""
     ratios = times_us / ours_us
     return {
         'median_us': float(times_us[0]),

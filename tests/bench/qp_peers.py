@@ -1,4 +1,4 @@
-"""Other ways to the same solutions: OSQP without our backend, and cvxpy with parameters."""
+"""Peers that solve the same programs: OSQP without our backend, and cvxpy with parameters."""
 
 from collections.abc import Callable
 from typing import Any
@@ -17,7 +17,7 @@ _EXACT = {'tol_gap_abs': 1e-11, 'tol_gap_rel': 1e-11, 'tol_feas': 1e-11}
 
 
 def bare_osqp(structure: QpStructure) -> Solve:
-    """Return OSQP with a slack per soft row and its defaults but for the accuracy."""
+    """Return OSQP with a slack for each soft row; all settings but the accuracy are defaults."""
     rows, size = structure.constraints.shape
     slacks = len(structure.soft_rows)
     weights = np.full(slacks, structure.soft_weight or 0.0)  # None without soft rows

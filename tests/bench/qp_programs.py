@@ -1,4 +1,4 @@
-"""The programs that predictive slip control of the thesis's plant meets along a run."""
+"""Quadratic programs of predictive slip control along a run of the thesis's plant."""
 
 from typing import NamedTuple
 
@@ -12,16 +12,16 @@ from ddct_plant.linear.lti import discretise_zoh
 
 STEPS = 300
 LIMIT = 20_000
-"""Iterations; none of the solvers needs as many."""
+"""Limit of iterations of the solvers, which none of them reaches."""
 _OUTPUT_WEIGHT, _MOVE_WEIGHT = 0.26, 0.39
-"""Of the thesis, per rpm and per N m."""
+"""Weights of the thesis: of the slip error per rpm, of a move of the torque per N m."""
 _SOFT_WEIGHT = 10.0
 _MOVE_N_M, _TORQUE_N_M, _BAND_RPM = 5.0, 60.0, 20.0
-"""Bounds either side of 0, and of the reference for the soft slip speed."""
+"""Bounds of a move and of the torque, either side of 0, and of the slip around its reference."""
 
 
 class Step(NamedTuple):
-    """What changes from program to program."""
+    """Vectors of one program, which change from step to step; the matrices stay."""
 
     f: np.ndarray
     lower: np.ndarray
@@ -30,7 +30,7 @@ class Step(NamedTuple):
 
 class SlipControl:
     """
-    Torque moves for the coming periods, bounded like the torque itself, against slip predicted.
+    Predictive control of the slip: bounded moves of a bounded torque against the predicted error.
 
     With `soft`, each predicted slip speed also has a soft row that keeps it near its reference.
     """
@@ -55,7 +55,7 @@ class SlipControl:
         )
 
     def steps(self) -> list[Step]:
-        """Return `STEPS` programs of a loop with jumps of the reference and a rolling load."""
+        """Return `STEPS` programs of a loop with steps of the reference and a sinusoidal load."""
         backend = make_backend(DEFAULT_BACKEND, self.structure, LIMIT)
         state, torque, steps = np.zeros(len(self._plant.a)), 0.0, []
         for k in range(STEPS):

@@ -1,4 +1,4 @@
-"""The measurements of one closed-loop run, and how long a controller takes to answer them."""
+"""Measurements of one closed-loop run, and the time of a controller's updates with them."""
 
 import time
 
@@ -6,12 +6,12 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.scenario.settings import RunSettings
 
-Heard = tuple[list[Measurement], list[Measurement]]
-"""Those while feedback was held off, and those that were answered."""
+Measurements = tuple[list[Measurement], list[Measurement]]
+"""Measurements of the steps with feedback held off, and of the steps with an update."""
 
 
-class _Listening(Controller):
-    """Passes everything on and keeps the measurements."""
+class _Recording(Controller):
+    """Controller that stores its measurements and passes each to another controller."""
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
@@ -32,16 +32,16 @@ class _Listening(Controller):
         return self._controller.update(measurement)
 
 
-def measurements_of(settings: RunSettings, controller: Controller) -> Heard:
-    """Return what the controller hears in a headless run."""
-    listening = _Listening(controller)
-    run_headless(settings, listening)
-    return listening.held, listening.updated
+def measurements_of(settings: RunSettings, controller: Controller) -> Measurements:
+    """Return the measurements that the controller receives in a headless run."""
+    recording = _Recording(controller)
+    run_headless(settings, recording)
+    return recording.held, recording.updated
 
 
-def times_of(controller: Controller, heard: Heard, rounds: int) -> list[float]:
+def times_of(controller: Controller, measurements: Measurements, rounds: int) -> list[float]:
     """Return the times of all updates in us, each round after a reset."""
-    held, updated = heard
+    held, updated = measurements
     times = []
     for _ in range(rounds):
         controller.reset()

@@ -1,11 +1,11 @@
 """
-`make bench`: how much slower the graph is than a bare rclpy chain of the same shape.
+`make bench`: time of the graph as a multiple of that of a bare rclpy chain of the same shape.
 
 Both are run in turn, so that a busy machine slows both; the ratio of the medians counts, absolute
 times do not. Also measured: the headless loop, with a clutch that sticks as well, beside
-python-control, and many runs at once; each controller's update, H-infinity synthesis, the
-quadratic programs of predictive control, a whole step of `mpc_preview`, the verdict,
-campaigns, and how soon a report is drawn.
+python-control, and batches of runs; each controller's update, H-infinity synthesis, the quadratic
+programs of predictive control, a whole step of `mpc_preview`, the verdict, campaigns, and the time
+until a report is drawn.
 """
 
 import argparse
@@ -52,12 +52,12 @@ from ddct_plant.scenario.settings import RunSettings
 PERIOD_US = 10_000.0
 WORST_RATIOS = {'processes': 1.5, 'single-process': 1.75}
 """
-What the graph's nodes may cost over a chain that does no work, by layout.
+Largest ratio of the time per step of the graph to that of the bare chain, by layout.
 
 In one process the chain itself is short, so that the MCAP library's writer weighs more.
 """
 BARE_S = 300.0
-"""How long a bare chain may take; it ends by itself when a message is lost."""
+"""Timeout of a bare chain, s; it ends by itself when a message is lost."""
 BARE = Path(__file__).with_name('bare_chain.py')
 
 
@@ -100,7 +100,7 @@ def main() -> int:
     page = measure_page()
     print_page(page)
     if options.json:
-        figures = {
+        stored = {
             **results,
             'headless_us': headless,
             'batch_us': batch,
@@ -114,7 +114,7 @@ def main() -> int:
             'campaign': campaign,
             'report_page': page,
         }
-        write_json(options.json, figures)
+        write_json(options.json, stored)
     return (
         0
         if all(results[layout]['ratio'] <= worst for layout, worst in WORST_RATIOS.items())
@@ -122,14 +122,14 @@ def main() -> int:
     )
 
 
-def _print_synthesis(figures: dict[str, Any]) -> None:
-    print(f'H-infinity synthesis: {figures["ours_s"]:.3f} s, gamma {figures["ours_gamma"]:.4f}')
-    if 'skipped' in figures:
-        print(f'  not compared: {figures["skipped"]}')
+def _print_synthesis(results: dict[str, Any]) -> None:
+    print(f'H-infinity synthesis: {results["ours_s"]:.3f} s, gamma {results["ours_gamma"]:.4f}')
+    if 'skipped' in results:
+        print(f'  not compared: {results["skipped"]}')
         return
     print(
-        f'  slycot: {figures["slycot_s"]:.3f} s, gamma {figures["slycot_gamma"]:.4f}; '
-        f'ours takes {figures["time_ratio"]:.2f} of its time'
+        f'  slycot: {results["slycot_s"]:.3f} s, gamma {results["slycot_gamma"]:.4f}; '
+        f'ours takes {results["time_ratio"]:.2f} of its time'
     )
 
 
@@ -176,12 +176,12 @@ def _bare_us(layout: str, steps: int) -> float:
             for process in processes:
                 process.wait(timeout=20)
     if processes[-1].returncode:
-        sys.exit('run.py: the bare chain failed; its reason stands above')
+        sys.exit('run.py: the bare chain failed; its reason is above')
     return float(output)
 
 
 def _headless_us(settings: RunSettings, controller: str) -> tuple[float, float]:
-    """Return the best of five times per step and the median update, both in us."""
+    """Return the shortest of five times per step and the median time of an update, in us."""
     steps, updates = [], []
     for _ in range(5):
         timing = RunTiming()

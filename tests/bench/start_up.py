@@ -1,5 +1,5 @@
 """
-What a run through the graph costs beside its ticks: until the first one, and all in all.
+Time of a run through the graph beside its ticks: until the first tick, and in total.
 
 `python start_up.py [--base FOLDER]` measures this workspace, and in turn with it another one,
 built and of any version: rounds alternate, so that a busy machine slows both. A round is a process
@@ -27,9 +27,14 @@ from typing import Any
 
 RUNS = 3
 GOAL = 1.0 / 3.0
-"""Of what the base takes."""
-FIGURES = ('first_tick_s', 'overhead_s', 'processor_s')
-"""From the decision to the first tick; wall time beside the ticks; processor time of all."""
+"""Goal of the ratio to the time of the base, at most."""
+QUANTITIES = ('first_tick_s', 'overhead_s', 'processor_s')
+"""
+Keys of the results, in s.
+
+The time from the call to the first tick, the wall time less that of the ticks, and the processor
+time of all processes.
+"""
 POLL_S = 0.002
 TIMING_FILE = 'timing.json'
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,7 +42,7 @@ Round = list[dict[str, float]]
 
 
 def measure(base: Path | None = None, rounds: int = 5) -> dict[str, list[Round]]:
-    """Return the rounds of this workspace, and of the one in the folder `base`."""
+    """Return the measured rounds of this workspace, and of the one in the folder `base`."""
     folders = {'ours': ROOT} | ({'base': base} if base else {})
     found: dict[str, list[Round]] = {name: [] for name in folders}
     for _ in range(rounds):
@@ -49,9 +54,11 @@ def measure(base: Path | None = None, rounds: int = 5) -> dict[str, list[Round]]
 def print_table(found: dict[str, list[Round]]) -> None:
     """Print medians, and the ratios of the rounds where there is a base."""
     for kind, runs in (('one run', slice(0, 1)), ('each further run', slice(1, None))):
-        for figure in FIGURES:
-            ours, base = (_values(found.get(name, []), figure, runs) for name in ('ours', 'base'))
-            line = f'{kind}, {figure}: {statistics.median(ours):.2f}'
+        for quantity in QUANTITIES:
+            ours, base = (
+                _values(found.get(name, []), quantity, runs) for name in ('ours', 'base')
+            )
+            line = f'{kind}, {quantity}: {statistics.median(ours):.2f}'
             if base:
                 ratios = sorted(one / other for one, other in zip(ours, base, strict=True))
                 line += (
@@ -67,7 +74,7 @@ def _values(rounds: list[Round], figure: str, runs: slice) -> list[float]:
 
 
 def _round(workspace: Path) -> Round:
-    """Measure in the Python of a workspace, with what its set-up script gives."""
+    """Measure one round with the Python and the set-up script of a workspace."""
     command = f'. install/setup.sh; exec .venv/bin/python -P {Path(__file__)} --round'
     inherited = {key: os.environ[key] for key in ('HOME', 'PATH') if key in os.environ}
     done = subprocess.run(
@@ -111,24 +118,24 @@ def _started_ahead() -> AbstractContextManager[None]:
 
 
 def _run(execute: Callable[[Path], None], name: str) -> dict[str, float]:
-    """Measure one run into a new folder."""
+    """Carry out one run in a new folder and return its results in s, by `QUANTITIES`."""
     before, begun = _processor_s(), time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        looking = FirstTick(Path(folder) / f'{name}_0.mcap')
-        looking.start()
+        first_tick = FirstTick(Path(folder) / f'{name}_0.mcap')
+        first_tick.start()
         execute(Path(folder))
         ended, used = time.monotonic(), _processor_s() - before
-        looking.join()
+        first_tick.join()
         timing = json.loads((Path(folder) / TIMING_FILE).read_text(encoding='utf-8'))
     return {
-        'first_tick_s': looking.at - begun,
+        'first_tick_s': first_tick.at - begun,
         'overhead_s': ended - begun - timing['wall_time_s'],
         'processor_s': used,
     }
 
 
 class FirstTick(threading.Thread):
-    """Waits for the bag, which the recorder opens at the first tick."""
+    """Thread that waits for the bag, which the recorder opens at the first tick."""
 
     def __init__(self, bag: Path) -> None:
         super().__init__(daemon=True)
@@ -136,7 +143,7 @@ class FirstTick(threading.Thread):
         self.at = 0.0
 
     def run(self) -> None:
-        """Note when it is there."""
+        """Store the time at which the bag exists."""
         while not self._bag.exists():
             time.sleep(POLL_S)
         self.at = time.monotonic()
@@ -149,7 +156,7 @@ def _processor_s() -> float:
 
 
 def main() -> int:
-    """Measure and print."""
+    """Measure, print, and write the JSON where it is requested."""
     parser = argparse.ArgumentParser(description='Measure what a run costs beside its ticks.')
     parser.add_argument('--base', type=Path, metavar='FOLDER', help='a built workspace')
     parser.add_argument('--rounds', type=int, default=5)

@@ -1,7 +1,7 @@
 """
-What a clutch that sticks costs a headless run, set-up excluded, over the linear clutch.
+Time of a headless run with the stick-slip clutch over that with the linear one, without set-up.
 
-The linear clutch refuses the other packaged scenarios, so their steps are held against those of
+The linear clutch refuses the other packaged scenarios, so their steps are compared with those of
 `thesis` with the linear clutch and the same controller.
 """
 
@@ -19,16 +19,16 @@ _ROUNDS = 9
 
 
 def measure() -> dict[str, Any]:
-    """Return the ratio of each controller on `thesis`, and of each packaged scenario with PI."""
+    """Return the ratios of times: by controller on `thesis`, and by packaged scenario with PI."""
     thesis = {name: _ratio('thesis', name) for name in controller_names()}
     others = {name: _ratio(name, 'pi') for name in scenario_names() if name != 'thesis'}
     return {'controllers': thesis, 'scenarios': others}
 
 
-def print_table(figures: dict[str, Any]) -> None:
-    """Print what `measure` returned."""
-    ratios = sorted(figures['controllers'].values())
-    runs = {**figures['controllers'], **figures['scenarios']}
+def print_table(results: dict[str, Any]) -> None:
+    """Print the results of `measure`."""
+    ratios = sorted(results['controllers'].values())
+    runs = {**results['controllers'], **results['scenarios']}
     worst = max(runs, key=lambda name: runs[name])
     median = statistics.median(ratios)
     met = median <= MEDIAN_GOAL and runs[worst] <= WORST_GOAL
@@ -40,7 +40,7 @@ def print_table(figures: dict[str, Any]) -> None:
 
 
 def _ratio(scenario: str, controller: str) -> float:
-    """Return the median ratio of the time a step takes to that of linear `thesis`, in turn."""
+    """Return the median ratio of the times per step, measured in turn, to linear `thesis`."""
     runs = [
         RunSettings(load_scenario('thesis'), clutch='linear'),
         RunSettings(load_scenario(scenario), clutch='stick_slip'),
@@ -53,7 +53,7 @@ def _ratio(scenario: str, controller: str) -> float:
 
 
 def _step_s(settings: RunSettings, controller: str) -> float:
-    """Return the time of this thread per step: others on the machine must not count."""
+    """Return the processor time per step in s of this thread alone, as others must not count."""
     loop = ClosedLoop(settings, make_controller(controller, settings))
     started = time.thread_time()
     trajectory = run_loop(loop, settings.scenario.steps)

@@ -1,4 +1,4 @@
-"""H-infinity synthesis for the printed weights: ours against SLICOT's, by slycot."""
+"""Time of the H-infinity synthesis for the printed weights: ours, and SLICOT's through slycot."""
 
 import math
 import time
@@ -16,9 +16,9 @@ from ddct_plant.linear.lti import StateSpace
 
 _ROUNDS = 5
 _TOLERANCE = 1e-4
-"""Relative width of the last interval, as in ours."""
+"""Relative width of the last interval of the bisection, as in our synthesis."""
 _SUBOPTIMAL = 4
-"""Job of sb10ad that makes one controller for a given level."""
+"""Value of the argument `job` of sb10ad: one controller for a given level."""
 _FACTOR = 4.0
 
 
@@ -27,7 +27,7 @@ def measure() -> dict[str, Any]:
     Return best times in s and norms of both, and the ratio of the times.
 
     Both bisect on the level and verify every controller by the norm of its closed loop. Without
-    slycot only ours is measured, and `skipped` says why.
+    slycot only ours is measured, and `skipped` is the reason.
     """
     plant = generalised_plant(make_weights('thesis'))
     ours_s, found = _best_of(lambda: synthesise(plant, 1.0).gamma)

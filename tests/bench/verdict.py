@@ -1,4 +1,4 @@
-"""How long metrics and verdict of one recorded run take."""
+"""Time of metrics and verdict of one recorded run."""
 
 import statistics
 import tempfile
@@ -17,7 +17,7 @@ GOAL_MS = 10.0
 
 
 def measure(repeats: int = 30) -> float:
-    """Return the median in ms over runs of `thesis`, read anew each time, so nothing is kept."""
+    """Return the median time in ms over recordings of `thesis`; each is read anew, uncached."""
     with tempfile.TemporaryDirectory() as folder:
         execute(RunPlan(RunSettings(load_scenario('thesis')), 'ls8', 'headless'), Path(folder))
         recordings = [read_bag(Path(folder)) for _ in range(repeats)]

@@ -78,10 +78,11 @@ def _solved(seed: int, corners_s: tuple[float, float] = (0.0, 0.0)) -> tuple[Any
         rate = shaft / p['total_ratio'] - wheel
         half_shaft = p['halfshaft_stiffness'] * wind_up + p['halfshaft_damping'] * rate
         air = 0.5 * 1.2 * 2.1 * 0.32 * (wheel * RADIUS_M) ** 2 * RADIUS_M
-        asked = float(clutch_torque(t))
+        friction_torque = float(clutch_torque(t))
         return [
-            (float(engine_torque(t)) - asked - p['engine_damping'] * engine) / p['engine_inertia'],
-            (asked - half_shaft / p['total_ratio'] - p['shaft_damping'] * shaft)
+            (float(engine_torque(t)) - friction_torque - p['engine_damping'] * engine)
+            / p['engine_inertia'],
+            (friction_torque - half_shaft / p['total_ratio'] - p['shaft_damping'] * shaft)
             / p['shaft_inertia'],
             (half_shaft - ROLLING_N_M - air) / p['vehicle_inertia'],
             rate,
