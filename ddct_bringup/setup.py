@@ -20,8 +20,11 @@ PROGRAMS = [
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
-"""Whether pip asks, which puts scripts into bin/: `ddct` alone. colcon puts them into
-lib/<package>/, where `ros2 run` looks, and gets bin/ddct as a file."""
+"""
+Whether pip builds a wheel. A wheel puts scripts into bin/, so that `ddct` is its only one.
+
+colcon puts all scripts into lib/<package>/, where `ros2 run` finds them, and bin/ddct is a file.
+"""
 
 setup(
     name=PACKAGE,

@@ -16,7 +16,7 @@ PROGRAMS = [
     'load = ddct_plant.nodes.load_node:main',
 ]
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
-"""Whether pip asks, which would put scripts into bin/; `ros2 run` looks where colcon puts them."""
+"""Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""
 
 setup(
     name=PACKAGE,

@@ -67,7 +67,7 @@ class ConstantRequest(Controller):
 
 
 def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_demand() -> None:
-    """So a scale of 9.55 is that of a unit, and not an engine of 9.55 times the torque."""
+    """A scale of 9.55, that of a unit, does not multiply the driver's demand."""
     controller: Any = ConstantRequest()
     log = closed_trial(SETTINGS, controller, scale=3.0)
     start = SETTINGS.scenario.control_start_step

@@ -1,4 +1,4 @@
-"""Which runs can be computed in a batch, and the one-line reason for others."""
+"""Runs that can be computed in a batch, and the one-line reason for the others."""
 
 import dataclasses
 

@@ -1,4 +1,4 @@
-"""Workers of a campaign without processes: they compute where they are, and break where told."""
+"""Workers of a campaign in the process of the test, which fail at chosen shards."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
@@ -10,7 +10,7 @@ from ddct_bringup.campaign import conduct
 
 
 class InThisProcess(Executor):
-    """Computes at once; for some shards, by their first index, it raises."""
+    """Executor that computes at once; `breaks` returns the error of a shard by its first index."""
 
     def __init__(self, breaks: Callable[[int], Exception | None]) -> None:
         self._breaks = breaks

@@ -18,7 +18,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 UNBOUND = ('friction.most_n_m=100000.0',)
-"""The charts are of a clutch that carries whatever is asked of it."""
+"""Change of the scenario: a clutch without a limit of its torque, as in the labelled charts."""
 FILE = Path(__file__).parents[1] / 'verdict' / 'states_by_eye.yaml'
 
 

@@ -1,4 +1,4 @@
-"""Read a printed table of runs as a person does: a value stands under its heading."""
+"""Read values from a printed table of runs by their headings."""
 
 import re
 

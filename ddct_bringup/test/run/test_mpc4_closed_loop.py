@@ -131,7 +131,7 @@ NO_DELAY = 'no delay in its model'
 
 
 def test_without_the_delay_in_its_model_the_level_runs_away_with_a_new_clutch():
-    """So the plant of Section 3.2.1.3, P_2 G_a without a delay, is not MPC4's model."""
+    """Hence the model of MPC4 is not P_2 G_a without a delay, the plant of Section 3.2.1.3."""
     assert READINGS[NO_DELAY].growth(1.0) > 1.05
     assert abs(rpm_from_rad_s(READINGS[NO_DELAY].run().slip_speed[-1])) > 1000.0
 

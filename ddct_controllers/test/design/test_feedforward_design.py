@@ -145,7 +145,7 @@ def test_a_run_that_starts_with_torque_is_not_taken_for_a_ramp():
 
 def test_a_run_under_constant_torque_starts_as_if_the_torque_had_never_risen():
     """
-    Its first request is the direct gain of the level alone, without that of a rise.
+    The first request is the direct gain of the level alone, without that of a rise.
 
     A filter from zero would take the first torque for a step of 250 N m within a period and
     request more; the settled request is the static one in both cases.

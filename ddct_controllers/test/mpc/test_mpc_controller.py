@@ -1,4 +1,4 @@
-"""A predictive controller keeps its limits, says what it did, and never goes on in silence."""
+"""A predictive controller keeps its limits, and reports and counts every failed solution."""
 
 import math
 from dataclasses import replace
@@ -63,7 +63,7 @@ def test_table_4_1_is_as_printed():
 
 
 def test_without_active_limits_it_is_the_least_squares_solution():
-    """The same first move as the normal equations of the simulated step responses give."""
+    """The first move is that of the least squares over the simulated step responses."""
     mpc = controller(replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),)))
     first = measurement(60)
     state = make_observer(RUN, MODEL).correct((210.0, 150.0, 17.0), 60.0)
@@ -85,7 +85,7 @@ def test_without_active_limits_it_is_the_least_squares_solution():
 
 
 def test_final_and_torque_weights_are_in_the_least_squares():
-    """P on the error at the end, and R on the controller's own torque, C_fOL less."""
+    """P weights the error at the end of the horizon, R the request less the open-loop C_fOL."""
     row = replace(PREVIEW, final_weight=2.0, move_weight=0.1, torque_weight=0.3)
     settings = row.settings()
     free = replace(settings.inputs[0], lowest=-math.inf)
@@ -176,8 +176,8 @@ def test_limits_that_agree_are_the_programs_own():
 
 
 @pytest.mark.parametrize('held', [True, False])
-def test_the_rate_counts_from_what_the_actuator_was_given(held):
-    """It is given nothing below 0, whatever the open loop asks."""
+def test_the_rate_counts_from_the_request_that_the_actuator_received(held):
+    """The actuator cuts the request off at 0, however negative the open-loop torque is."""
     mpc = controller(replace(MPC3, inputs=(InputTerms(0.39, rate_n_m_s=300.0),)))
     if held:
         mpc.hold(measurement(59, open_loop=-80.0))
@@ -186,7 +186,7 @@ def test_the_rate_counts_from_what_the_actuator_was_given(held):
     assert dict(answer.status)['qp_status'] == 'solved'
 
 
-def test_status_is_deterministic_and_says_what_the_solver_did():
+def test_status_is_deterministic_and_has_the_result_of_the_solver():
     first, again = answers(controller()), answers(controller())
     assert first == again
     status = dict(first[-1].status)
@@ -200,7 +200,7 @@ def test_a_solver_that_gives_up_is_counted_and_the_last_plan_goes_on():
     mpc = controller(replace(MPC3, inputs=(limits,)))
     requests = [250.0 + each.clutch_torque for each in answers(mpc, steps=2)]
     planned = mpc._plan.copy()
-    mpc._solver = _Silent()
+    mpc._solver = _AlwaysFails()
     answer = mpc.update(measurement(62, slip=58.0))
     status = dict(answer.status)
     assert (status['qp_status'], status['fallbacks']) == ('iteration limit', '1')
@@ -215,7 +215,7 @@ def test_a_solver_that_gives_up_is_counted_and_the_last_plan_goes_on():
 def test_a_plan_that_is_followed_keeps_the_rate_before_the_level():
     limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
     mpc = controller(replace(MPC3, inputs=(limits,)))
-    mpc._solver = _Silent()
+    mpc._solver = _AlwaysFails()
     requests = [250.0 + each.clutch_torque for each in answers(mpc)]
     expected = [247.0, 244.0, 241.0, 238.0, 235.0, 232.0, 230.0, 230.0]
     assert requests == pytest.approx(expected)
@@ -225,12 +225,12 @@ def test_a_reset_controller_has_no_plan_to_follow():
     mpc = controller()
     answers(mpc)
     mpc.reset()
-    mpc._solver = _Silent()
+    mpc._solver = _AlwaysFails()
     assert mpc.update(measurement(60)).clutch_torque == 0.0
 
 
-class _Silent:
-    """A solver that never gets there."""
+class _AlwaysFails:
+    """Solver that ends every call at its iteration limit."""
 
     def solve(self, f, lower, upper):
         from ddct_controllers.mpc.qp.problem import QpSolution
@@ -247,43 +247,43 @@ def test_plan_is_followed_move_by_move_and_then_held():
     before = answers(mpc, steps=2)[-1].clutch_torque
     planned = mpc._plan.copy()
     assert np.abs(np.diff(planned)).min() > 0.1, 'no two moves are the same'
-    mpc._solver = _Silent()
+    mpc._solver = _AlwaysFails()
     given = [mpc.update(measurement(62 + i, slip=58.0)).clutch_torque for i in range(6)]
     moves = [*planned[1:], 0.0, 0.0, 0.0]
     assert np.diff([before, *given]) == pytest.approx(moves, abs=1e-9)
 
 
-class _Listening(Observer):
-    """Keeps what it is told of the inputs."""
+class _RecordingObserver(Observer):
+    """Observer that stores the inputs of its predictions."""
 
     def __init__(self):
         start = AtRest(RUN.scenario.driveline.halfshaft_stiffness, initial_request=0.0)
         super().__init__(MODEL, kalman_gain(MODEL, NoiseLevels()), start)
-        self.heard = []
+        self.inputs = []
 
     def predict(self, inputs):
-        self.heard.append(inputs)
+        self.inputs.append(inputs)
         super().predict(inputs)
 
 
 @pytest.mark.parametrize('held', [True, False])
-def test_the_observer_is_told_the_request_as_the_actuator_cuts_it_off(held):
-    """Below 0 the actuator gives nothing, whether feedback is on or held off."""
+def test_the_observer_predicts_with_the_request_as_the_actuator_cuts_it_off(held):
+    """A request below 0 counts as 0 for the observer, with feedback on or held off."""
     free = replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),))
-    observer = _Listening()
+    observer = _RecordingObserver()
     mpc = MpcController(MODEL, observer, free)
     now = measurement(60, open_loop=-80.0, reference=[400.0] * 23)
     if held:
         mpc.hold(now)
     else:
         assert now.open_loop_torque + mpc.update(now).clutch_torque < -1.0
-    assert observer.heard == [(0.0, 300.0, 60.0)]
+    assert observer.inputs == [(0.0, 300.0, 60.0)]
     mpc.hold(measurement(61, open_loop=20.0))
-    assert observer.heard[-1] == (20.0, 300.0, 60.0)
+    assert observer.inputs[-1] == (20.0, 300.0, 60.0)
 
 
 def test_a_level_that_gives_way_leaves_room_for_rounding():
-    """More than the rounding of a torque, less than anybody could measure."""
+    """The room is larger than the rounding of a torque and too small to measure."""
     limits = InputTerms(0.39, lowest=100.0, highest=230.0, rate_n_m_s=300.0)
     mpc = controller(replace(MPC3, inputs=(limits,)))
     reach = 3.0 * np.arange(1, 5)
@@ -299,7 +299,7 @@ def test_a_level_that_gives_way_leaves_room_for_rounding():
 
 
 def test_soft_limits_are_divided_as_the_outputs_are():
-    """By K_usura; the hard ones are those of the request, which is not divided."""
+    """K_usura divides the soft limits; the hard ones limit the request and stay as they are."""
     mpc = PREDICTIVE['mpc3'](ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
     lower, upper = mpc.clutch.bounds(250.0, divisor=0.8)
     soft = mpc.program.structure.soft_rows
@@ -310,7 +310,7 @@ def test_soft_limits_are_divided_as_the_outputs_are():
 
 
 def test_every_request_that_the_rate_can_just_bring_within_its_level_is_found():
-    """From one step above the limit on, where rounding decides whether the bounds cross."""
+    """From one step of the rate above the limit on, rounding decides whether the bounds cross."""
     limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
     for last in 233.0 + np.concatenate([[0.0], np.random.default_rng(6).uniform(0.0, 90.0, 60)]):
         mpc = controller(replace(MPC3, inputs=(limits,)))
@@ -393,7 +393,7 @@ def test_options_reach_the_program():
 
 
 def test_the_lowest_slip_is_soft_and_holds_where_it_can():
-    """Slip of 60 rad/s: rows at all 22 periods, broken by the first and so far as must be."""
+    """At a slip of 60 rad/s all 22 periods have a soft row, and the program is solved."""
     free, limited = (
         PREDICTIVE['mpc3'](ControllerContext(RUN, options))
         for options in ({}, {'lowest_slip_rpm': 600.0})
@@ -413,7 +413,7 @@ def test_a_second_input_is_refused():
 
 
 class NoSolution:
-    """A solver that gives up at chosen calls."""
+    """Solver that reports its iteration limit at chosen calls."""
 
     def __init__(self, solver, at):
         self._solver, self._at, self._calls = solver, at, 0

@@ -9,7 +9,7 @@ from ddct_plant.base.timebase import LONGEST_S
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """Shapes of a slip reference that runs to zero from control start, as a function of time."""
 ENGINE_SPEED_TARGET = 'engine_speed_target'
-"""Shape of a slip reference that follows from a wanted engine speed."""
+"""Shape of a slip reference that follows from a target of the engine speed."""
 PROFILE = 'profile'
 """Shape of a slip reference that is a profile over scenario time."""
 

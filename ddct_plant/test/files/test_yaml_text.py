@@ -13,13 +13,13 @@ from ddct_plant.files import yaml_text
 from ddct_plant.files.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml, parse_yaml_with_lines
 
 MOST_VALUES = 1000
-"""Less than the limit itself, for which the parser in Python takes five seconds."""
+"""Limit of values in the tests, below the real one, for which the Python parser takes 5 s."""
 BOMB = 'a: &a [x]\n' + ''.join(
     f'{new}: &{new} [{", ".join([f"*{old}"] * 10)}]\n'
     for old, new in zip('abcdefgh', 'bcdefghi', strict=True)
 )
 AT_ONCE_S = 10.0
-"""Of processor time, slow machines included; what is refused takes a thousandth of it."""
+"""Bound of the processor time in s on slow machines; a refusal takes a thousandth of it."""
 
 
 @pytest.fixture(params=['C', 'Python'])

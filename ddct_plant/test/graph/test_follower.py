@@ -51,7 +51,7 @@ def test_the_same_tick_again_is_answered_again_and_not_computed_again(node):
 
 
 def test_another_tick_of_the_same_stamp_is_a_second_publisher(node):
-    """What is compared is the tick, whichever value the other input had."""
+    """The messages of the tick alone are compared, whatever the value of the other input is."""
     with pytest.raises(DdctError, match=f'{TRIGGER} carries two different messages .* /two: stop'):
         node._receive(TRIGGER, stamp_of_step(0), 4.0)
     assert node.published == 1

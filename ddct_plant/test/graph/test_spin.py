@@ -1,4 +1,4 @@
-"""What a spinning node changes for the whole process is as before when it ends."""
+"""A spinning node restores the settings of the garbage collector when it ends."""
 
 import gc
 from typing import Any
@@ -13,7 +13,7 @@ from ddct_plant.graph.spin import spin_until  # noqa: E402
 
 
 class FakeExecutor:
-    """Notes what the garbage collector is set to while it spins, and ends the spinning."""
+    """Executor that stores the garbage collector's settings during a spin, and ends the spin."""
 
     def __init__(self, fails=False):
         self.fails = fails

@@ -58,7 +58,7 @@ def test_idle_control_leaves_an_engine_above_idle_to_the_demand():
 
 
 def test_idle_control_does_not_wind_up_while_it_is_saturated():
-    """After a long overload it asks for no more than its most, and lets go within a second."""
+    """The torque is at most `idle_most_n_m` in a long overload, and zero a second after it."""
     engine = LimitedEngine(LIMITS)
     for _ in range(10_000):
         assert engine.deliver(0.0, 0.7 * IDLE) <= LIMITS.idle_most_n_m

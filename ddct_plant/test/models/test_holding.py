@@ -1,4 +1,4 @@
-"""What holds the wheel, and what is left of the load, are together the road load."""
+"""Holding torque and the torque of air and slope add up to the road load."""
 
 import math
 

@@ -97,7 +97,7 @@ def test_the_clutch_locks_once_and_carries_what_keeps_the_plates_together():
 @pytest.mark.parametrize('engine', [168.0, 152.0])
 @pytest.mark.parametrize(('static', 'kind'), [(180.0, 'lock'), (150.0, 'reverse')])
 def test_the_event_at_slip_zero_has_the_slip_acceleration_just_before_it(engine, static, kind):
-    """What the shaft takes at zero, some 168 N m, is above the kinetic capacity of 150 N m."""
+    """The shaft torque at slip zero, about 168 N m, exceeds the kinetic capacity of 150 N m."""
     start = initial(engine, 160.0, twist=0.24 if engine < 160.0 else -0.24)
     torque = 60.0 if engine < 160.0 else -60.0
     driveline, (a, b) = make(start), states_and_torques(PARAMETERS)

@@ -1,4 +1,4 @@
-"""How programs end: exit codes, and one line for a user's mistake."""
+"""Exit codes of programs, and the one-line error message for a user's mistake."""
 
 import os
 import subprocess

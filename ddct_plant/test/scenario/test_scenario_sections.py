@@ -20,7 +20,7 @@ engine_limits: {stall_rad_s: 60.0}
 closing: {margin: 1.3}
 """
 DIGEST_OF_THESIS = '91dd4f58e1510697'
-"""Of the values that the file had before there were sections: kept predictions hold it."""
+"""Digest of `thesis` from before scenarios had sections; the kept predictions contain it."""
 
 
 @pytest.fixture

@@ -93,7 +93,7 @@ def by_lsim(poles: np.ndarray) -> np.ndarray:
 
 
 def test_rounding_of_the_printed_coefficients_costs_0_23_percent_of_the_peak(detailed):
-    """As scipy's simulation of the printed polynomials also has it."""
+    """A simulation of the printed polynomials by scipy has the same cost."""
     simulated = by_lsim(np.polymul([1.0, 0.006733], [1.0, 121.4, 7696.0]))
     cost = np.abs(simulated - detailed).max() / np.abs(detailed).max()
     assert cost == pytest.approx(0.0023, abs=5e-5)

@@ -12,7 +12,7 @@ ENGINE, LOAD, CLUTCH = TORQUES
 RECORDER = 'recorder/ack'
 HOLDING = 'load/holding_torque'
 STICK_SLIP = (*TORQUES, HOLDING)
-"""Of a run whose clutch sticks: it has two capacities, and the wheels are held."""
+"""Topics of a run with the stick-slip clutch; the holding torque of the wheels is added."""
 POINTS = [float(i) for i in range(11)]
 
 

@@ -25,7 +25,7 @@ def scenario(name: str) -> Scenario:
 @pytest.mark.slow
 @pytest.mark.parametrize('name', AGAIN)
 def test_kept_values_are_those_of_the_controllers_as_they_are(name):
-    """To update after a change: calibration --predict, see docs/thesis/predictions.md."""
+    """`calibration --predict` updates the kept values, see docs/thesis/predictions.md."""
     computed = predicted_values(scenario(name))
     kept = {
         key: one.frozen if name == 'thesis' else one.members[name]

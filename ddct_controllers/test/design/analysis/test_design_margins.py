@@ -73,7 +73,7 @@ def test_peaks_and_bandwidth_of_a_second_order_loop_in_closed_form():
 
 @pytest.mark.parametrize('name', ['ls3', 'ls8', 'hinf2'])
 def test_they_are_those_of_python_control(name):
-    """Its margins interpolate between 3000 points and its disk margin takes the least of them."""
+    """python-control interpolates between 3000 points; its disk margin is the least of theirs."""
     for loop in (continuous_loop(PRINTED_CONTROLLERS[name]).to_state_space(), sampled(name)):
         found = loop_margins(loop)
         last = math.pi / loop.period_s if loop.period_s else 1e3

@@ -32,7 +32,7 @@ def test_the_thesis_controller_is_cleaned_to_hinf1():
 
 
 def test_the_printed_gain_of_hinf1_is_four_times_what_cleaning_leaves():
-    """Its factor 4.0 follows from no rule: an erratum of the gain, within 0.1 %."""
+    """No rule gives the factor of 4.0, within 0.1 %: the printed gain is an erratum."""
     cleaned, _ = clean(RAW, 0.0095)
     assert H_INFINITY_CONTROLLERS['hinf1'].gain / cleaned.gain == pytest.approx(4.0, rel=1e-3)
 

@@ -48,7 +48,7 @@ def test_the_thesis_translations_come_out(computed, printed, tolerance):
 
 @pytest.mark.parametrize('damping', [0.2, 0.5305, 0.63, 0.69])
 def test_the_formulas_are_those_of_the_prototype(damping):
-    """Its margins and its step response, both computed without them."""
+    """Margins and step response of the prototype are computed here without the formulas."""
     loop = prototype(damping)
     margins = loop_margins(loop)
     time, output = step_response(loop, 40.0)

@@ -197,7 +197,7 @@ def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
 
 @pytest.mark.parametrize('periods', [3, 12, 30])
 def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
-    """Its deviation is that of the same Gaussian, over 30 periods of a rising torque."""
+    """Gain and deviation are those of the Gaussian given all measurements, for a rising torque."""
     rng, observer, wear = np.random.default_rng(8), make_observer(), WearNoise()
     requests, engine = 4.0 * np.arange(periods), rng.normal(120.0, 5.0, periods)
     loads = rng.normal(LOAD_N_M, 10.0, periods)

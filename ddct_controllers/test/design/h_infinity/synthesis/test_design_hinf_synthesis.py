@@ -119,7 +119,7 @@ def test_the_closed_loop_has_the_level_that_the_riccati_equations_promise():
 
 
 def test_below_the_optimum_the_riccati_equations_have_solutions_and_the_loop_is_unstable():
-    """So a controller may only be accepted by its closed loop."""
+    """Hence a controller is accepted only after its closed loop has been checked."""
     problem = balanced(generalised_plant(PRINTED))
     controller = central_controller(problem, 1.08, *stabilising_solutions(problem, 1.08))
     assert verified_norm(problem, controller) == math.inf
