@@ -40,10 +40,10 @@ class TorqueProfile(Profile, prefix='engine.'):
 @dataclass(frozen=True)
 class EngineAuthority(OptionGroup, prefix='engine_authority.'):
     """
-    How far and how fast a controller may move the engine away from the driver's demand.
+    Limits of size and rate of a controller's deviation from the driver's torque demand.
 
-    It limits the deviation from the demand, so an engine without requests delivers the demand. By
-    default the engine follows any request at once, as the thesis assumes (Section 4.3).
+    Without requests there is no deviation, and the engine delivers the demand. By default it
+    follows any request at once, as the thesis assumes (Section 4.3).
     """
 
     deviation_n_m: float = option(

@@ -42,7 +42,7 @@ class QpStructure:
     constraints: np.ndarray
     """Constraint rows G, (m, n); m may be 0."""
     soft: np.ndarray | None = None
-    """Which rows are soft, (m,) bool; None makes every row hard."""
+    """Mask of the soft rows, (m,) bool; None makes every row hard."""
     soft_weight: float | None = None
     """Weight w of the squared slacks, above 0; needed when a row is soft."""
 
