@@ -11,7 +11,7 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs import bringup, compare, report, score
-from ddct_bringup.run.output_folder import SUFFIX, locked_folders
+from ddct_bringup.run.output_folder import MARKER, SUFFIX, locked_folders
 from ddct_plant.base.errors import DdctError
 
 SHORT = ['--headless', '--duration', '0.7']
@@ -36,8 +36,11 @@ def test_a_second_compare_is_refused_while_the_first_one_lives(
 ) -> None:
     again = ['--controllers', 'pi', '--headless', '--overwrite', '--out', str(compared)]
     first = programs.start_module('ddct_bringup.programs.compare', *again, '--duration', '3600')
-    under_way = compared.with_name('runs.partial') / 'pi'
-    wait_until(under_way.exists, 'a compare under way', START_S)
+    marker = compared.with_name('runs.partial') / 'pi' / MARKER
+    # From its marker on, which is made empty, the run writes nothing until it ends.
+    wait_until(
+        lambda: marker.exists() and marker.read_bytes() != b'', 'a compare under way', START_S
+    )
     before = _files(compared.parent)
     assert compare.main([*again, *SHORT, '--wear-gain', '0.7']) == 1
     words = ('ddct compare', f'{compared}: process {first.process.pid} is writing there')
