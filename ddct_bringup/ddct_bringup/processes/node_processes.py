@@ -16,6 +16,11 @@ STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.
 POLL_S = 0.01
 CHECK_PERIOD_S = 0.5
 """Period of the checks of the nodes' pulse and shared memory, s."""
+START_CHECK_PERIOD_S, STARTING_S = 0.05, 3.0
+"""
+Shorter period, s, for so long after the start: nodes make their shared memory then, and what was
+not found before a node is killed is not removed.
+"""
 
 
 class NodeProcesses:
@@ -76,7 +81,7 @@ class NodeProcesses:
 
         Raise DdctError when any node fails or hangs.
         """
-        checked_at = time.monotonic()
+        started_at = checked_at = time.monotonic()
         while True:
             ended = [node for node in self._nodes if not node.running]
             if any(node.name != name or node.code != 0 for node in ended):
@@ -88,7 +93,8 @@ class NodeProcesses:
             if self._stopped():
                 raise KeyboardInterrupt
             now = time.monotonic()
-            if now - checked_at >= CHECK_PERIOD_S:
+            starting = now - started_at < STARTING_S
+            if now - checked_at >= (START_CHECK_PERIOD_S if starting else CHECK_PERIOD_S):
                 self._check(now - checked_at)
                 checked_at = now
             time.sleep(POLL_S)
