@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.logs import identify
 from support.other_car import COLUMNS, TRUE, drive, write_csv
 from support.runs import expected, plan, record
 
@@ -13,18 +14,6 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.identify import main
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / 'map.yaml').write_text(COLUMNS)
-    write_csv(tmp_path / 'drive.csv', 3, drive(1))
-    return tmp_path
-
-
-def identify(folder: Path, *options: str) -> int:
-    log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
-    return main([*log, *options])
 
 
 def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(

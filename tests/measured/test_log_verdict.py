@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.logs import drag
-from support.other_car import COLUMNS, TRUE, drive, late_log, write_csv
+from support.logs import drag, identify
+from support.other_car import COLUMNS, TRUE, drive, late_log
 
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.prediction import Prediction, predict
@@ -21,16 +21,8 @@ from ddct_plant.scenario.file import load_scenario
 START = DrivelineParameters()
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / 'map.yaml').write_text(COLUMNS)
-    write_csv(tmp_path / 'drive.csv', 3, drive(1))
-    return tmp_path
-
-
-def identify(folder: Path, *options: str) -> int:
-    log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
-    return main([*log, '--out', str(folder / 'mine.yaml'), *options])
+def identify_into_file(folder: Path, *options: str) -> int:
+    return identify(folder, '--out', str(folder / 'mine.yaml'), *options)
 
 
 SWAPPED = COLUMNS.replace('MdMot', 'X').replace('MdKup', 'MdMot').replace('X', 'MdKup')
@@ -53,7 +45,7 @@ def test_a_fit_that_cannot_be_right_is_refused_first_and_writes_nothing(
 ) -> None:
     (folder / 'map.yaml').write_text(columns)
     report = folder / 'report.json'
-    assert identify(folder, '--json', str(report)) == 1
+    assert identify_into_file(folder, '--json', str(report)) == 1
     printed, complaint = capsys.readouterr()
     lines = printed.splitlines()
     assert lines[0].startswith('REFUSED')
@@ -73,7 +65,7 @@ def test_a_refused_fit_is_accepted_by_force_and_its_reason_still_comes_first(
 ) -> None:
     text = COLUMNS.replace('nMot, unit: rpm', 'nMot, unit: deg/s')
     (folder / 'map.yaml').write_text(text)
-    assert identify(folder, '--force') == 0
+    assert identify_into_file(folder, '--force') == 0
     printed, complaint = capsys.readouterr()
     assert printed.startswith('REFUSED')
     assert complaint == ''
@@ -82,7 +74,7 @@ def test_a_refused_fit_is_accepted_by_force_and_its_reason_still_comes_first(
 
 def test_a_good_fit_is_accepted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     report = folder / 'report.json'
-    assert identify(folder, '--json', str(report)) == 0
+    assert identify_into_file(folder, '--json', str(report)) == 0
     assert 'REFUSED' not in capsys.readouterr().out
     content = json.loads(report.read_text())
     assert (content['verdict'], content['reasons']) == ('accepted', [])
@@ -91,7 +83,7 @@ def test_a_good_fit_is_accepted(folder: Path, capsys: pytest.CaptureFixture[str]
 
 
 def test_the_table_marks_new_values(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert identify(folder) == 0
+    assert identify_into_file(folder) == 0
     printed = capsys.readouterr().out
     assert 'new scenario' in printed
     assert 'in scenario' not in printed

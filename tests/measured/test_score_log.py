@@ -140,6 +140,29 @@ def test_every_named_quantity_is_a_metric_or_a_criterion() -> None:
     assert named <= set(Metrics._fields) | set(CRITERION_UNITS)
 
 
+@pytest.mark.parametrize(
+    'column', ['vehicle_accel', 'clutch_torque', 'driveshaft_torque', 'slip_reference']
+)
+def test_each_value_that_is_lost_with_a_column_has_a_reason(tmp_path: Path, column: str) -> None:
+    (tmp_path / 'drive.csv').write_text(
+        signals_csv(record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi'))
+    )
+    (tmp_path / 'map.yaml').write_text(OURS)
+    whole = scored(tmp_path)
+    (tmp_path / 'map.yaml').write_text(re.sub(f'  {column}: .*\n', '', OURS))
+    without = scored(tmp_path)
+    lost = {name for name, value in whole['metrics'].items() if value is not None} - {
+        name for name, value in without['metrics'].items() if value is not None
+    }
+    for before, after in zip(
+        whole['verdict']['criteria'], without['verdict']['criteria'], strict=True
+    ):
+        if before['value'] is not None and after['value'] is None:
+            lost.add(before['name'])
+    assert lost
+    assert lost <= set(without['not_computed'])
+
+
 def test_the_report_shows_a_log_and_the_reason_of_each_empty_cell(folder: Path) -> None:
     page = folder / 'report.html'
     columns = ['--columns', str(folder / 'map.yaml')]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from support.runs import plan, record
@@ -51,3 +52,9 @@ def speeds_late(late_s: float) -> dict[str, float]:
     """Return the delays against the engine speed where all speeds are late."""
     torques = dict.fromkeys(TORQUES, -late_s)
     return {'shaft_speed': 0.0, 'wheel_speed': 0.0} | torques
+
+
+def identify(folder: Path, *options: str) -> int:
+    """Run `identify` on the log and column map of a folder; return the exit code."""
+    log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
+    return main([*log, *options])

@@ -18,7 +18,6 @@ from ddct_bringup.verdict.judged_run import JudgedRun, Values, step_at
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
-from ddct_bringup.verdict.traction import driving_acceleration
 from ddct_bringup.verdict.verdict import judged_traction, verdict_of
 from ddct_bringup.verdict.vibration import BAND_PASS_ORDER, SHORTEST_JUDDER_S, at_rest, band_pass
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, steps_in, time_of_step
@@ -54,7 +53,7 @@ def stacked_results(
         limits.rules.engagements_a_day,
         stacked_plants(plants),
     )
-    driving = driving_acceleration(trajectory, judged.plant).tolist()
+    driving = np.asarray(judged.driving_acceleration).tolist()
     by_metric = _rows({name: metrics[name] for name in METRIC_NAMES}, len(runs))
     by_criterion = _rows(raw_criteria(judged), len(runs))
     by_existence = _rows(existing(judged), len(runs))

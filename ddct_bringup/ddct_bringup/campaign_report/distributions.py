@@ -1,4 +1,4 @@
-"""Quantity of a campaign: distributions of the main metrics, a curve for each controller."""
+"""Figure of a campaign: distributions of the main metrics, a curve for each controller."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
+from matplotlib.figure import Figure
 
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.report.page_parts import unit_text
@@ -46,7 +46,7 @@ def write_distributions(results: Results, scenario: str, path: Path) -> None:
         save_chart(distributions_figure(results, scenario), path)
 
 
-def distributions_figure(results: Results, scenario: str) -> Drawing:
+def distributions_figure(results: Results, scenario: str) -> Figure:
     """
     Return the figure: a panel for each main metric, a curve for each controller.
 
@@ -57,9 +57,9 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
     metrics = [each for each in metrics if each in results.quantities]
     rows = max(1, -(-len(metrics) // _ACROSS))
     legend = -(-len(results.groups) // _LEGEND_COLUMNS)
-    drawing = Drawing(figsize=(_WIDTH_IN, _PANEL_IN * rows + _LINE_IN * legend + 1.1))
-    drawing.suptitle(f'{_title(results, scenario)}\n{_conditions(results)}', fontsize=11)
-    panels = drawing.subplots(rows, _ACROSS, squeeze=False, sharey=True)
+    figure = Figure(figsize=(_WIDTH_IN, _PANEL_IN * rows + _LINE_IN * legend + 1.1))
+    figure.suptitle(f'{_title(results, scenario)}\n{_conditions(results)}', fontsize=11)
+    panels = figure.subplots(rows, _ACROSS, squeeze=False, sharey=True)
     looks = looks_of(group.names['controller'] for group in results.groups)
     for axes, quantity in zip(panels.flat, metrics, strict=False):
         for group, look in zip(results.groups, looks, strict=True):
@@ -73,8 +73,8 @@ def distributions_figure(results: Results, scenario: str) -> Drawing:
         axes.set_axis_off()
     if metrics:
         lines = panels[0, 0].get_legend_handles_labels()
-        drawing.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside lower center')
-    return drawing
+        figure.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside lower center')
+    return figure
 
 
 def _title(results: Results, scenario: str) -> str:

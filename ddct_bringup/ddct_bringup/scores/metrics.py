@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.criteria import finite
+from ddct_bringup.verdict.friction_work import friction_work
 from ddct_bringup.verdict.vibration import jerk, vibration_dose, weighted_acceleration
 from ddct_bringup.verdict.zero_slip import first_lock, first_zero_slip
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
@@ -130,7 +130,7 @@ def metric_values(
             'engagement_time_s': engagement_time,
             'lockup_slip_acceleration_rad_s2': lockup_slope,
             'slip_final_rpm': rpm_from_rad_s(slip[..., -1]),
-            'friction_energy_j': _friction_energy(trajectory),
+            'friction_energy_j': friction_work(trajectory),
             'torque_total_variation_n_m': np.sum(
                 np.abs(np.diff(trajectory.torque_request)), axis=-1
             ),
@@ -177,14 +177,6 @@ def _slip_acceleration_at_lock(trajectory: Trajectory, start: int) -> np.ndarray
 
 def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
     return np.take_along_axis(values, index[..., np.newaxis], axis=-1)[..., 0]
-
-
-def _friction_energy(trajectory: Trajectory) -> np.ndarray:
-    work = trajectory.friction_work
-    if work is not None:
-        return np.sum(work, axis=-1)
-    power = np.abs(trajectory.joint_effort[..., 1] * trajectory.slip_speed)
-    return scipy.integrate.trapezoid(power, dx=PERIOD_S)
 
 
 def _peak_jerk(trajectory: Trajectory, start: int, last_scored: int) -> np.ndarray:

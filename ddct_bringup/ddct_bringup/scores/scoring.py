@@ -19,7 +19,6 @@ from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, slip_state
-from ddct_bringup.verdict.traction import driving_acceleration
 from ddct_bringup.verdict.verdict import (
     Verdict,
     judged_traction,
@@ -53,12 +52,14 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
         'weighted_acceleration_m_s2',
         'peak_jerk',
         'mean_jerk',
+        'mean_negative_jerk',
+        'mean_acceleration',
         'peak_acceleration',
         'weighted_acceleration',
         'daily_vibration_dose',
     ),
     'slip_reference': ('slip_rmse_rpm',),
-    'clutch_torque': ('friction_energy_j', 'friction_energy'),
+    'clutch_torque': ('friction_energy_j', 'friction_energy', 'friction_work_over_least'),
     'torque_request': ('torque_total_variation_n_m', 'request_variation'),
     'driveshaft_torque': ('torque_dip',),
 }
@@ -185,14 +186,13 @@ def _verdict(
         state = slip_state(trajectory, start, rules, plant)
     window_s, a_day = facts.score_window_s, rules.engagements_a_day
     run = JudgedRun(trajectory, start, window_s, metrics, a_day, plant)
-    driving = finite(driving_acceleration(trajectory, plant))
     return verdict_of(
         state,
         criterion_values(run),
         limits,
         facts.scenario,
         exists=existing(run),
-        traction=judged_traction(driving, plant, limits),
+        traction=judged_traction(finite(run.driving_acceleration), plant, limits),
     )
 
 

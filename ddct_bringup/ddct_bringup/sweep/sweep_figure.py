@@ -1,4 +1,4 @@
-"""Quantity of `sweep`: metrics as lines over one key, states as maps over two."""
+"""Figure of `sweep`: metrics as lines over one key, states as maps over two."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddct_bringup.report.page_parts import unit_text
@@ -62,7 +62,7 @@ def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Drawing:
+def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Figure:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
     states = np.array([run['verdict']['state'] for run in runs]).reshape(len(names), -1)
@@ -70,7 +70,7 @@ def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity
         return _maps(sweep, names, states)
     lane = 0.5 + _LANE_IN * len(names)
     heights = [*(_PANEL_IN for _ in metrics), lane]
-    drawing = Drawing(figsize=(_WIDTH_IN, sum(heights) + 1.3))
+    drawing = Figure(figsize=(_WIDTH_IN, sum(heights) + 1.3))
     panels = drawing.subplots(len(heights), sharex=True, height_ratios=heights)
     panels[0].set_title(_title(sweep, names, _WIDTH_IN))  # below the legend
     places = places_of(sweep.axes[0])
@@ -117,13 +117,13 @@ def _draw_lanes(axes: Axes, places: np.ndarray, names: Sequence[str], states: np
     axes.set_ylabel('state')
 
 
-def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Drawing:
+def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Figure:
     """Draw a map of states per controller, the first axis across, the second up."""
     across, up = sweep.axes
     columns = min(_ACROSS, len(names))
     rows = -(-len(names) // columns)
     width = max(_MAP_IN * columns, 4.5)
-    drawing = Drawing(figsize=(width, _MAP_IN * rows + 1.1))
+    drawing = Figure(figsize=(width, _MAP_IN * rows + 1.1))
     drawing.suptitle(_title(sweep, names, width))
     panels = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     edges = (edges_of(places_of(across)), edges_of(places_of(up)))

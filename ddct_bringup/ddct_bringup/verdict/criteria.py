@@ -9,9 +9,9 @@ import numpy as np
 
 from ddct_bringup.verdict.friction_work import LEAST_SLIP_RPM, slips_at, work_over_least
 from ddct_bringup.verdict.judged_run import JudgedRun, Values
-from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_negative_jerk
+from ddct_bringup.verdict.mean_motion import mean_acceleration, mean_jerk, mean_negative_jerk
 from ddct_bringup.verdict.metric_definitions import METRICS, NO_WINDOW
-from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, mean_jerk, torque_dip
+from ddct_bringup.verdict.vibration import SHORTEST_JUDDER_S, torque_dip
 from ddct_plant.program.table import Quantity
 
 AXIS_FACTOR = 1.4

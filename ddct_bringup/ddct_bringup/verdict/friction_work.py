@@ -34,13 +34,18 @@ def work_over_least(trajectory: Trajectory, start: int, plant: JudgedPlant | Non
         return None
     least = plant.joint_inertia * trajectory.slip_speed[..., start] ** 2 / 2.0
     slips = slips_at(trajectory, start)
-    return np.where(slips, _work(trajectory, start), np.nan) / np.where(slips, least, 1.0)
+    return np.where(slips, friction_work(trajectory, start), np.nan) / np.where(slips, least, 1.0)
 
 
-def _work(trajectory: Trajectory, start: int) -> np.ndarray:
-    """Return the friction work in J from step `start` on; exact where the run records it."""
+def friction_work(trajectory: Trajectory, start: int = 0) -> np.ndarray:
+    """
+    Return the friction work in J from step `start` on, (...): exact where the run records it.
+
+    Without a record it is the integral of |C_f w_d| by trapezoids.
+    """
     if trajectory.friction_work is not None:
-        return np.sum(trajectory.friction_work[..., start + 1 :], axis=-1)
+        # The work recorded at a step is that of the period before; at step 0 it is zero.
+        return np.sum(trajectory.friction_work[..., start + 1 if start else 0 :], axis=-1)
     torque = trajectory.joint_effort[..., start:, _PRIMARY]
     return scipy.integrate.trapezoid(
         np.abs(torque * trajectory.slip_speed[..., start:]), dx=PERIOD_S

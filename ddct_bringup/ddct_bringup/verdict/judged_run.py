@@ -88,6 +88,18 @@ class JudgedRun:
         """Torque of the driveshaft in N m from control start on."""
         return self.trajectory.joint_effort[..., self.control_start :, _DRIVESHAFT]
 
+    @property
+    def driving_acceleration(self) -> Values | None:
+        """
+        Largest driving force at the wheels over the mass of the car, m/s^2, in the whole run.
+
+        The force is the driveshaft torque divided by the wheel radius. None without a plant.
+        """
+        if self.plant is None:
+            return None
+        torque = np.max(self.trajectory.joint_effort[..., _DRIVESHAFT], axis=-1)
+        return torque / (self.plant.wheel_radius * self.plant.mass)
+
     @cached_property
     def locks_from_s(self) -> float | None:
         """

@@ -1,4 +1,4 @@
-"""Means of acceleration and jerk, as ISO 15622 limits them for automated driving."""
+"""Means of acceleration over 2 s and of jerk over 1 s; ISO 15622 limits such means."""
 
 import numpy as np
 import scipy
@@ -19,11 +19,22 @@ def mean_acceleration(acceleration: np.ndarray) -> np.ndarray | None:
     return np.max(gains, axis=-1) / MEAN_S
 
 
+def mean_jerk(acceleration: np.ndarray) -> np.ndarray | None:
+    """Return the largest magnitude of the mean jerk over 1 s in m/s^3; None below 1 s."""
+    means = _jerk_means(acceleration)
+    return np.max(np.abs(means), axis=-1) if means.size else None
+
+
 def mean_negative_jerk(acceleration: np.ndarray) -> np.ndarray | None:
     """
     Return the most negative mean over 1 s of the jerk in m/s^3, 0 where none is negative.
 
     None for (..., n) samples in m/s^2 of less than 1 s.
     """
-    changes = acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]
-    return np.minimum(np.min(changes, axis=-1), 0.0) if changes.size else None
+    means = _jerk_means(acceleration)
+    return np.minimum(np.min(means, axis=-1), 0.0) if means.size else None
+
+
+def _jerk_means(acceleration: np.ndarray) -> np.ndarray:
+    """Return the means of the jerk over 1 s in m/s^3; empty for less than 1 s."""
+    return acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]

@@ -49,7 +49,7 @@ def free_turns(
     """
     slip = rpm_from_rad_s(trajectory.slip_speed[control_start:])
     turns = turns_of(slip, 2.0 * rules.engaged_slip)
-    if plant is None or trajectory.torque_demand is None:
+    if plant is None or trajectory.torque_demand is None or len(turns) < 2:
         return turns
     imposed = _imposed_acceleration(trajectory, plant)[control_start:]
     begin = 0

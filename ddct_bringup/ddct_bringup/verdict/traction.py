@@ -5,15 +5,6 @@ The wheels of the plant roll without slip, so a run with a larger driving force 
 """
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-
-from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.plant import JudgedPlant
-
-_DRIVESHAFT = 3
-"""Index of the driveshaft among the joints."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +29,3 @@ class TractionRule:
         """
         least = self.friction * gravity * self.driven_share
         return least / (1.0 + self.friction * self.height_over_wheelbase)
-
-
-def driving_acceleration(trajectory: Trajectory, plant: JudgedPlant | None) -> Any:
-    """
-    Return the largest driving force at the wheels over the mass of the car in m/s^2, (...).
-
-    The force is the driveshaft torque divided by the wheel radius. None where the plant is
-    unknown.
-    """
-    if plant is None:
-        return None
-    torque = np.max(trajectory.joint_effort[..., _DRIVESHAFT], axis=-1)
-    return torque / (plant.wheel_radius * plant.mass)

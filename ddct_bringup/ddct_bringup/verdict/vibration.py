@@ -149,9 +149,3 @@ def torque_dip(torque: np.ndarray) -> np.ndarray | None:
     if not torque.size:
         return None
     return np.max(np.maximum.accumulate(torque, axis=-1) - torque, axis=-1)
-
-
-def mean_jerk(acceleration: np.ndarray) -> np.ndarray | None:
-    """Return the largest magnitude of the mean jerk over 1 s in m/s^3; None below 1 s."""
-    changes = acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]
-    return np.max(np.abs(changes), axis=-1) if changes.size else None
